@@ -1,0 +1,89 @@
+"""Pairs of segments whose bounding boxes meet: a tree of boxes, joined with itself."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voronoi_tiles.errors import DesignError
+from voronoi_tiles.tolerance import PAIRS_MAX
+
+Complexes = NDArray[np.complex128]
+Indices = NDArray[np.intp]
+
+
+def overlapping_boxes(ends: Complexes, margin: float) -> tuple[Indices, Indices]:
+    """Index pairs i < j of segments whose bounding boxes come within `margin` of each other.
+
+    `ends` is complex128 of shape (n, 2). A tree of boxes over the segments in Z-order is joined with
+    itself, level by level, eight children to a box. Raises DesignError beyond PAIRS_MAX pairs.
+    """
+    n = len(ends)
+    x, y = ends.real, ends.imag
+    boxes = np.stack([x.min(axis=1), y.min(axis=1), x.max(axis=1) + margin, y.max(axis=1) + margin])
+    order = np.arange(n)
+    if n > 64:
+        order = _z_order(boxes)
+        boxes = boxes[:, order]
+    levels = [boxes]
+    while levels[-1].shape[1] > 8:
+        lower = levels[-1]
+        starts = np.arange(0, lower.shape[1], 8)
+        levels.append(
+            np.concatenate(
+                [np.minimum.reduceat(lower[:2], starts, axis=1), np.maximum.reduceat(lower[2:], starts, axis=1)]
+            )
+        )
+    top = levels[-1].shape[1]
+    i, j = (index.astype(np.intp) for index in np.triu_indices(top))
+    i, j = _meeting(levels[-1], i, j)
+    for level in reversed(levels[:-1]):
+        if len(i) > PAIRS_MAX:
+            raise _too_many()
+        # In portions, so that the 64 pairs of children of each pair never fill the memory.
+        portions = [
+            _meeting(level, *_children(i[k : k + 32768], j[k : k + 32768], level.shape[1]))
+            for k in range(0, len(i), 32768)
+        ]
+        i, j = (np.concatenate(part) for part in zip(*portions, strict=True))
+    apart = i != j
+    i, j = order[i[apart]], order[j[apart]]
+    if len(i) > PAIRS_MAX:
+        raise _too_many()
+    return np.minimum(i, j), np.maximum(i, j)
+
+
+def _children(i: Indices, j: Indices, count: int) -> tuple[Indices, Indices]:
+    """The pairs p <= q of children of boxes i and j, eight to a box, `count` in all."""
+    shape = (len(i), 8, 8)
+    steps = np.arange(8)
+    p = np.broadcast_to((8 * i[:, None] + steps)[:, :, None], shape).ravel()
+    q = np.broadcast_to((8 * j[:, None] + steps)[:, None, :], shape).ravel()
+    inside = (p <= q) & (q < count)
+    return p[inside], q[inside]
+
+
+def _meeting(boxes: NDArray[np.float64], i: Indices, j: Indices) -> tuple[Indices, Indices]:
+    x0, y0, x1, y1 = boxes
+    meet = (x0[i] <= x1[j]) & (x0[j] <= x1[i]) & (y0[i] <= y1[j]) & (y0[j] <= y1[i])
+    return i[meet], j[meet]
+
+
+def _z_order(boxes: NDArray[np.float64]) -> Indices:
+    """The order of box centres along a Z-order curve over a grid of 1024 x 1024."""
+    centres = boxes[:2] + boxes[2:]
+    low = centres.min(axis=1, keepdims=True)
+    size = float((centres.max(axis=1, keepdims=True) - low).max())
+    grid = ((centres - low) * (1023.0 / size if size > 0.0 else 0.0)).astype(np.int64)
+    code = np.zeros(grid.shape[1], dtype=np.int64)
+    for bit in range(10):
+        code |= ((grid[0] >> bit & 1) << 2 * bit) | ((grid[1] >> bit & 1) << 2 * bit + 1)
+    return np.argsort(code, kind="stable")
+
+
+def _too_many() -> DesignError:
+    return DesignError(
+        "the strokes cross or overlap each other too often",
+        key="strokes",
+        remedy="Draw fewer strokes, or raise the site's tolerance.",
+    )

@@ -1,0 +1,355 @@
+"""A design: the wallpaper group, the cell and the sites, read from a TOML or JSON file and checked by hand.
+
+Checked by hand because the import of a validation library costs more than most commands; every message
+names the file, the path of the key and the remedy, and whatever the input is, only DesignError comes out.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal, cast
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voronoi_tiles import reading
+from voronoi_tiles.errors import DesignError
+from voronoi_tiles.site import Site, build_site
+from voronoi_tiles.strokes import polylines
+from voronoi_tiles.svgpath import ARC_SHARE
+from voronoi_tiles.tolerance import (
+    ANGLE_MIN,
+    CELL_ASPECT_MAX,
+    CELL_MIN,
+    FILE_BYTES_MAX,
+    FLATTENING_MM,
+    SITE_EXTENT_MAX,
+)
+from voronoi_tiles.wallpaper import GROUPS, Lattice, WallpaperGroup
+
+if TYPE_CHECKING:
+    from voronoi_tiles.tiling import Tiling
+
+Complexes = NDArray[np.complex128]
+Units = Literal["mm", "cm", "in"]
+
+UNIT_MM: Mapping[Units, float] = {"mm": 1.0, "cm": 10.0, "in": 25.4}
+"""Millimetres in each unit of length."""
+
+# The full symbols of the International Tables, for those who write them.
+_FULL_SYMBOLS = {"p1m1": "pm", "p11m": "pm", "p1g1": "pg", "p11g": "pg", "c1m1": "cm", "p2mm": "pmm", "p2mg": "pmg"}
+_FULL_SYMBOLS |= {"p2gg": "pgg", "c2mm": "cmm", "p4mm": "p4m", "p4gm": "p4g", "p6mm": "p6m", "p211": "p2", "p111": "p1"}
+
+_STARTER = 'Run "voronoi-tiles new p4" for a design to start from.'
+
+
+@dataclass(frozen=True, eq=False)
+class Design:
+    """A design that has been read and checked.
+
+    Lengths are in `units`; `source` is the design as canonical JSON (ASCII, sorted keys), which `loads` reads
+    again; `name` is the stem of the file it came from, or "design".
+    """
+
+    group: WallpaperGroup
+    lattice: Lattice
+    units: Units
+    sites: tuple[Site, ...]
+    source: str
+    name: str = "design"
+
+    @property
+    def unit_mm(self) -> float:
+        """One unit of the design in millimetres."""
+        return UNIT_MM[self.units]
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Design:
+        """Read a design file, TOML or JSON by its suffix (else by its content); "-" is standard input.
+
+        Raises DesignError where the file cannot be read or used.
+        """
+        file = os.fspath(path)
+        shown = "standard input" if file == "-" else file
+        text = _read_text(file, shown)
+        suffix = Path(file).suffix.lower()
+        if suffix not in (".toml", ".json"):
+            suffix = ".json" if text.lstrip()[:1] == "{" else ".toml"
+        return cls.loads(text, format=suffix[1:], file=shown, name="design" if file == "-" else Path(file).stem)
+
+    @classmethod
+    def loads(
+        cls,
+        text: str,
+        *,
+        format: str = "toml",  # noqa: A002 - the word that scripts expect
+        file: str | None = None,
+        name: str = "design",
+    ) -> Design:
+        """Read a design from text in "toml" or "json"; `file` is what messages call it. Raises DesignError."""
+        return cls.from_dict(_parse(text, format, file), file=file, name=name)
+
+    @classmethod
+    def from_dict(cls, mapping: Mapping[str, Any], *, file: str | None = None, name: str = "design") -> Design:
+        """Read a design from nested mappings and sequences, as TOML and JSON give them. Raises DesignError."""
+        try:
+            return cls(*_read_design(mapping), name=name or "design")
+        except DesignError as error:
+            raise error.with_file(file) from None
+
+    def tessellate(self) -> Tiling:
+        """Compute the tiles, proved.
+
+        Raises TouchingCopiesError where copies of sites touch, ProofError where the result fails its proof.
+        """
+        from voronoi_tiles.tiling import tessellate
+
+        return tessellate(self)
+
+
+# --- text ---------------------------------------------------------------------------------------------------
+
+
+def _read_text(file: str, shown: str) -> str:
+    try:
+        if file == "-":
+            data = sys.stdin.buffer.read(FILE_BYTES_MAX + 1)
+        else:
+            with Path(file).open("rb") as stream:
+                data = stream.read(FILE_BYTES_MAX + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise DesignError(
+            f"cannot read the design: {reason}", file=shown, remedy="Check the path and its permissions."
+        ) from None
+    if len(data) > FILE_BYTES_MAX:
+        raise DesignError(
+            f"larger than {FILE_BYTES_MAX // 2**20} MiB", file=shown, remedy=f"Is it a design? {_STARTER}"
+        )
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise DesignError(
+            "not a text in UTF-8", file=shown, line=line, remedy=f"Save it as UTF-8 text. {_STARTER}"
+        ) from None
+
+
+def _parse(text: str, form: str, file: str | None) -> Mapping[str, Any]:
+    if not isinstance(text, str):
+        raise DesignError(f"a design is text, not {reading.shown(text)}", file=file, remedy="Pass a str.")
+    if form not in ("toml", "json"):
+        raise DesignError(f"unknown format {reading.shown(form)}", file=file, remedy='Use "toml" or "json".')
+    try:
+        if form == "toml":
+            return _parse_toml(text)
+        return cast("Mapping[str, Any]", json.loads(text, object_pairs_hook=_without_repeats))
+    except DesignError as error:
+        raise error.with_file(file) from None
+    except json.JSONDecodeError as error:
+        raise DesignError(
+            f"not JSON: {error.msg} (column {error.colno})", file=file, line=error.lineno, remedy="Correct the line."
+        ) from None
+    except (ValueError, RecursionError) as error:
+        # Integers of thousands of digits, and nesting beyond the parser's stack.
+        why = "nested too deeply" if isinstance(error, RecursionError) else str(error).partition(";")[0]
+        raise DesignError(f"not {form.upper()}: {why}", file=file, remedy=_STARTER) from None
+
+
+def _parse_toml(text: str) -> Mapping[str, Any]:
+    import re
+    import tomllib
+
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        what = str(error)
+        place = re.search(r" \(at line (\d+), column (\d+)\)$", what)
+        if place:
+            line, what = int(place[1]), f"{what[: place.start()]} (column {place[2]})"
+        else:
+            line, what = text.count("\n") + 1, what.removesuffix(" (at end of document)") + " at the end"
+        raise DesignError(
+            f"not TOML: {what[:1].lower()}{what[1:]}", line=line, remedy=f"Correct the line. {_STARTER}"
+        ) from None
+
+
+def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    table = dict(pairs)
+    if len(table) < len(pairs):
+        names = [name for name, _ in pairs]
+        twice = next(name for name in names if names.count(name) > 1)
+        raise DesignError(f"key {reading.shown(twice)} occurs twice in one object", remedy="Keep one of them.")
+    return table
+
+
+# --- the design ---------------------------------------------------------------------------------------------
+
+_Parts = tuple[WallpaperGroup, Lattice, Units, tuple[Site, ...], str]
+
+
+def _read_design(value: object) -> _Parts:
+    table = reading.table(value, ("schema", "group", "units", "cell", "site"), _STARTER)
+    schema = reading.required(table, "schema", "Write schema = 1.")
+    if isinstance(schema, bool) or not isinstance(schema, int) or schema != 1:
+        raise DesignError(f"schema {reading.shown(schema)} is not supported", key="schema", remedy="Write schema = 1.")
+    group = _read_group(reading.required(table, "group", f"Write one of {', '.join(GROUPS)}."))
+    units = _read_units(table.get("units", "mm"))
+    cell = reading.required(table, "cell", "Write [cell] and, below it, a = 60.0 and what else the group leaves free.")
+    with reading.within("cell"):
+        lattice = _read_cell(cell, group)
+    listed = reading.required(table, "site", "Write [[site]] and, below it, its strokes.")
+    sites = _read_sites(listed, FLATTENING_MM / UNIT_MM[units], lattice)
+    source = json.dumps(_canonical(table), sort_keys=True, separators=(",", ":"), allow_nan=False)
+    return group, lattice, units, sites, source
+
+
+def _read_units(value: object) -> Units:
+    for units in UNIT_MM:
+        if isinstance(value, str) and value == units:
+            return units
+    raise DesignError(f"unknown units {reading.shown(value)}", key="units", remedy='Write "mm", "cm" or "in".')
+
+
+def _read_group(value: object) -> WallpaperGroup:
+    close = None
+    if isinstance(value, str):
+        if value in GROUPS:
+            return GROUPS[value]
+        close = _FULL_SYMBOLS.get(value.lower()) or reading.closest(value, GROUPS)
+    remedy = f"Write one of {', '.join(GROUPS)}."
+    raise DesignError(
+        f"unknown wallpaper group {reading.shown(value)}",
+        key="group",
+        remedy=f'Did you mean "{close}"? {remedy}' if close else remedy,
+    )
+
+
+def _read_cell(value: object, group: WallpaperGroup) -> Lattice:
+    table = reading.table(value, ("a", "b", "angle"), "Write [cell] and, below it, a = 60.0.")
+    needs = f"{group.name} needs the cell's"
+    a = _read_side(table, "a", f"{needs} side along x: write a = 60.0.")
+    b = None
+    angle = None
+    if group.fixes_b:
+        _refuse_other(table, "b", a, f"{group.name} has a {group.system} cell: b is as long as a")
+    else:
+        b = _read_side(table, "b", f"{needs} second side: write b = 50.0.")
+    fixed = group.fixed_angle
+    if fixed is not None:
+        what = f"{group.name} has a {group.system} cell: its angle is {fixed:g} degrees"
+        _refuse_other(table, "angle", fixed, what)
+    else:
+        given = reading.required(table, "angle", f"{needs} angle from a to b: write angle = 75.0.")
+        with reading.within("angle"):
+            angle = reading.number(given)
+            if not ANGLE_MIN <= angle <= 180.0 - ANGLE_MIN:
+                raise DesignError(
+                    f"must be between 0 and 180 degrees, not {angle:g}",
+                    remedy="Write the angle from a to b, such as 75.0.",
+                )
+    lattice = group.lattice(a, b, angle)
+    short, long = lattice.reduced_basis
+    if not abs(long) <= CELL_ASPECT_MAX * abs(short):
+        raise DesignError(
+            f"the cell is more than {CELL_ASPECT_MAX:,.0f} times longer than wide",
+            remedy="Choose sides, and an angle, that are nearer to a square.",
+        )
+    return lattice
+
+
+def _read_side(table: reading.Table, name: str, remedy: str) -> float:
+    value = reading.required(table, name, remedy)
+    with reading.within(name):
+        side = reading.positive(value)
+        if side < CELL_MIN:
+            raise DesignError(f"the cell is smaller than {CELL_MIN:g}", remedy="Use smaller units.")
+        return side
+
+
+def _refuse_other(table: reading.Table, name: str, fixed: float, what: str) -> None:
+    """Refuse a value other than the one that the group fixes."""
+    with reading.within(name):
+        if name in table and reading.number(table[name]) != fixed:
+            raise DesignError(what, remedy=f"Leave {name} out.")
+
+
+def _read_sites(value: object, accuracy: float, lattice: Lattice) -> tuple[Site, ...]:
+    remedy = "Write [[site]], in double brackets, above the keys of each site."
+    with reading.within("site"):
+        listed = reading.sequence(value, remedy)
+        if not listed:
+            raise DesignError("there is no site", remedy=remedy)
+    taken: dict[str, int] = {}
+    sites = []
+    for k, item in enumerate(listed):
+        with reading.within(f"site[{k}]"):
+            table = reading.table(item, ("name", "tolerance", "strokes"), remedy)
+            name = table.get("name", f"site{k + 1}")
+            with reading.within("name"):
+                _check_name(name, taken)
+            taken[name] = k
+            sites.append(_read_site(table, name, accuracy, lattice))
+    return tuple(sites)
+
+
+def _check_name(name: object, taken: Mapping[str, int]) -> None:
+    if not isinstance(name, str):
+        raise DesignError(f"must be a text, not {reading.shown(name)}", remedy='Write name = "bird".')
+    if not 0 < len(name) <= 100 or not name.isprintable() or name != name.strip():
+        raise DesignError(
+            f"{reading.shown(name)} is no name",
+            remedy="Use 1 to 100 printable characters, without spaces at the ends.",
+        )
+    if name in taken:
+        raise DesignError(
+            f'"{name}" is already the name of site[{taken[name]}]', remedy="Give each site a name of its own."
+        )
+
+
+def _read_site(table: reading.Table, name: str, accuracy: float, lattice: Lattice) -> Site:
+    if "tolerance" in table:
+        with reading.within("tolerance"):
+            accuracy = reading.positive(table["tolerance"])
+    remedy = "Write strokes = [{ segment = [[5, 3], [25, 11]] }]."
+    listed = reading.required(table, "strokes", remedy)
+    with reading.within("strokes"):
+        listed = reading.sequence(listed, remedy)
+        if not listed:
+            raise DesignError("there is no stroke", remedy=remedy)
+    lines: list[Complexes] = []
+    pieces: list[Complexes] = []
+    for k, item in enumerate(listed):
+        with reading.within(f"strokes[{k}]"):
+            drawn, curved = reading.stroke(item, accuracy)
+        (pieces if curved else lines).append(drawn)
+    if pieces:
+        # What the step from arcs to cubics may have used is taken off.
+        lines += polylines(np.concatenate(pieces), accuracy * (1.0 - ARC_SHARE))
+    site = build_site(name, lines)
+    if not site.extent <= SITE_EXTENT_MAX * math.sqrt(lattice.det):
+        raise DesignError(
+            f"the site is more than {SITE_EXTENT_MAX:,.0f} times larger than the cell",
+            remedy="Make the cell larger, or the strokes smaller.",
+        )
+    return site
+
+
+def _canonical(value: Any) -> Any:
+    """A checked value in the types of JSON; whole numbers without a fraction, so that 60 and 60.0 are one design."""
+    if isinstance(value, Mapping):
+        return {name: _canonical(item) for name, item in value.items()}
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if isinstance(value, list | tuple):
+        return [_canonical(item) for item in value]
+    if isinstance(value, str | bool):
+        return value
+    number = float(value)
+    return int(number) if number.is_integer() else number

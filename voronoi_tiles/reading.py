@@ -1,0 +1,295 @@
+"""Reading values and strokes from the tables of a design: every value is checked before it is used.
+
+Whatever is passed, only DesignError comes out. Its key is relative to the value that was read ("[1]" for
+the second item); callers put their own key before it with `within`.
+"""
+
+from __future__ import annotations
+
+import math
+import reprlib
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voronoi_tiles import strokes as curves
+from voronoi_tiles.errors import DesignError
+from voronoi_tiles.svgpath import path_pieces
+from voronoi_tiles.tolerance import COORDINATE_MAX, NUMBER_MIN
+
+Complexes = NDArray[np.complex128]
+Table = Mapping[str, Any]
+
+
+@contextmanager
+def within(key: str) -> Iterator[None]:
+    """Put `key` before the keys of the errors that come out of the block."""
+    try:
+        yield
+    except DesignError as error:
+        raise error.under(key) from None
+
+
+def shown(value: object) -> str:
+    """Give a short form of any value, for messages."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, Mapping):
+        return "a table"
+    if value is None:
+        return "nothing"
+    try:
+        return reprlib.repr(value)
+    except Exception:  # noqa: BLE001 - a value whose own repr fails, as an int of 5,000 digits does
+        return f"this {type(value).__name__}"
+
+
+def table(value: object, known: Collection[str], remedy: str) -> Table:
+    """Read a table that has no other than the known keys."""
+    if not isinstance(value, Mapping):
+        raise DesignError(f"must be a table, not {shown(value)}", remedy=remedy)
+    for name in value:
+        if not (isinstance(name, str) and name in known):
+            listed = f"The keys here are {', '.join(known)}."
+            close = closest(name, known)
+            raise DesignError(
+                f"unknown key {shown(name)}", remedy=f'Did you mean "{close}"? {listed}' if close else listed
+            )
+    return value
+
+
+def closest(word: object, known: Collection[str]) -> str | None:
+    """Find the known word that was probably meant; None where nothing is near."""
+    if not isinstance(word, str) or len(word) > 40:
+        return None
+    import difflib
+
+    return next(iter(difflib.get_close_matches(word.lower(), known, n=1)), None)
+
+
+def required(of: Table, name: str, remedy: str) -> Any:
+    """Get the value of a key that has to be there."""
+    if name not in of:
+        raise DesignError("is missing", key=name, remedy=remedy)
+    return of[name]
+
+
+def number(value: Any, remedy: str = "Write a number, such as 60.0.") -> float:
+    """Read a finite number of sane size; true and false are none."""
+    if not isinstance(value, int | float | np.integer | np.floating) or isinstance(value, bool):
+        raise DesignError(f"must be a number, not {shown(value)}", remedy=remedy)
+    size: Any = abs(value)
+    if not size <= COORDINATE_MAX:
+        if isinstance(value, int) or math.isfinite(value):
+            raise DesignError(f"number beyond {COORDINATE_MAX:g}", remedy="Use units that keep the numbers small.")
+        raise DesignError(f"must be a finite number, not {float(value)}", remedy=remedy)
+    result = float(value)
+    if result != 0.0 and abs(result) < NUMBER_MIN:
+        raise DesignError(f"number below {NUMBER_MIN:g}", remedy="Write 0, or use smaller units.")
+    return result
+
+
+def positive(value: object) -> float:
+    """Read a number greater than 0."""
+    result = number(value)
+    if result <= 0.0:
+        raise DesignError(f"must be greater than 0, not {result:g}", remedy="Write a positive number.")
+    return result
+
+
+def sequence(value: object, remedy: str) -> list[Any] | tuple[Any, ...]:
+    """Read an array."""
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if not isinstance(value, list | tuple):
+        raise DesignError(f"must be an array, not {shown(value)}", remedy=remedy)
+    return value
+
+
+def point(value: object) -> complex:
+    """Read a point [x, y]."""
+    remedy = "Write a point as [x, y]."
+    pair = sequence(value, remedy)
+    if len(pair) != 2:
+        raise DesignError(f"a point has 2 coordinates, not {len(pair)}", remedy=remedy)
+    index = 0
+    try:
+        x = number(pair[0], remedy)
+        index = 1
+        return complex(x, number(pair[1], remedy))
+    except DesignError as error:
+        raise error.under(f"[{index}]") from None
+
+
+def points(value: object, least: int, most: int | None = None) -> Complexes:
+    """Read an array of at least (and at most) so many points; shape (n,)."""
+    remedy = "Write points as [[x, y], [x, y]]."
+    listed = sequence(value, remedy)
+    if len(listed) < least or (most is not None and len(listed) > most):
+        wanted = f"{least}" if most == least else f"at least {least}"
+        raise DesignError(f"needs {wanted} points, not {len(listed)}", remedy=remedy)
+    result = np.empty(len(listed), dtype=np.complex128)
+    index = 0
+    try:
+        for index, item in enumerate(listed):
+            result[index] = point(item)
+    except DesignError as error:
+        raise error.under(f"[{index}]") from None
+    return result
+
+
+# --- strokes --------------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class _Stroke:
+    """A stroke's table with what its reader needs: `accuracy` in the units of the design, and its placement."""
+
+    table: Table
+    accuracy: float
+    placement: curves.Placement
+
+    def points(self, name: str, least: int, most: int | None = None) -> Complexes:
+        with within(name):
+            return points(self.table[name], least, most)
+
+    @property
+    def closed(self) -> bool:
+        value = self.table.get("closed", False)
+        if not isinstance(value, bool):
+            raise DesignError(
+                f"must be true or false, not {shown(value)}",
+                key="closed",
+                remedy="Write closed = true, or leave it out.",
+            )
+        return value
+
+
+def _point(stroke: _Stroke) -> Complexes:
+    with within("point"):
+        return stroke.placement(np.array([point(stroke.table["point"])]))
+
+
+def _segment(stroke: _Stroke) -> Complexes:
+    ends = stroke.points("segment", 2, 2)
+    curves.refuse_repeats(ends, False, "segment")
+    return stroke.placement(ends)
+
+
+def _polyline(stroke: _Stroke) -> Complexes:
+    line = stroke.points("polyline", 3 if stroke.closed else 2)
+    curves.refuse_repeats(line, stroke.closed, "polyline")
+    return stroke.placement(np.append(line, line[0]) if stroke.closed else line)
+
+
+def _bezier(stroke: _Stroke) -> Complexes:
+    return stroke.placement(curves.bezier_pieces(stroke.points("bezier", 1)))
+
+
+def _hermite(stroke: _Stroke) -> Complexes:
+    required(stroke.table, "tangents", "Give one tangent [x, y] for every point.")
+    through = stroke.points("hermite", 2)
+    return stroke.placement(curves.hermite_pieces(through, stroke.points("tangents", 0)))
+
+
+def _catmull_rom(stroke: _Stroke) -> Complexes:
+    with within("alpha"):
+        alpha = number(stroke.table.get("alpha", 0.5))
+        if not 0.0 <= alpha <= 1.0:
+            raise DesignError(
+                f"must be from 0 to 1, not {alpha:g}",
+                remedy="Write 0 (uniform), 0.5 (centripetal) or 1 (chordal).",
+            )
+    through = stroke.points("catmull_rom", 3 if stroke.closed else 2)
+    return stroke.placement(curves.catmull_rom_pieces(through, alpha, stroke.closed))
+
+
+def _bspline(stroke: _Stroke) -> Complexes:
+    return stroke.placement(curves.bspline_pieces(stroke.points("bspline", 1), stroke.closed))
+
+
+def _circle(stroke: _Stroke) -> Complexes:
+    with within("circle"):
+        center = complex(stroke.placement(np.array([point(stroke.table["circle"])]))[0])
+    radius = required(stroke.table, "radius", "Write the circle's radius.")
+    with within("radius"):
+        # The polygon is not turned with its centre: its vertices have to fit the mirrors of the group.
+        radius = positive(radius) * abs(stroke.placement.scale)
+    return curves.circle_polyline(center, radius, stroke.accuracy)
+
+
+def _path(stroke: _Stroke) -> Complexes:
+    data = stroke.table["path"]
+    with within("path"):
+        if not isinstance(data, str):
+            raise DesignError(f"must be a text, not {shown(data)}", remedy='Write path = "M 1 1 L 5 3".')
+        return stroke.placement(path_pieces(data, stroke.accuracy / abs(stroke.placement.scale)))
+
+
+# kind: (reader, the keys it takes beside its own and the placement, whether it gives cubic pieces, not a polyline)
+_KINDS: dict[str, tuple[Callable[[_Stroke], Complexes], tuple[str, ...], bool]] = {
+    "point": (_point, (), False),
+    "segment": (_segment, (), False),
+    "polyline": (_polyline, ("closed",), False),
+    "bezier": (_bezier, (), True),
+    "hermite": (_hermite, ("tangents",), True),
+    "catmull_rom": (_catmull_rom, ("alpha", "closed"), True),
+    "bspline": (_bspline, ("closed",), True),
+    "circle": (_circle, ("radius",), False),
+    "path": (_path, (), True),
+}
+_PLACEMENT = ("scale", "rotate", "translate")
+_KEYS = tuple(dict.fromkeys([*_KINDS, *(name for row in _KINDS.values() for name in row[1]), *_PLACEMENT]))
+_EXAMPLE = "Write a stroke such as { segment = [[5, 3], [25, 11]] }."
+
+
+def stroke(value: object, accuracy: float) -> tuple[Complexes, bool]:
+    """Read one stroke and place it.
+
+    Returns a polyline, shape (n,), and False; or cubic Bezier pieces, shape (k, 4), and True. Circles and
+    the arcs of paths keep to `accuracy` (in the units of the design); all else is exact.
+    """
+    of = table(value, _KEYS, _EXAMPLE)
+    kinds = [name for name in of if name in _KINDS]
+    if len(kinds) != 1:
+        what = f"is two, {kinds[0]} and {kinds[1]}" if kinds else "has no kind"
+        raise DesignError(f"the stroke {what}", remedy=f"Write one of {', '.join(_KINDS)} between each pair of braces.")
+    kind = kinds[0]
+    read, options, curved = _KINDS[kind]
+    for name in of:
+        if name not in (kind, *options, *_PLACEMENT):
+            raise DesignError(
+                f"does not go with {kind}",
+                key=name,
+                remedy=f"Leave it out; beside {kind} stand {', '.join((*options, *_PLACEMENT))}.",
+            )
+    placed = read(_Stroke(of, accuracy, _placement(of)))
+    if not (np.abs(placed.real).max() <= COORDINATE_MAX and np.abs(placed.imag).max() <= COORDINATE_MAX):
+        raise DesignError(
+            f"the stroke reaches beyond {COORDINATE_MAX:g}", remedy="Draw it smaller, or nearer to the origin."
+        )
+    if kind != "point" and (placed == placed.flat[0]).all():
+        raise DesignError(
+            "the stroke has zero length where it is placed", remedy="Draw it larger, or nearer to the origin."
+        )
+    return placed, curved
+
+
+def _placement(of: Table) -> curves.Placement:
+    scale, rotate, translate = 1.0, 0.0, 0j
+    if "scale" in of:
+        with within("scale"):
+            scale = number(of["scale"])
+            if scale == 0.0:
+                raise DesignError("must not be 0", remedy="Write a factor such as 0.5.")
+    if "rotate" in of:
+        with within("rotate"):
+            rotate = number(of["rotate"], "Write the angle in degrees.")
+    if "translate" in of:
+        with within("translate"):
+            translate = point(of["translate"])
+    return curves.Placement(scale, rotate, translate)
