@@ -1,0 +1,47 @@
+"""The edges of a tile: line segments and parabolic arcs, each with the copy on its other side.
+
+Source: the bisector of two points or of two lines is a line, that of a point and a line is a parabola, and a piece
+of a parabola is exactly one quadratic Bezier curve.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from voronoi_tiles.wallpaper import Operation
+
+
+class Neighbour(NamedTuple):
+    """The copy on the other side of an edge: apply the operation to the base site of that name."""
+
+    site: str
+    operation: Operation
+
+
+@dataclass(frozen=True, slots=True)
+class LineArc:
+    """A straight edge from start to end, in the design's units; the tile lies on its left."""
+
+    start: complex
+    end: complex
+    neighbour: Neighbour
+
+
+@dataclass(frozen=True, slots=True)
+class ParabolaArc:
+    """A parabolic edge: the quadratic Bezier curve of start, control and end; the tile lies on its left.
+
+    The control point is where the tangents at the two ends meet. `focus` is the point and `directrix` two points
+    of the line to which the edge is equally far; one belongs to the tile's site, the other to the neighbour.
+    """
+
+    start: complex
+    control: complex
+    end: complex
+    focus: complex
+    directrix: tuple[complex, complex]
+    neighbour: Neighbour
+
+
+Arc = LineArc | ParabolaArc

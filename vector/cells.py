@@ -1,0 +1,104 @@
+"""The Voronoi cells of a site's elements: row by row, what bounds them and where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from voronoi_tiles.vector.bisectors import Pieces, Surroundings, bisector_pieces
+from voronoi_tiles.vector.candidates import Hierarchy, find_candidates
+from voronoi_tiles.vector.contour import Complexes, Contour, Floats, Ints
+from voronoi_tiles.vector.envelope import lower_envelope
+from voronoi_tiles.vector.rows import Rows
+
+# Rows that are worked on at once: enough for numpy's overhead to vanish, few enough for some 100 MB.
+_CHUNK = 1024
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """What bounds the rows' cells, by row and along each row's variable; no part is empty.
+
+    Attributes:
+        row: (k,) indices.
+        target, copy, item: (k,) the element beyond: half-edge i of the site, or its corner c as h + c.
+        begin, end: (k,) the part's ends; consecutive parts of a row share theirs, bit for bit.
+    """
+
+    row: Ints
+    target: Ints
+    copy: Ints
+    item: Ints
+    begin: Complexes
+    end: Complexes
+
+
+class UnboundedCellError(ArithmeticError):
+    """A cell came out unbounded, which happens only where copies touch or cross."""
+
+
+def bound_cells(
+    rows: Rows,
+    contour: Contour,
+    targets: list[tuple[Surroundings, Hierarchy]],
+    covering_radius: float,
+) -> Parts:
+    """Return what bounds every cell of a site.
+
+    Args:
+        rows, contour: of the base site.
+        targets: for each site its copies, and the same in nested discs.
+        covering_radius: of the lattice.
+
+    Raises:
+        UnboundedCellError: as it says.
+    """
+    found = []
+    for start in range(0, len(rows), _CHUNK):
+        chunk = rows.slice(start, start + _CHUNK)
+        candidates, bounds = find_candidates(chunk, [hierarchy for _, hierarchy in targets], covering_radius)
+        around = [(copies, pairs) for (copies, _), pairs in zip(targets, candidates, strict=True)]
+        pieces = bisector_pieces(chunk, contour, around, bounds)
+        parts = _locate(chunk, pieces, *lower_envelope(pieces, chunk.low, chunk.high))
+        found.append(Parts(parts.row + start, parts.target, parts.copy, parts.item, parts.begin, parts.end))
+    if len(found) == 1:
+        return found[0]
+    return Parts(*(np.concatenate([getattr(parts, name) for parts in found]) for name in Parts.__slots__))
+
+
+def _locate(rows: Rows, pieces: Pieces, row: Ints, start: Floats, end: Floats, piece: Ints) -> Parts:
+    """Return an envelope's parts with their ends in the plane."""
+    kept = np.flatnonzero(end > start)
+    row, start, end, piece = row[kept], start[kept], end[kept], piece[kept]
+    if len(np.unique(row)) < len(rows) or (piece < 0).any():
+        raise UnboundedCellError
+    # Each break is located once, with the flatter of the two functions that meet there: an error in x then moves
+    # the point by no more than itself.
+    inner = np.flatnonzero(row[1:] == row[:-1])
+    at_start, at_end = piece.copy(), piece.copy()
+    flatter = np.abs(pieces.slope(piece[inner], end[inner])) <= np.abs(
+        pieces.slope(piece[inner + 1], end[inner])
+    )
+    at_end[inner] = np.where(flatter, piece[inner], piece[inner + 1])
+    at_start[inner + 1] = at_end[inner]
+    value = pieces.value(at_start, start)
+    begin = _point(rows, row, start, value)
+    finish = np.empty(len(row), complex)
+    finish[inner] = begin[inner + 1]
+    last = np.append(row[1:] != row[:-1], True)
+    finish[last] = _point(rows, row[last], end[last], pieces.value(piece[last], end[last]))
+    return Parts(row, pieces.target[piece], pieces.copy[piece], pieces.item[piece], begin, finish)
+
+
+def _point(rows: Rows, row: Ints, x: Floats, value: Floats) -> Complexes:
+    """Return the points of rows at x where the function has this value."""
+    straight = rows.straight[row]
+    if (value[~straight] >= 0.0).any() or (value[straight] < 0.0).any():
+        raise UnboundedCellError
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = np.where(straight, x, (1.0 - x) * (1.0 + x) / -value)
+        left = np.where(straight, value, 2.0 * x / -value)
+    result = np.empty(len(row), complex)
+    result.real, result.imag = along, left
+    return rows.origin[row] + rows.axis[row] * result

@@ -1,0 +1,236 @@
+"""Edges of the tiling: maximal runs of arcs between two tiles, and the orbits that they form.
+
+Seen from the tile beyond, an edge is the image of an edge of some base tile. One edge of each orbit is computed, and the
+others are its images.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from voronoi_tiles.vector.contour import Bools, Complexes, Ints
+from voronoi_tiles.vector.copies import IDENTITY, Action, Copies, Motion, Placed, compose, inverse
+from voronoi_tiles.vector.copies import reverses_orientation as reverses
+
+
+@dataclass(frozen=True, slots=True)
+class Traced:
+    """The traced boundary of a tile.
+
+    Attributes:
+        vertex: (n,) where each arc starts, ring after ring.
+        ring: (n,) index of the ring.
+        target, copy: (n,) the site beyond each arc, and the index of its copy.
+        curved: (n,) whether the arc lies on a parabola; else on a line.
+        focus: (n,) of the parabola.
+        directrix: (n, 2) two points of its directrix.
+        copies: for each site, its copies around this tile.
+    """
+
+    vertex: Complexes
+    ring: Ints
+    target: Ints
+    copy: Ints
+    curved: Bools
+    focus: Complexes
+    directrix: Complexes
+    copies: list[Copies]
+
+    def take(self, index: Ints) -> Traced:
+        """Return the boundary with these arcs only, each ending where the next one starts."""
+        arrays = (getattr(self, name)[index] for name in self.__slots__[:-1])
+        return Traced(*arrays, copies=self.copies)
+
+    def rings(self) -> list[Ints]:
+        """Return the indices of each ring's arcs."""
+        opening = np.flatnonzero(np.append(True, self.ring[1:] != self.ring[:-1]))
+        return np.split(np.arange(len(self.ring)), opening[1:])
+
+
+# How near the image of a vertex must come to be taken for another one, relative to the cell's size: far above rounding.
+_PAIRING = 1e-6
+
+Corner = tuple[int, int]
+"""Tile and index of the arc that starts there."""
+
+
+@dataclass(eq=False, slots=True)
+class Edge:
+    """A maximal run of arcs that face one copy; where it is a whole ring, it is cut at one vertex or several.
+
+    Attributes:
+        tile: whose boundary it is part of.
+        arcs: (k,) indices into the traced boundary, in order.
+        target, motion: the copy on the other side.
+        start, end: its corners.
+        vertex: (k + 1,) the points between and at the ends of its arcs.
+        images: all edges of base tiles that it is mapped to, each with the motion and whether that reverses its
+            direction; itself under the identity comes first.
+    """
+
+    tile: int
+    arcs: Ints
+    target: int
+    motion: Motion
+    start: Corner
+    end: Corner
+    vertex: Complexes
+    images: list[tuple[Motion, Edge, bool]]
+
+
+class UnpairedEdgeError(ArithmeticError):
+    """An edge has no counterpart on the other side.
+
+    Attributes:
+        edge: the edge.
+    """
+
+    def __init__(self, edge: Edge) -> None:
+        super().__init__("an edge has no counterpart on the other side")
+        self.edge = edge
+
+
+def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pinched: bool = False) -> list[Edge]:
+    """Return the edges of all tiles, ring after ring, each with its images.
+
+    Args:
+        pinched: look for vertices at which a boundary touches itself, and end edges there. Such a tile may have the
+            same neighbour on both sides of the vertex, while an edge on the other side ends.
+
+    Raises:
+        UnpairedEdgeError: as it says.
+    """
+    cuts = [_cuts(boundary) for boundary in traced]
+    _cut_further(action, placed, traced, cuts, pinched)
+    edges = [
+        edge
+        for tile, boundary in enumerate(traced)
+        for ring, cut in zip(boundary.rings(), cuts[tile], strict=True)
+        for edge in _edges(tile, boundary, ring, cut)
+    ]
+    faces: defaultdict[tuple[int, int, Motion], list[Edge]] = defaultdict(list)
+    for edge in edges:
+        faces[edge.tile, edge.target, edge.motion].append(edge)
+    limit = _PAIRING * action.size
+    for edge in edges:
+        for motion, tile, target, beyond, flips in _images(placed, edge.tile, edge.target, edge.motion):
+            if motion == IDENTITY:
+                edge.images.insert(0, (motion, edge, False))
+                continue
+            image = action.apply(motion, edge.vertex)
+            candidates = faces.get((tile, target, beyond), [])
+            gaps = [_gap(image[::-1] if flips else image, other.vertex) for other in candidates]
+            best = int(np.argmin(gaps)) if gaps else -1
+            if best < 0 or gaps[best] > limit:
+                raise UnpairedEdgeError(edge)
+            edge.images.append((motion, candidates[best], flips))
+    return edges
+
+
+def _gap(one: Complexes, other: Complexes) -> float:
+    """Return how far two lists of vertices are from being the same edge: their ends, and how far they run."""
+    ends = np.abs(one[[0, -1]] - other[[0, -1]]).max()
+    return float(max(ends, abs(np.abs(np.diff(one)).sum() - np.abs(np.diff(other)).sum())))
+
+
+def _cuts(boundary: Traced) -> list[list[int]]:
+    """Return for each ring the places in it where the copy beyond changes."""
+    result = []
+    for ring in boundary.rings():
+        target, copy = boundary.target[ring], boundary.copy[ring]
+        changes = (target != np.roll(target, 1)) | (copy != np.roll(copy, 1))
+        result.append(np.flatnonzero(changes).tolist())
+    return result
+
+
+def _motion(boundary: Traced, arc: int) -> Motion:
+    a, b, c, d, s, t = boundary.copies[boundary.target[arc]].motions[boundary.copy[arc]].tolist()
+    return (a, b, c, d, s, t)
+
+
+def _images(
+    placed: list[Placed], tile: int, target: int, beyond: Motion
+) -> Iterator[tuple[Motion, int, int, Motion, bool]]:
+    """Yield every way to move an edge onto a base tile: (motion, tile, target, copy beyond, whether it reverses)."""
+    for element in placed[tile].stabilizer:
+        motion = compose(element, beyond)
+        yield element, tile, target, placed[target].canonical(motion), reverses(element)
+    back = inverse(beyond)
+    for element in placed[target].stabilizer:
+        motion = compose(element, back)
+        yield motion, target, tile, placed[tile].canonical(motion), not reverses(motion)
+
+
+def _cut_further(
+    action: Action, placed: list[Placed], traced: list[Traced], cuts: list[list[list[int]]], pinched: bool
+) -> None:
+    """Cut rings at more vertices, and at all images of these, in place.
+
+    They are one vertex of each ring that faces one copy only and, where `pinched`, those where a boundary touches itself.
+    """
+    # A vertex is where its arc starts; what it is mapped to depends on the copies beyond the arcs on either side.
+    waiting: list[tuple[int, int]] = []
+    for tile, boundary in enumerate(traced):
+        if pinched:
+            waiting += [(tile, arc) for arc in _pinches(boundary.vertex, _PAIRING * action.size)]
+        waiting += [(tile, int(r[0])) for r, cut in zip(boundary.rings(), cuts[tile], strict=True) if not cut]
+    done: set[tuple[int, int]] = set()
+    while waiting:
+        tile, arc = waiting.pop()
+        if (tile, arc) in done:
+            continue
+        done.add((tile, arc))
+        boundary = traced[tile]
+        ring = next(r for r in boundary.rings() if r[0] <= arc <= r[-1])
+        before = arc - 1 if arc > ring[0] else int(ring[-1])
+        number = int(boundary.ring[arc])
+        place = arc - int(ring[0])
+        if place not in cuts[tile][number]:
+            cuts[tile][number] = sorted([*cuts[tile][number], place])
+        here = boundary.vertex[arc : arc + 1]
+        for side in {arc, before}:
+            target, beyond = int(boundary.target[side]), _motion(boundary, side)
+            for motion, other, facing, copy, _ in _images(placed, tile, target, beyond):
+                waiting += [
+                    (other, k)
+                    for k in _at(traced[other], action.apply(motion, here), _PAIRING * action.size)
+                    if facing == traced[other].target[k] and copy == _motion(traced[other], k)
+                ]
+
+
+def _at(boundary: Traced, point: Complexes, limit: float) -> list[int]:
+    """Return the arcs that start at a point."""
+    return np.flatnonzero(np.abs(boundary.vertex - point) <= limit).tolist()
+
+
+def _pinches(vertex: Complexes, limit: float) -> list[int]:
+    """Return the vertices that another one coincides with."""
+    from scipy.spatial import cKDTree
+
+    pairs = cKDTree(np.stack((vertex.real, vertex.imag), axis=1)).query_pairs(limit, output_type="ndarray")
+    # Neighbours on the boundary may be as close without touching: a short arc lies between them.
+    apart = np.abs(pairs[:, 0] - pairs[:, 1]) > 1
+    return np.unique(pairs[apart]).tolist()
+
+
+def _edges(tile: int, boundary: Traced, ring: Ints, cut: list[int]) -> Iterator[Edge]:
+    """Yield the edges of a ring that is cut at these places."""
+    turned = np.roll(ring, -cut[0])
+    for first, last in zip(cut, [*cut[1:], cut[0] + len(ring)], strict=True):
+        arcs = turned[first - cut[0] : last - cut[0]]
+        end = int(turned[(last - cut[0]) % len(ring)])
+        start = int(arcs[0])
+        yield Edge(
+            tile=tile,
+            arcs=arcs,
+            target=int(boundary.target[start]),
+            motion=_motion(boundary, start),
+            start=(tile, start),
+            end=(tile, end),
+            vertex=boundary.vertex[np.append(arcs, end)],
+            images=[],
+        )

@@ -1,0 +1,288 @@
+"""The outline of a tile: rings of line segments and parabolic arcs, held as arrays.
+
+Area, perimeter and bounds are closed forms; only `flatten` and `to_shapely` approximate, and take an accuracy.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import pairwise
+from math import fsum
+from typing import TYPE_CHECKING, assert_never
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voronoi_tiles.vector.arcs import Arc, LineArc, Neighbour, ParabolaArc
+from voronoi_tiles.wallpaper import Isometry, Operation
+
+if TYPE_CHECKING:
+    from shapely import MultiPolygon, Polygon
+
+ComplexArray = NDArray[np.complex128]
+FloatArray = NDArray[np.float64]
+
+_SPLITTER = 134217729.0  # 2**27 + 1 cuts a float64 into two halves of 26 bits (Dekker 1971)
+
+
+@dataclass(frozen=True, eq=False)
+class Outline:
+    """The boundary of one tile: n arcs in r rings, every ring closed bit for bit.
+
+    `start`, `control`, `end`, `focus` are complex128 (n,), `directrix` complex128 (n, 2), in the design's units;
+    where `curved` (bool, n) is False, the control point is the midpoint and focus and directrix are 0. `neighbour`
+    (intp, n) indexes `neighbours`. The arcs of ring k are those from `ring_offsets[k]` up to, not including,
+    `ring_offsets[k + 1]` (intp, r + 1). Outer rings run counter-clockwise and come first, holes run clockwise.
+    """
+
+    start: ComplexArray
+    control: ComplexArray
+    end: ComplexArray
+    curved: NDArray[np.bool_]
+    focus: ComplexArray
+    directrix: ComplexArray
+    neighbour: NDArray[np.intp]
+    neighbours: tuple[Neighbour, ...]
+    ring_offsets: NDArray[np.intp]
+
+    @classmethod
+    def from_rings(cls, rings: Iterable[Iterable[Arc]]) -> Outline:
+        """Make the outline of given rings; outer rings counter-clockwise and first, holes clockwise."""
+        offsets = [0]
+        rows: list[tuple[complex, complex, complex, bool, complex, tuple[complex, complex]]] = []
+        neighbour: list[int] = []
+        index_of: dict[Neighbour, int] = {}
+        for ring in rings:
+            for arc in ring:
+                match arc:
+                    case LineArc(start, end):
+                        rows.append((start, (start + end) / 2, end, False, 0j, (0j, 0j)))
+                    case ParabolaArc(start, control, end, focus, directrix):
+                        rows.append((start, control, end, True, focus, directrix))
+                    case _:
+                        assert_never(arc)
+                neighbour.append(index_of.setdefault(arc.neighbour, len(index_of)))
+            offsets.append(len(rows))
+        return cls(
+            start=np.array([row[0] for row in rows], dtype=np.complex128),
+            control=np.array([row[1] for row in rows], dtype=np.complex128),
+            end=np.array([row[2] for row in rows], dtype=np.complex128),
+            curved=np.array([row[3] for row in rows], dtype=np.bool_),
+            focus=np.array([row[4] for row in rows], dtype=np.complex128),
+            directrix=np.array([row[5] for row in rows], dtype=np.complex128).reshape(-1, 2),
+            neighbour=np.array(neighbour, dtype=np.intp),
+            neighbours=tuple(index_of),
+            ring_offsets=np.array(offsets, dtype=np.intp),
+        )
+
+    def __len__(self) -> int:
+        """Count the arcs."""
+        return len(self.start)
+
+    @cached_property
+    def rings(self) -> tuple[tuple[Arc, ...], ...]:
+        """The arcs as objects, ring by ring."""
+        arcs: list[Arc] = [
+            ParabolaArc(start, control, end, focus, (directrix[0], directrix[1]), self.neighbours[k])
+            if curved
+            else LineArc(start, end, self.neighbours[k])
+            for start, control, end, curved, focus, directrix, k in zip(
+                self.start.tolist(),
+                self.control.tolist(),
+                self.end.tolist(),
+                self.curved.tolist(),
+                self.focus.tolist(),
+                self.directrix.tolist(),
+                self.neighbour.tolist(),
+                strict=True,
+            )
+        ]
+        return tuple(tuple(arcs[ring]) for ring in self._ring_slices())
+
+    @cached_property
+    def area(self) -> float:
+        """The enclosed area in square units, holes taken off; correctly rounded but for one division by six."""
+        return self._area_of(slice(None))
+
+    @cached_property
+    def ring_areas(self) -> tuple[float, ...]:
+        """The signed area of each ring in square units: > 0 for an outer ring, < 0 for a hole."""
+        return tuple(self._area_of(ring) for ring in self._ring_slices())
+
+    @cached_property
+    def lengths(self) -> FloatArray:
+        """The length of each arc in units: float64 (n,)."""
+        lengths = np.abs(self.end - self.start)
+        bent = np.flatnonzero(self.curved)
+        lengths[bent] = quadratic_lengths(self.start[bent], self.control[bent], self.end[bent])
+        lengths.setflags(write=False)
+        return lengths
+
+    @cached_property
+    def perimeter(self) -> float:
+        """The length of all rings in units."""
+        return fsum(self.lengths.tolist())
+
+    @cached_property
+    def curved_length(self) -> float:
+        """The length of all parabolic arcs in units."""
+        return fsum(self.lengths[self.curved].tolist())
+
+    @cached_property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """The smallest upright rectangle around the arcs: least x, least y, greatest x, greatest y, in units.
+
+        Raises ValueError for an outline without arcs.
+        """
+        if not len(self):
+            raise ValueError("an outline without arcs has no bounds")
+        low_x, high_x = _extent(self.start.real, self.control.real, self.end.real, self.curved)
+        low_y, high_y = _extent(self.start.imag, self.control.imag, self.end.imag, self.curved)
+        return low_x, low_y, high_x, high_y
+
+    def flatten(self, *, accuracy: float) -> list[ComplexArray]:
+        """Replace every parabolic arc by chords that stay within `accuracy` (in units) of it.
+
+        Returns one complex128 array per ring, closed implicitly: the first point is not repeated. An arc and its
+        reverse give the same points bit for bit. Raises ValueError when the accuracy is not positive, or finer than
+        the coordinates' own resolution.
+
+        Source: a quadratic with second difference e, cut into k equal parameter steps, is |e| / (4 k^2) off at most.
+        """
+        size = float(np.abs(self.start).max(initial=0.0))
+        if not accuracy > 4 * np.finfo(np.float64).eps * size:
+            raise ValueError(f"accuracy {accuracy!r} must be positive and above the coordinates' resolution")
+        bend = np.where(self.curved, np.abs(self.start - 2 * self.control + self.end), 0.0)
+        steps = np.maximum(np.ceil(np.sqrt(bend / (4 * accuracy))), 1.0).astype(np.intp)
+        arc = np.repeat(np.arange(len(self)), steps)
+        first = np.cumsum(steps) - steps
+        after = np.arange(len(arc)) - first[arc]
+        before = steps[arc] - after
+        # Weights that swap when the arc is reversed, and a sum whose order does not matter: the same bits both ways.
+        ends = self.start[arc] * (before / steps[arc]) ** 2 + self.end[arc] * (after / steps[arc]) ** 2
+        points = ends + self.control[arc] * (2.0 * before * after / (1.0 * steps[arc] * steps[arc]))
+        points[first] = self.start
+        return np.split(points, (np.cumsum(steps)[self.ring_offsets[1:-1] - 1])) if len(self) else []
+
+    def to_shapely(self, *, accuracy: float) -> Polygon | MultiPolygon:
+        """Give the tile as a shapely polygon whose chords stay within `accuracy` (in units) of the outline.
+
+        A tile in several parts is a MultiPolygon, an outline without arcs an empty Polygon. Raises as `flatten` does.
+        """
+        import shapely
+
+        rings = [np.column_stack((ring.real, ring.imag)) for ring in self.flatten(accuracy=accuracy)]
+        outer = [ring for ring, area in zip(rings, self.ring_areas, strict=True) if area > 0]
+        holes = [ring for ring, area in zip(rings, self.ring_areas, strict=True) if area <= 0]
+        if len(outer) < 2:
+            return shapely.Polygon(*outer, holes=holes)
+        shells = [shapely.Polygon(ring) for ring in outer]
+        inside: list[list[FloatArray]] = [[] for _ in shells]
+        for hole in holes:
+            patch = shapely.Polygon(hole)
+            around = [k for k, shell in enumerate(shells) if shell.covers(patch)]
+            inside[min(around, key=lambda k: float(shells[k].area))].append(hole)
+        return shapely.MultiPolygon(list(zip(outer, inside, strict=True)))
+
+    def transformed(self, isometry: Isometry, operation: Operation | None = None) -> Outline:
+        """Map the outline; a reflection also reverses every ring, so that the tile stays on the left.
+
+        With `operation`, the isometry's lattice form, the neighbours are named as seen from the base site (operation
+        @ the neighbour's operation); without it they keep their names, relative to the mapped tile.
+        """
+        order = np.arange(len(self))
+        ends = (self.start, self.end)
+        if isometry.conj:
+            order = np.concatenate([order[ring][::-1] for ring in self._ring_slices()] or [order])
+            ends = (self.end, self.start)
+        start, end, control = (isometry(points[order]) for points in (*ends, self.control))
+        curved = self.curved[order]
+        focus = np.where(curved, isometry(self.focus[order]), 0j)
+        directrix = np.where(curved[:, None], isometry(self.directrix[order]), 0j)
+        neighbours = self.neighbours
+        if operation is not None:
+            neighbours = tuple(Neighbour(site, operation @ other) for site, other in neighbours)
+        offsets = self.ring_offsets
+        return Outline(start, control, end, curved, focus, directrix, self.neighbour[order], neighbours, offsets)
+
+    def _ring_slices(self) -> list[slice]:
+        """Give the arcs of each ring as a slice."""
+        offsets = self.ring_offsets.tolist()
+        return [slice(*pair) for pair in pairwise(offsets)]
+
+    def _area_of(self, arcs: slice) -> float:
+        """Integrate x dy over some arcs.
+
+        Six times the area is an integer combination of cross products of the control points. The products are split
+        without error and summed without error, so that neither a thin tile nor one far from the origin loses digits.
+        """
+        start, control, end, curved = self.start[arcs], self.control[arcs], self.end[arcs], self.curved[arcs]
+        chords = _exact_cross(start, end)
+        legs = (_exact_cross(start[curved], control[curved]), _exact_cross(control[curved], end[curved]))
+        terms = [chords, 2 * chords[:, ~curved], *(2 * leg for leg in legs)]
+        return fsum(np.concatenate([term.ravel() for term in terms]).tolist()) / 6
+
+
+def quadratic_lengths(start: ComplexArray, control: ComplexArray, end: ComplexArray) -> FloatArray:
+    """Give the lengths of quadratic Bezier curves, float64 (n,), to a few units in the last place.
+
+    Half the derivative runs linearly from p = control - start to q = end - control. With coordinates x along q - p
+    and y across it, the length is (|p| + |q|)/2 + (x_p + x_q)^2 / (2 (|p| + |q|)) + y^2 (asinh(x_q/y) - asinh(x_p/y)) /
+    |q - p|: three terms that are never negative, so nothing cancels. Degenerate: q = p (no bend) is a segment, y = 0
+    (folded upon itself) drops the last term.
+
+    Source: the integral of sqrt(x^2 + y^2), with asinh b - asinh a = asinh(b sqrt(1 + a^2) - a sqrt(1 + b^2)).
+    """
+    p, q = control - start, end - control
+    bend = np.abs(q - p)
+    length_p, length_q = np.abs(p), np.abs(q)
+    total = length_p + length_q
+    straight = bend <= 0.0
+    safe_bend = np.where(straight, 1.0, bend)
+    along = (q - p) / safe_bend
+    x_p = p.real * along.real + p.imag * along.imag
+    x_q = q.real * along.real + q.imag * along.imag
+    # Across: the same for p and q; the shorter one gives it with the smaller error.
+    short = np.where(length_p < length_q, p, q)
+    y = np.abs(along.real * short.imag - along.imag * short.real)
+    folded = straight | (y <= 1e-100 * total)  # then the last term is below 1e-197 of the length
+    safe_y = np.where(folded, 1.0, y)
+    one_side = x_p * x_q > 0.0
+    denominator = np.where(one_side, x_q * length_p + x_p * length_q, 1.0)
+    near = np.arcsinh((x_p + x_q) * bend / denominator)
+    across = np.arcsinh(x_q / safe_y) - np.arcsinh(x_p / safe_y)
+    turn = np.where(folded, 0.0, y * y * np.where(one_side, near, across) / safe_bend)
+    safe_total = np.where(total == 0.0, 1.0, total)
+    curve = total / 2 + (x_p + x_q) ** 2 / (2 * safe_total) + turn
+    lengths: FloatArray = np.where(straight, total, curve)
+    return lengths
+
+
+def _extent(start: FloatArray, control: FloatArray, end: FloatArray, curved: NDArray[np.bool_]) -> tuple[float, float]:
+    """Give the least and greatest value of one coordinate over all arcs."""
+    bend = start - 2 * control + end
+    turns = curved & ((start - control) * (end - control) > 0.0) & (bend != 0.0)
+    a, b, c = start[turns], control[turns], end[turns]
+    t = (a - b) / bend[turns]
+    peaks = a * (1 - t) ** 2 + 2 * b * t * (1 - t) + c * t**2
+    values = np.concatenate((start, end, peaks))
+    return float(values.min()), float(values.max())
+
+
+def _exact_cross(u: ComplexArray, v: ComplexArray) -> FloatArray:
+    """Give the cross products u x v as four floats each, (4, n), whose exact sum is the exact product."""
+    gain = _exact_product(u.real, v.imag)
+    loss = _exact_product(u.imag, v.real)
+    return np.concatenate((gain, -loss))
+
+
+def _exact_product(a: FloatArray, b: FloatArray) -> FloatArray:
+    """Give the products a*b as rounded value and rounding error, (2, n) (Dekker 1971)."""
+    product = a * b
+    wide_a, wide_b = _SPLITTER * a, _SPLITTER * b
+    high_a, high_b = wide_a - (wide_a - a), wide_b - (wide_b - b)
+    low_a, low_b = a - high_a, b - high_b
+    error = low_a * low_b - (((product - high_a * high_b) - low_a * high_b) - high_a * low_b)
+    return np.stack((product, error))

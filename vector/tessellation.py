@@ -1,0 +1,319 @@
+"""The engine's entry: from sites and a group to the outlines of one tile of each site."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from voronoi_tiles.errors import ProofError
+from voronoi_tiles.site import Site
+from voronoi_tiles.tolerance import SAME_POINT
+from voronoi_tiles.vector.arcs import Neighbour
+from voronoi_tiles.vector.bisectors import surround
+from voronoi_tiles.vector.candidates import build_hierarchy
+from voronoi_tiles.vector.cells import Parts, UnboundedCellError, bound_cells
+from voronoi_tiles.vector.contour import Complexes, Contour, Ints, trace_contour
+from voronoi_tiles.vector.copies import (
+    IDENTITY,
+    Action,
+    Copies,
+    Motion,
+    Placed,
+    compose,
+    copies_near,
+    move,
+    place,
+    reverses_orientation,
+    to_motion,
+    to_operation,
+    translation,
+)
+from voronoi_tiles.vector.edges import Edge, Traced, UnpairedEdgeError, pair_edges
+from voronoi_tiles.vector.outline import Outline
+from voronoi_tiles.vector.rows import Rows, make_rows
+from voronoi_tiles.vector.shared import SharedOutline, parabola_controls, share_edges
+from voronoi_tiles.vector.touching import refuse_touching
+from voronoi_tiles.vector.trace import Boundary, OpenBoundaryError, trace_boundary
+from voronoi_tiles.wallpaper import Lattice, Operation, WallpaperGroup
+
+# A gap this small between copies, relative to the cell's size, makes the engine look whether they touch.
+_SUSPICIOUS = 1e-9
+# An edge this short, relative to the cell's size, may have come out on one side only.
+_ONE_SIDED = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class TileRecord:
+    """A tile as the engine returns it.
+
+    Attributes:
+        name: of its site.
+        outline: of the tile of the base site.
+        symmetry: the operations that map the site onto itself, the identity first.
+    """
+
+    name: str
+    outline: Outline
+    symmetry: tuple[Operation, ...]
+    _tessellation: Tessellation
+    _index: int
+
+    def copy(self, operation: Operation) -> Outline:
+        """Return the outline of the copy of this tile onto which an operation of the group takes it.
+
+        Where two copies share an edge, its points are the same in both, bit for bit.
+        """
+        return self._tessellation.outline(self._index, to_motion(operation))
+
+    def local(self) -> LocalTile:
+        """Return the tile of the site moved by the lattice to near the origin, where rounding is least."""
+        return LocalTile(self.name, self._tessellation, self._index)
+
+
+@dataclass(frozen=True, eq=False)
+class LocalTile:
+    """A tile and its site as they were computed: however far from the origin the site was drawn, near to it.
+
+    Operations are those on sites in these places.
+    """
+
+    name: str
+    _tessellation: Tessellation
+    _index: int
+
+    @property
+    def nodes(self) -> Complexes:
+        """(m,) the site's nodes."""
+        return self._tessellation.placed[self._index].nodes
+
+    @property
+    def segments(self) -> Ints:
+        """(n, 2) the site's segments, as indices of nodes."""
+        return self._tessellation.placed[self._index].segments
+
+    @cached_property
+    def outline(self) -> Outline:
+        """The outline of the tile."""
+        return self._tessellation.placed_outline(self._index, IDENTITY)
+
+    def copy(self, operation: Operation) -> Outline:
+        """Return the outline of a copy."""
+        return self._tessellation.placed_outline(self._index, to_motion(operation))
+
+
+@dataclass(frozen=True, eq=False)
+class Tessellation:
+    """All tiles of a tessellation, in terms of representatives."""
+
+    action: Action
+    names: tuple[str, ...]
+    placed: list[Placed]
+    shared: list[SharedOutline]
+
+    def placed_outline(self, tile: int, motion: Motion) -> Outline:
+        """Return the outline of a copy of a tile, named by a motion of the placed site."""
+        shared = self.shared[tile]
+        # The copy, not the motion that names it, decides on the bits.
+        here = self.placed[tile].canonical(motion)
+        target = np.zeros(len(shared.neighbours), np.intp)
+        target[shared.beyond] = shared.target
+        neighbours = [
+            Neighbour(self.names[t], to_operation(self.placed[t].canonical(compose(here, motion))))
+            for t, motion in zip(target.tolist(), shared.neighbours, strict=True)
+        ]
+        return _outline(self.action, shared, here, neighbours)
+
+    def outline(self, tile: int, motion: Motion) -> Outline:
+        """Return the outline of a copy of a tile, named by a motion of the site as it was drawn."""
+        outline = self.placed_outline(tile, compose(motion, translation(self.placed[tile], 1)))
+        if all(placed.shift == (0, 0) for placed in self.placed):
+            return outline
+        back = {
+            name: to_operation(translation(placed, -1)) for name, placed in zip(self.names, self.placed, strict=True)
+        }
+        neighbours = tuple(Neighbour(name, operation @ back[name]) for name, operation in outline.neighbours)
+        return replace(outline, neighbours=neighbours)
+
+
+def tessellate(sites: Sequence[Site], group: WallpaperGroup, lattice: Lattice) -> list[TileRecord]:
+    """Return the tile of each site: all that is nearer to it than to any other copy of any site.
+
+    Raises:
+        TouchingCopiesError: where two copies touch or cross.
+        ProofError: where no boundary was found; no design is known to which this happens.
+    """
+    action = Action(group, lattice)
+    placed = [place(action, site.nodes, site.segments) for site in sites]
+    names = tuple(site.name for site in sites)
+    try:
+        found = [_trace(action, placed, tile) for tile in range(len(sites))]
+        traced, edges = _pair(action, placed, [boundary for boundary, _ in found])
+    except (UnboundedCellError, OpenBoundaryError, UnpairedEdgeError) as error:
+        refuse_touching(action, names, placed)
+        raise ProofError("the boundary of a tile does not close, though no copies touch; please report this design") from error
+    if min(clearance for _, clearance in found) < _SUSPICIOUS * action.size:
+        refuse_touching(action, names, placed)
+    shared = share_edges(action, traced, edges)
+    tessellation = Tessellation(action, names, placed, shared)
+    return [
+        TileRecord(
+            name=name,
+            outline=tessellation.outline(tile, IDENTITY),
+            symmetry=tuple(
+                to_operation(compose(compose(translation(p, 1), m), translation(p, -1))) for m in p.stabilizer
+            ),
+            _tessellation=tessellation,
+            _index=tile,
+        )
+        for tile, (name, p) in enumerate(zip(names, placed, strict=True))
+    ]
+
+
+def _trace(action: Action, placed: list[Placed], tile: int) -> tuple[Traced, float]:
+    """Return the boundary of one tile, and the site's distance from the nearest of its vertices."""
+    contours = [trace_contour(p.nodes, p.segments) for p in placed]
+    contour = contours[tile]
+    rows = make_rows(contour, action.covering_radius)
+    copies = [copies_near(action, placed[tile], other) for other in placed]
+    targets = [
+        (surround(other, near, own=t == tile), build_hierarchy(other, near))
+        for t, (other, near) in enumerate(zip(contours, copies, strict=True))
+    ]
+    parts = bound_cells(rows, contour, targets, action.covering_radius)
+    inner = (parts.target == tile) & (parts.copy == 0)
+    boundary = trace_boundary(rows, contour, parts, inner, SAME_POINT * action.size)
+    return _curves(rows, contours, tile, parts, boundary, copies)
+
+
+def _curves(
+    rows: Rows, contours: list[Contour], tile: int, parts: Parts, boundary: Boundary, copies: list[Copies]
+) -> tuple[Traced, float]:
+    """Return a boundary with the curve that each arc lies on, and its least distance from the site."""
+    contour = contours[tile]
+    part = boundary.part
+    row, target, copy, item = parts.row[part], parts.target[part], parts.copy[part], parts.item[part]
+    round_here = rows.corner[row] >= 0
+    # What an arc's curve depends on: the segment or node on either side.
+    node = np.where(round_here, contour.corner_node[rows.corner[row]], 0)
+    here = np.where(round_here, len(contour.nodes) + node, rows.half_edge[row] >> 1)
+    point = np.zeros(len(part), complex)
+    line = np.zeros((len(part), 2), complex)
+    there = np.zeros(len(part), np.intp)
+    round_there = np.zeros(len(part), bool)
+    edge_here = np.where(round_here, 0, rows.half_edge[row])
+    if len(contour.source):
+        line[:, 0], line[:, 1] = contour.nodes[contour.source[edge_here]], contour.nodes[contour.target[edge_here]]
+    point[round_here] = rows.origin[row[round_here]]
+    for t, other in enumerate(contours):
+        chosen = np.flatnonzero(target == t)
+        count = len(other.source)
+        i, c = item[chosen], copy[chosen]
+        is_corner = i >= count
+        corner_node = other.corner_node[np.where(is_corner, i - count, 0)]
+        edge = np.where(is_corner, 0, i)
+        round_there[chosen] = is_corner
+        there[chosen] = np.where(is_corner, len(other.nodes) + corner_node, i >> 1)
+        unit, shift, conj = copies[t].unit[c], copies[t].shift[c], copies[t].conj[c]
+        corners, lines = chosen[is_corner], chosen[~is_corner]
+        images = move(other.nodes[corner_node], unit, shift, conj)
+        only = ~round_here[corners]
+        point[corners[only]] = images[is_corner][only]
+        if len(other.source):
+            first = move(other.nodes[other.source[edge]], unit, shift, conj)[~is_corner]
+            second = move(other.nodes[other.target[edge]], unit, shift, conj)[~is_corner]
+            only = round_here[lines]
+            line[lines[only], 0], line[lines[only], 1] = first[only], second[only]
+    curved = round_here != round_there
+    away = boundary.vertex - rows.origin[row]
+    normal = rows.ray0[row]
+    straight_distance = np.abs(away.real * normal.real + away.imag * normal.imag)
+    clearance = float(np.where(round_here, np.abs(away), straight_distance).min())
+    point[~curved], line[~curved] = 0, 0
+    traced = Traced(boundary.vertex, boundary.ring, target, copy, curved, point, line, copies)
+    return _tidy(traced, np.stack((here, target, copy, there))), clearance
+
+
+def _tidy(traced: Traced, curve: Ints) -> Traced:
+    """Join neighbouring arcs of one curve, and put outer rings before holes.
+
+    Args:
+        curve: (k, n) what determines each arc's curve.
+    """
+    kept, areas = [], []
+    for ring in traced.rings():
+        fresh = (curve[:, ring] != np.roll(curve[:, ring], 1, axis=1)).any(axis=0)
+        kept.append(ring[fresh] if fresh.any() else ring)
+        vertex = traced.vertex[ring]
+        after = np.roll(vertex, -1)
+        area = (vertex.real * after.imag - vertex.imag * after.real).sum() / 2
+        bent = np.flatnonzero(traced.curved[ring])
+        start, end = vertex[bent], after[bent]
+        control = parabola_controls(start, end, traced.focus[ring[bent]], traced.directrix[ring[bent]])
+        chord, tangent = end - start, control - start
+        areas.append(area + (tangent.real * chord.imag - tangent.imag * chord.real).sum() / 3)
+    order = np.argsort(-np.sign(areas), kind="stable")
+    ring_number = np.repeat(np.arange(len(order)), [len(kept[k]) for k in order])
+    tidy = traced.take(np.concatenate([kept[k] for k in order]))
+    return replace(tidy, ring=ring_number)
+
+
+def _pair(action: Action, placed: list[Placed], traced: list[Traced]) -> tuple[list[Traced], list[Edge]]:
+    """Pair the edges; those that rounding has put on one side only, where four tiles meet, are left out."""
+    pinched = False
+    while True:
+        try:
+            return traced, pair_edges(action, placed, traced, pinched=pinched)
+        except UnpairedEdgeError as error:
+            edge = error.edge
+            extent = float(np.abs(edge.vertex - edge.vertex[0]).max())
+            boundary = traced[edge.tile]
+            rest = np.delete(np.arange(len(boundary.vertex)), edge.arcs)
+            if extent <= _ONE_SIDED * action.size and len(rest):
+                traced = [boundary.take(rest) if t == edge.tile else other for t, other in enumerate(traced)]
+            elif not pinched:
+                pinched = True
+            else:
+                raise
+
+
+def _outline(action: Action, shared: SharedOutline, motion: Motion, neighbours: list[Neighbour]) -> Outline:
+    """Return a shared outline, moved, in coordinates."""
+    start = shared.representatives.locate(shared.start.moved(motion))
+    offsets = shared.ring_offsets
+    following = np.arange(1, len(start) + 1)
+    following[offsets[1:] - 1] = offsets[:-1]
+    end = start[following]
+    curved = shared.control.index >= 0
+    control = (start + end) / 2
+    focus, directrix = np.zeros(len(start), complex), np.zeros((len(start), 2), complex)
+    points = shared.control.moved(motion).take(np.flatnonzero(curved))
+    control[curved] = shared.representatives.locate(points)
+    for number, by in enumerate(points.motions):
+        chosen = np.flatnonzero(curved)[points.motion == number]
+        focus[chosen] = action.apply(by, shared.focus[chosen])
+        directrix[chosen] = action.apply(by, shared.directrix[chosen])
+    # A motion that turns the plane over turns the rings round: run through each backwards.
+    order = np.arange(len(start))
+    if reverses_orientation(motion):
+        order = (offsets[:-1] + offsets[1:] - 1)[np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))] - order
+        start, end = end, start
+    return Outline(
+        start=start[order],
+        control=control[order],
+        end=end[order],
+        curved=curved[order],
+        focus=focus[order],
+        directrix=directrix[order],
+        neighbour=shared.beyond[order],
+        neighbours=tuple(neighbours),
+        ring_offsets=offsets,
+    )
+
+
+def explain_failure(records: Sequence[TileRecord]) -> None:
+    """Raise TouchingCopiesError if that is why a result failed its proof; else return."""
+    tessellation = records[0]._tessellation
+    refuse_touching(tessellation.action, tessellation.names, tessellation.placed)
