@@ -1,0 +1,77 @@
+# Everything sets itself up: python3, python3-venv and make are all it needs.
+#   make demo    export the example designs          make test    run the tests
+#   make lint    lint and format check               make types   mypy --strict
+#   make bench   speed, beside Boost.Polygon         make fuzz N=10000
+#   make format  rewrite the sources' layout         make clean   remove all that was made here
+
+.DEFAULT_GOAL := help
+.PHONY: help demo test lint format types bench fuzz clean
+.DELETE_ON_ERROR:
+
+PYTHON ?= python3
+VENV ?= .venv
+# mypy cannot see through an editable install: it gets an environment with a regular one.
+TYPES_VENV ?= .venv-types
+DEMO ?= demo
+N ?= 500
+PIP := -m pip install --quiet --disable-pip-version-check
+
+INSTALLED := $(VENV)/.installed
+INSTALLED_DEV := $(VENV)/.installed-dev
+INSTALLED_TYPES := $(TYPES_VENV)/.installed
+SOURCES := $(wildcard voronoi_tiles/*.py vector/*.py raster/*.py)
+EXAMPLES := $(wildcard examples/*.toml)
+
+help:
+	@sed -n 's/^#  //p' Makefile
+
+# The core alone, editable: changes of the sources need no new installation, those of pyproject.toml do.
+$(INSTALLED): pyproject.toml
+	$(PYTHON) -m venv $(VENV)
+	$(VENV)/bin/python $(PIP) -e .
+	touch $@
+
+$(INSTALLED_DEV): $(INSTALLED)
+	$(VENV)/bin/python $(PIP) -e '.[test,dev]'
+	touch $@
+
+demo: $(INSTALLED)
+	$(VENV)/bin/voronoi-tiles export $(EXAMPLES) -o $(DEMO) --format svg
+	@echo "The tiles are in $(abspath $(DEMO)): open the .svg files in a browser, Inkscape or your cutter's software."
+
+test: $(INSTALLED_DEV)
+	$(VENV)/bin/python -m pytest $(PYTEST)
+
+lint: $(INSTALLED_DEV)
+	$(VENV)/bin/ruff check .
+	$(VENV)/bin/ruff format --check .
+
+format: $(INSTALLED_DEV)
+	$(VENV)/bin/ruff check --fix .
+	$(VENV)/bin/ruff format .
+
+$(TYPES_VENV)/.created: pyproject.toml
+	$(PYTHON) -m venv $(TYPES_VENV)
+	$(TYPES_VENV)/bin/python $(PIP) '.[test,dev]'
+	touch $@
+
+# A regular install is a copy: it is renewed when a source is newer. The cache of another kind of install would mislead.
+$(INSTALLED_TYPES): $(TYPES_VENV)/.created $(SOURCES)
+	rm -rf build $(TYPES_VENV)/cache
+	$(TYPES_VENV)/bin/python $(PIP) --force-reinstall --no-deps .
+	rm -rf build
+	touch $@
+
+# From inside the environment, where the folder voronoi_tiles/ of the checkout cannot shadow the installed package.
+types: $(INSTALLED_TYPES)
+	cd $(TYPES_VENV) && bin/mypy --config-file $(abspath pyproject.toml) --cache-dir cache -p voronoi_tiles
+
+bench: $(INSTALLED_DEV)
+	$(VENV)/bin/python bench/bench.py
+
+fuzz: $(INSTALLED_DEV)
+	$(VENV)/bin/python tests/fuzz.py $(N)
+
+clean:
+	rm -rf $(VENV) $(TYPES_VENV) $(DEMO) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,81 @@
+"""Hand-made outlines that need no engine, and the command line's real entry point."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from voronoi_tiles.vector.arcs import Arc, LineArc, Neighbour, ParabolaArc
+from voronoi_tiles.vector.outline import Outline
+from voronoi_tiles.wallpaper import Operation
+
+RIGHT = Neighbour("bird", Operation.parse("x+1,y"))
+ABOVE = Neighbour("bird", Operation.parse("-x,-y+1"))
+
+CommandLine = Callable[..., subprocess.CompletedProcess[str]]
+
+
+def polygon(*points: complex, neighbour: Neighbour = RIGHT) -> list[Arc]:
+    """Make a ring of straight edges."""
+    ends = [*points[1:], points[0]]
+    return [LineArc(start, end, neighbour) for start, end in zip(points, ends, strict=True)]
+
+
+@pytest.fixture
+def square() -> Outline:
+    """A square of side 10 with its lower left corner at the origin."""
+    return Outline.from_rings([polygon(0j, 10 + 0j, 10 + 10j, 10j)])
+
+
+@pytest.fixture
+def ring() -> Outline:
+    """A square of side 10 with a square hole of side 2."""
+    return Outline.from_rings(
+        [polygon(0j, 10 + 0j, 10 + 10j, 10j), polygon(4 + 4j, 4 + 6j, 6 + 6j, 6 + 4j, neighbour=ABOVE)]
+    )
+
+
+@pytest.fixture
+def lens() -> Outline:
+    """The region -1 + x^2/4 <= y <= 1 - x^2/4, both boundaries parabolas with the focus at the origin."""
+    lower = ParabolaArc(-2 + 0j, -2j, 2 + 0j, 0j, (-2 - 2j, 2 - 2j), RIGHT)
+    upper = ParabolaArc(2 + 0j, 2j, -2 + 0j, 0j, (-2 + 2j, 2 + 2j), ABOVE)
+    return Outline.from_rings([[lower, upper]])
+
+
+@pytest.fixture
+def mixed() -> Outline:
+    """A square whose right side is a parabola that bulges by 2."""
+    bulge = ParabolaArc(10 + 0j, 14 + 5j, 10 + 10j, 8.875 + 5j, (15.125 + 0j, 15.125 + 10j), RIGHT)
+    sides = polygon(10 + 10j, 10j, 0j, 10 + 0j, neighbour=ABOVE)[:3]
+    return Outline.from_rings([[bulge, *sides]])
+
+
+@pytest.fixture(scope="session")
+def command() -> str:
+    """The path of the installed console script."""
+    script = Path(sys.executable).with_name("voronoi-tiles")
+    assert script.exists(), "install the project first: pip install -e ."
+    return str(script)
+
+
+@pytest.fixture(scope="session")
+def voronoi_tiles(command: str) -> CommandLine:
+    """Run `voronoi-tiles` with the given arguments as a process of its own."""
+
+    def call(*arguments: object, stdin: str = "", cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
+        return subprocess.run(
+            [command, *map(str, arguments)],
+            input=stdin,
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=120,
+            cwd=cwd,
+        )
+
+    return call

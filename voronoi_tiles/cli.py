@@ -1,0 +1,347 @@
+"""The command line: parse, call the library, print.
+
+Results go to standard output or to files, messages to standard error. Exit codes: 0 done; 1 the result failed a
+check; 2 bad input or usage; 130 interrupted; 70 a bug of ours. Whatever happens, it is one message and no traceback
+(but with VORONOI_TILES_DEBUG=1). What a command needs is imported by the command, when it runs.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Never
+
+import click
+
+from voronoi_tiles import __version__
+from voronoi_tiles.errors import OutputError, VoronoiTilesError
+
+if TYPE_CHECKING:
+    from voronoi_tiles.tiling import Tiling
+
+PROGRAM = "voronoi-tiles"
+
+EXIT_USAGE = 2
+EXIT_BUG = 70  # EX_SOFTWARE of sysexits.h
+EXIT_INTERRUPTED = 130  # as shells report SIGINT
+
+DEBUG_VARIABLE = "VORONOI_TILES_DEBUG"
+
+_DESIGN = click.Path(allow_dash=True)
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(__version__, prog_name=PROGRAM)
+def cli() -> None:
+    """Exact tiles that fill the plane: Voronoi cells of strokes, repeated by a wallpaper group."""
+
+
+@cli.command()
+@click.argument("designs", metavar="DESIGN...", nargs=-1, required=True, type=_DESIGN)
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    metavar="OUT",
+    type=click.Path(allow_dash=True),
+    help="The file to write, its format by its suffix (.svg, .json); a folder for several designs; "
+    "- for standard output.",
+)
+@click.option(
+    "--format",
+    "file_format",
+    type=click.Choice(("svg", "json")),
+    help="The format where OUT names none: a folder or standard output.",
+)
+@click.option("-q", "--quiet", is_flag=True, help="Report only what fails.")
+def export(designs: tuple[str, ...], output: str, file_format: str | None, quiet: bool) -> None:
+    """Write the tiles of designs as SVG (millimetres, ready to cut) or as a JSON outline document.
+
+    DESIGN is a TOML or JSON file, or - for standard input. With several designs the good ones are written, the bad
+    ones named, and the exit code is the worst.
+    """
+    from voronoi_tiles.files import STDOUT, write_whole
+
+    targets = _targets(designs, output, file_format)
+    worst = 0
+    for design, (target, target_format) in zip(designs, targets, strict=True):
+        try:
+            text = _tessellate(design).text(target_format)
+            _make_folder(target, output)
+            write_whole(target, text.encode())
+        except VoronoiTilesError as error:
+            _say(_message(design, error))
+            worst = max(worst, error.exit_code)
+        else:
+            if not quiet and target != STDOUT:
+                _say(f"wrote {target}")
+    if worst:
+        raise click.exceptions.Exit(worst)
+
+
+@cli.command()
+@click.argument("design", type=_DESIGN)
+@click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
+def info(design: str, as_json: bool) -> None:
+    """Print what a design gives: its cell, its tiles with their edges and neighbours, and the proof's figures."""
+    import json
+
+    from voronoi_tiles.files import STDOUT, write_whole
+
+    try:
+        figures = _tessellate(design).figures()
+    except VoronoiTilesError as error:
+        _say(_message(design, error))
+        raise click.exceptions.Exit(error.exit_code) from error
+    text = json.dumps(figures, indent=2) + "\n" if as_json else _table_text(figures)
+    write_whole(STDOUT, text.encode())
+
+
+def _complete_group(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
+    """Complete the name of a group."""
+    from voronoi_tiles.starters import GROUP_NAMES
+
+    return [name for name in GROUP_NAMES if name.startswith(incomplete)]
+
+
+@cli.command()
+@click.argument("group", shell_complete=_complete_group)
+@click.option(
+    "-o",
+    "--output",
+    default="-",
+    metavar="FILE",
+    type=click.Path(allow_dash=True),
+    help="The file to write; default: standard output. An existing file is not overwritten.",
+)
+def new(group: str, output: str) -> None:
+    """Write a commented starter design for a wallpaper GROUP (p1 p2 pm pg cm pmm ...)."""
+    from voronoi_tiles.files import STDOUT, write_whole
+    from voronoi_tiles.starters import GROUP_NAMES, starter_text
+
+    if group not in GROUP_NAMES:
+        raise click.BadParameter(f"unknown group {group!r}. Use one of {' '.join(GROUP_NAMES)}.", param_hint="GROUP")
+    if output != STDOUT and os.path.lexists(output):
+        raise OutputError(f"{output} exists already: choose another name, or remove it first", path=output)
+    write_whole(output, starter_text(group).encode())
+
+
+@cli.command()
+@click.argument("shell", type=click.Choice(("bash", "zsh", "fish")))
+def completion(shell: str) -> None:
+    """Print the completion script for a SHELL: put `eval "$(voronoi-tiles completion bash)"` into ~/.bashrc."""
+    from click.shell_completion import get_completion_class
+
+    from voronoi_tiles.files import STDOUT, write_whole
+
+    script = get_completion_class(shell)
+    assert script is not None
+    source = script(cli, {}, PROGRAM, "_VORONOI_TILES_COMPLETE").source()
+    write_whole(STDOUT, source.encode())
+
+
+def run() -> Never:
+    """Run the command line and exit: the console script."""
+    if hasattr(signal, "SIGPIPE"):
+        # A reader that has seen enough ends us silently, as it ends other commands in a pipe.
+        signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    code = _run()
+    if code:
+        _drop_stdout()
+    sys.exit(code)
+
+
+def _run() -> int:
+    """Run a command; give its exit code, and say what went wrong."""
+    try:
+        result = cli.main(prog_name=PROGRAM, standalone_mode=False)
+        sys.stdout.flush()
+    except (Exception, KeyboardInterrupt) as error:
+        if os.environ.get(DEBUG_VARIABLE):
+            raise
+        code, message = _explain(error)
+        _say(message)
+        return code
+    return result if isinstance(result, int) else 0
+
+
+def _explain(error: BaseException) -> tuple[int, str]:
+    """Give the exit code and the message for an error."""
+    match error:
+        case VoronoiTilesError():
+            code, message = error.exit_code, f"Error: {error}"
+        case click.exceptions.NoArgsIsHelpError():
+            code, message = EXIT_USAGE, error.format_message()
+        case click.UsageError():
+            hint = f" See '{error.ctx.command_path} --help'." if error.ctx else ""
+            code, message = EXIT_USAGE, f"Error: {error.format_message()}{hint}"
+        case click.Abort() | KeyboardInterrupt():
+            code, message = EXIT_INTERRUPTED, "Interrupted."
+        case MemoryError():
+            remedy = "Allow larger tolerances, or use fewer strokes."
+            code, message = EXIT_USAGE, f"Error: there is not enough memory for this design. {remedy}"
+        case OSError():
+            code, message = EXIT_USAGE, f"Error: {error.filename or 'standard output'}: {error.strerror or error}."
+        case _:
+            remedy = f"please report it, with the design. {DEBUG_VARIABLE}=1 shows where it is."
+            code, message = EXIT_BUG, f"Error: {type(error).__name__}: {error}. This is a bug in {PROGRAM}: {remedy}"
+    return code, message
+
+
+def _tessellate(design: str) -> Tiling:
+    """Load a design and compute its tiles."""
+    from voronoi_tiles.design import Design
+
+    return Design.load(design).tessellate()
+
+
+def _message(design: str, error: VoronoiTilesError) -> str:
+    """Say what is wrong with one of the designs, by its name."""
+    text, name = str(error), "standard input" if design == "-" else design
+    return f"Error: {text}" if name in text else f"Error: {name}: {text}"
+
+
+def _targets(designs: Sequence[str], output: str, file_format: str | None) -> list[tuple[str, str]]:
+    """Give for each design the file to write and its format; refuse what cannot be meant.
+
+    That is: one place for several results, or a result that would overwrite a design.
+    """
+    from voronoi_tiles.tiling import FORMATS, format_of
+
+    if not output:
+        raise click.UsageError("The name of the file to write is empty: -o FILE.")
+    if designs.count("-") > 1:
+        raise click.UsageError("Standard input can be read once only.")
+    path = Path(output)
+    several = len(designs) > 1
+    if output == "-":
+        if several:
+            raise click.UsageError("Several designs need a folder: -o DIR.")
+        return [("-", file_format or FORMATS[0])]
+    if not several and not output.endswith("/") and not path.is_dir():
+        targets = [(output, file_format or format_of(output))]
+    elif not path.is_dir() and (path.exists() or path.suffix.lower().removeprefix(".") in FORMATS):
+        raise click.UsageError(f"Several designs need a folder: -o DIR, and {output} is a file.")
+    else:
+        suffix = file_format or FORMATS[0]
+        stems = ["design" if design == "-" else Path(design).stem for design in designs]
+        twice = [stem for stem, count in Counter(stems).items() if count > 1]
+        if twice:
+            raise click.UsageError(f"Two designs would be written to {twice[0]}.{suffix}: rename one.")
+        targets = [(str(path / f"{stem}.{suffix}"), suffix) for stem in stems]
+    sources = {os.path.realpath(design) for design in designs if design != "-"}
+    for target, _ in targets:
+        if os.path.realpath(target) in sources:
+            raise click.UsageError(f"{target} is a design, and would be overwritten.")
+    return targets
+
+
+def _make_folder(target: str, output: str) -> None:
+    """Make the folder OUT when results go into one."""
+    from voronoi_tiles.files import output_error
+
+    if target in {output, "-"}:
+        return
+    try:
+        Path(output).mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        raise output_error(output, error) from error
+
+
+def _say(message: str) -> None:
+    """Print a message to standard error; that nobody can read it is no reason to fail."""
+    with suppress(OSError):
+        click.echo(message, err=True)
+
+
+def _drop_stdout() -> None:
+    """Keep the interpreter from failing once more, at exit, on what standard output has refused."""
+    try:
+        sys.stdout.flush()
+    except OSError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+def _table_text(figures: dict[str, Any]) -> str:
+    """Write the figures of a tiling as tables for people."""
+    import io
+
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    terminal = sys.stdout.isatty()
+    console = Console(
+        file=io.StringIO(), width=None if terminal else 110, force_terminal=terminal, legacy_windows=False
+    )
+    units = figures["units"]
+
+    def show(title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+        table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, title_style="bold")
+        for column in columns:
+            table.add_column(column.lstrip(">"), justify="right" if column.startswith(">") else "left")
+        for row in rows:
+            table.add_row(*(Text(_cell(item)) for item in row))
+        console.print(table)
+
+    cell = figures["cell"]
+    head = {
+        "design": figures["design"],
+        "group": f"{figures['group']}, {figures['order']} copies per cell",
+        "cell": f"a = {_vector(cell['a'])}, b = {_vector(cell['b'])} {units}, area {_cell(cell['area'])} {units}²",
+    }
+    for key, value in head.items():
+        console.print(Text(f"{key:<8}{value}"))
+    show(
+        "Tiles",
+        ["site", f">area {units}²", f">perimeter {units}", ">lines", ">parabolas", ">curved", ">copies", "symmetry"],
+        [
+            (
+                tile["site"],
+                tile["area"],
+                tile["perimeter"],
+                tile["edges"]["line"],
+                tile["edges"]["parabola"],
+                f"{tile['curved_share']:.1%}",
+                tile["copies_per_cell"],
+                "  ".join(tile["symmetry"]),
+            )
+            for tile in figures["tiles"]
+        ],
+    )
+    show(
+        "Neighbours",
+        ["tile", "neighbour", "operation", ">edges", f">length {units}"],
+        [
+            (tile["site"], other["site"], other["operation"], other["edges"], other["length"])
+            for tile in figures["tiles"]
+            for other in tile["neighbours"]
+        ],
+    )
+    show(
+        "Proof",
+        ["figure", ">value", ">limit", ""],
+        [
+            (row["name"], f"{row['value']:.3g}", f"{row['limit']:.3g}", "ok" if row["passed"] else "FAILED")
+            for row in figures["proof"]
+        ],
+    )
+    output = console.file
+    assert isinstance(output, io.StringIO)
+    return "\n".join(line.rstrip() for line in output.getvalue().splitlines()) + "\n"
+
+
+def _cell(item: object) -> str:
+    """Write one entry of a table: ten digits are enough to read."""
+    return f"{item:.10g}" if isinstance(item, float) else str(item)
+
+
+def _vector(vector: Sequence[float]) -> str:
+    """Write a vector."""
+    return f"({', '.join(_cell(float(part)) for part in vector)})"

@@ -1,0 +1,206 @@
+"""The pipeline: from a design to its tiles, proved, and on to files."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from voronoi_tiles import __version__
+from voronoi_tiles.errors import OutputError, ProofError
+from voronoi_tiles.files import write_whole
+from voronoi_tiles.site import Site
+
+if TYPE_CHECKING:
+    from shapely import MultiPolygon, Polygon
+
+    from voronoi_tiles.design import Design
+    from voronoi_tiles.vector.outline import Outline
+    from voronoi_tiles.vector.proof import ProofReport
+    from voronoi_tiles.vector.tessellation import TileRecord
+    from voronoi_tiles.wallpaper import Operation
+
+FORMATS = ("svg", "json")
+
+
+@dataclass(frozen=True, eq=False)
+class Tile:
+    """The tile of one site: every point that is nearer to this site than to any other copy.
+
+    Lengths are in the design's units. `symmetry` holds the operations that map the site, and so the tile, onto itself,
+    the identity first; `copies_per_cell` is the group's order divided by their number.
+    """
+
+    site: Site
+    outline: Outline
+    copies_per_cell: int
+    symmetry: tuple[Operation, ...]
+    _record: TileRecord = field(repr=False)
+
+    @property
+    def area(self) -> float:
+        """The area in square units."""
+        return self.outline.area
+
+    @property
+    def perimeter(self) -> float:
+        """The length of the outline, holes included, in units."""
+        return self.outline.perimeter
+
+    def copy(self, operation: Operation) -> Outline:
+        """Give the outline of a copy, the image under an operation of the group.
+
+        An edge that two copies share has the same numbers in both, bit for bit.
+        """
+        return self._record.copy(operation)
+
+    def to_shapely(self, *, accuracy: float) -> Polygon | MultiPolygon:
+        """Give the tile as a shapely polygon whose chords stay within `accuracy` (in units) of the outline."""
+        return self.outline.to_shapely(accuracy=accuracy)
+
+    def svg_path(self) -> str:
+        """Write the outline as exact SVG path data in units about the design's origin, y turned to run down."""
+        from voronoi_tiles.vector.svg import path_data
+
+        return path_data(self.outline)
+
+    def _repr_svg_(self) -> str:
+        """Draw the tile and its site: notebooks show this."""
+        from voronoi_tiles.vector.svg import preview
+
+        return preview(self.outline, self.site.elements)
+
+
+@dataclass(frozen=True, eq=False)
+class Tiling:
+    """The tiles of a design, one for each site in the design's order, with the proof that they are right."""
+
+    design: Design
+    tiles: tuple[Tile, ...]
+    proof: ProofReport
+
+    def figures(self) -> dict[str, Any]:
+        """Give what there is to know about the tiles in numbers, as `voronoi-tiles info --json` prints it."""
+        lattice, group = self.design.lattice, self.design.group
+        return {
+            "design": self.design.name,
+            "units": self.design.units,
+            "group": group.name,
+            "order": group.order,
+            "cell": {
+                "a": [lattice.a.real, lattice.a.imag],
+                "b": [lattice.b.real, lattice.b.imag],
+                "area": lattice.det,
+            },
+            "tiles": [_tile_figures(tile) for tile in self.tiles],
+            "proof": [
+                {"name": name, "value": value, "limit": limit, "passed": passed}
+                for name, value, limit, passed in self.proof.rows()
+            ],
+        }
+
+    def document(self) -> dict[str, Any]:
+        """Give the outline document (schema 1): coordinates in the design's units, y up."""
+        from voronoi_tiles.vector.document import outline_document, tile_record
+
+        return outline_document(
+            self.design.units,
+            self.design.group.name,
+            self.design.lattice,
+            (
+                tile_record(tile.site.name, tile.site.elements, tile.outline, tile.copies_per_cell, tile.symmetry)
+                for tile in self.tiles
+            ),
+        )
+
+    def json(self) -> str:
+        """Write the outline document as JSON text, floats with 17 significant digits."""
+        from voronoi_tiles.vector.document import document_text
+
+        return document_text(self.document())
+
+    def svg(self) -> str:
+        """Write the tiles, where they lie in the plane, as an SVG file in millimetres: one path per tile."""
+        from voronoi_tiles.vector.svg import cut_file
+
+        return cut_file(
+            [(tile.site.name, tile.outline) for tile in self.tiles],
+            unit_mm=self.design.unit_mm,
+            version=__version__,
+            design=self.design.source,
+        )
+
+    def text(self, file_format: str) -> str:
+        """Write the file of one of `FORMATS`. Raises ValueError for another."""
+        match file_format:
+            case "svg":
+                return self.svg()
+            case "json":
+                return self.json()
+            case _:
+                raise ValueError(f"unknown format {file_format!r}: use one of {', '.join(FORMATS)}")
+
+    def export(self, path: str | os.PathLike[str]) -> None:
+        """Write a file whole or not at all, its format by its suffix (.svg, .json).
+
+        Raises OutputError where the suffix is another, or the file cannot be written.
+        """
+        write_whole(path, self.text(format_of(path)).encode())
+
+
+def _tile_figures(tile: Tile) -> dict[str, Any]:
+    """Give one tile's figures: lengths in units; the neighbours by the length of the shared edges, longest first."""
+    outline = tile.outline
+    count = len(outline.neighbours)
+    edges = np.bincount(outline.neighbour, minlength=count).tolist()
+    lengths = np.bincount(outline.neighbour, weights=outline.lengths, minlength=count).tolist()
+    neighbours = [
+        {"site": site, "operation": str(operation), "edges": edges[k], "length": lengths[k]}
+        for k, (site, operation) in enumerate(outline.neighbours)
+    ]
+    curved = int(outline.curved.sum())
+    return {
+        "site": tile.site.name,
+        "elements": len(tile.site.elements),
+        "area": tile.area,
+        "perimeter": tile.perimeter,
+        "rings": len(outline.ring_offsets) - 1,
+        "edges": {"line": len(outline) - curved, "parabola": curved},
+        "curved_share": outline.curved_length / tile.perimeter,
+        "copies_per_cell": tile.copies_per_cell,
+        "symmetry": [str(operation) for operation in tile.symmetry],
+        "neighbours": sorted(neighbours, key=lambda row: -float(row["length"])),
+    }
+
+
+def format_of(path: str | os.PathLike[str]) -> str:
+    """Give the format that a file's suffix names. Raises OutputError where it names none."""
+    suffix = Path(path).suffix.lower().removeprefix(".")
+    if suffix not in FORMATS:
+        suffixes = " or ".join(f".{name}" for name in FORMATS)
+        raise OutputError(f"cannot tell the format of {os.fspath(path)!r}: give it the suffix {suffixes}", path=path)
+    return suffix
+
+
+def tessellate(design: Design) -> Tiling:
+    """Compute the tiles of a design and prove them.
+
+    Raises TouchingCopiesError where two copies touch, ProofError where the result fails its proof.
+    """
+    from voronoi_tiles.vector.proof import prove
+    from voronoi_tiles.vector.tessellation import explain_failure
+    from voronoi_tiles.vector.tessellation import tessellate as tessellate_sites
+
+    records = tessellate_sites(design.sites, design.group, design.lattice)
+    proof = prove(design.group, design.lattice, records)
+    if not proof.passed:
+        explain_failure(records)
+        raise ProofError("the result failed its proof: " + "; ".join(proof.failures), proof)
+    tiles = tuple(
+        Tile(site, record.outline, design.group.order // len(record.symmetry), record.symmetry, record)
+        for site, record in zip(design.sites, records, strict=True)
+    )
+    return Tiling(design, tiles, proof)
