@@ -426,7 +426,9 @@ def several(chance: Chance, on: Canvas) -> Sites:
     middles = [on.spot(chance, 0.8) for _ in range(count)]
     if chance.whole(0, 1):
         radius = 0.8 * on.inradius()
-        ring = chance.pick((closed(regular(on.centre(), radius, 5, 9.0)), {"circle": xy(on.centre()), "radius": radius}))
+        ring = chance.pick(
+            (closed(regular(on.centre(), radius, 5, 9.0)), {"circle": xy(on.centre()), "radius": radius})
+        )
         inner = 0.5 * radius
         held = stroke(chance, lambda: on.centre() + cmath.rect(inner, chance.real(0.0, 6.2)), inner)
         return [[ring], [held]] if chance.whole(0, 1) else [[held], [ring]]

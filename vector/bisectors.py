@@ -23,9 +23,10 @@ from voronoi_tiles.vector.rows import Rows
 _INFINITE = 1e100
 # A half-edge that leaves at a smaller angle than the inverse of this bounds nothing but its own end.
 _STEEPEST = 1e18
-# A tangent addition theorem's denominator 1 + xy is below 0 where an interval passes through infinity and at least 1
-# where rounding has swapped the ends of a tiny one.
-_BETWEEN = 0.5
+# An interval whose ends come out swapped passes through infinity if the angle that it sweeps is larger than this; else
+# rounding has swapped the ends of a tiny one. A tiny one at infinity is out of every row's reach, whatever rounding
+# makes of its ends: there 1 + low * high, the addition theorem's denominator, is negative.
+_TINY = 1e-6
 # Pieces above the row's bound by less than this, relative, are kept: far above rounding.
 _SLACK = 1e-9
 
@@ -78,7 +79,7 @@ class Surroundings:
         node: (copies, m) positions.
         start, end: (copies, h) nodes of each half-edge.
         direction: (copies, h).
-        corner: (c,) node of each corner; bounding: (c,) whether it counts.
+        corner: (c,) node of each corner; turn: (c,) its angle; bounding: (c,) whether it counts.
         arriving, leaving: (copies, c) directions of the half-edges before and after.
     """
 
@@ -89,6 +90,7 @@ class Surroundings:
     end: Ints
     direction: Complexes
     corner: Ints
+    turn: Floats
     bounding: Bools
     arriving: Complexes
     leaving: Complexes
@@ -107,6 +109,7 @@ def surround(contour: Contour, copies: Copies, *, own: bool) -> Surroundings:
         end=np.where(conj, contour.source, contour.target),
         direction=move(contour.direction, turned, still, conj),
         corner=contour.corner_node,
+        turn=contour.turn,
         bounding=contour.bounding,
         arriving=np.where(conj, after, before),
         leaving=np.where(conj, before, after),
@@ -258,14 +261,20 @@ def _straight_points(
     place = copy * len(around.corner) + corner
     first = _tangent(*_coordinates(axis, around.arriving.reshape(-1)[place]), _INFINITE)
     last = _tangent(*_coordinates(axis, around.leaving.reshape(-1)[place]), -_INFINITE)
-    high, low = p + q * first, p + q * last
-    wraps = np.flatnonzero((low > high) & (1.0 + first * last < _BETWEEN))
+    tiny = around.turn[corner] <= _TINY
+    low, high = p + q * last, p + q * np.where(tiny & (1.0 + first * last < 0.0), last, first)
+    wraps = np.flatnonzero((low > high) & ~tiny)
     quadratic = (0.5 / q, np.zeros(len(q)), q / 2.0, p)
     return _pieces(rows, t, row, copy, 2 * around.segments + corner, low, high, quadratic, wraps)
 
 
-def _half_tangent(direction: Complexes, axis: Complexes, vector: Complexes, square: Floats) -> Floats:
-    """Return x of the ray on which a disc through 0 touches a line of this direction, from its left, at `vector`."""
+def _half_tangent(
+    direction: Complexes, axis: Complexes, vector: Complexes, square: Floats, infinite: float
+) -> Floats:
+    """Return x of the ray on which a disc through 0 touches a line of this direction, from its left, at `vector`.
+
+    `infinite` where that ray is exactly opposite to the axis.
+    """
     along = direction.real * axis.real - direction.imag * axis.imag
     across = direction.real * axis.imag + direction.imag * axis.real
     real = (vector.real - vector.imag) * (vector.real + vector.imag)
@@ -274,7 +283,7 @@ def _half_tangent(direction: Complexes, axis: Complexes, vector: Complexes, squa
     sine = across * imag + along * real
     with np.errstate(divide="ignore", invalid="ignore"):
         result = np.where(cosine < 0.0, (square - cosine) / sine, sine / (square + cosine))
-    return np.where(np.isfinite(result), result, _INFINITE)
+    return np.where((sine == 0.0) & (cosine < 0.0), infinite, result)
 
 
 def _round_lines(
@@ -300,10 +309,13 @@ def _round_lines(
     v = np.flatnonzero(valid)
     row, copy, item, direction, distance = row[v], copy[v], item[v], direction[v], distance[v]
     axis = rows.axis[row]
-    low = _half_tangent(direction, axis, to1[v], square1[v])
-    high = _half_tangent(direction, axis, to2[v], square2[v])
-    less = (distance * distance + c1[v] * c2[v] > 0.0) & (1.0 + low * high > _BETWEEN)
-    wraps = np.flatnonzero((low > high) & ~less)
+    low = _half_tangent(direction, axis, to1[v], square1[v], -_INFINITE)
+    high = _half_tangent(direction, axis, to2[v], square2[v], _INFINITE)
+    # The half angle swept is that between the lines to the two ends; its cosine and sine, up to a factor.
+    forward = distance * distance + c1[v] * c2[v]
+    tiny = distance * (c2[v] - c1[v]) <= _TINY * forward
+    high = np.where(tiny & (1.0 + low * high < 0.0), low, high)
+    wraps = np.flatnonzero((low > high) & ~tiny)
     # cos and sin of half the angle from the axis to the foot on the line, which lies to the right of it.
     along, across = _coordinates(axis, direction)
     big, small = np.sqrt((1.0 + np.abs(across)) / 2.0), -along / 2.0
@@ -330,9 +342,11 @@ def _round_points(
     row, copy, corner, away, square = row[v], copy[v], corner[v], away[v], square[v]
     axis = rows.axis[row]
     place = copy * len(around.corner) + corner
-    low = _half_tangent(around.arriving.reshape(-1)[place], axis, away, square)
-    high = _half_tangent(around.leaving.reshape(-1)[place], axis, away, square)
-    wraps = np.flatnonzero((low > high) & (1.0 + low * high < _BETWEEN))
+    low = _half_tangent(around.arriving.reshape(-1)[place], axis, away, square, -_INFINITE)
+    high = _half_tangent(around.leaving.reshape(-1)[place], axis, away, square, _INFINITE)
+    tiny = around.turn[corner] <= _TINY
+    high = np.where(tiny & (1.0 + low * high < 0.0), low, high)
+    wraps = np.flatnonzero((low > high) & ~tiny)
     along, across = _coordinates(axis, away)
     along, across = 2.0 * along / square, 4.0 * across / square
     quadratic = (along, -across, -along, np.zeros(len(row)))

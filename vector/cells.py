@@ -94,11 +94,12 @@ def _locate(rows: Rows, pieces: Pieces, row: Ints, start: Floats, end: Floats, p
 def _point(rows: Rows, row: Ints, x: Floats, value: Floats) -> Complexes:
     """Return the points of rows at x where the function has this value."""
     straight = rows.straight[row]
-    if (value[~straight] >= 0.0).any() or (value[straight] < 0.0).any():
+    if (value[~straight] >= 0.0).any():
         raise UnboundedCellError
     with np.errstate(divide="ignore", invalid="ignore"):
         along = np.where(straight, x, (1.0 - x) * (1.0 + x) / -value)
-        left = np.where(straight, value, 2.0 * x / -value)
+        # Where two strokes of the site meet, rounding may put the height below 0.
+        left = np.where(straight, np.maximum(value, 0.0), 2.0 * x / -value)
     result = np.empty(len(row), complex)
     result.real, result.imag = along, left
     return rows.origin[row] + rows.axis[row] * result

@@ -158,8 +158,13 @@ class Placed:
         """Return the motion that names the copy onto which `motion` takes the site."""
         if len(self.stabilizer) == 1:
             return motion
-        linear = {m[:4] for m in self.representatives}
-        return next(m for m in (compose(motion, s) for s in self.stabilizer) if m[:4] in linear)
+        cosets = {_modulo_lattice(m) for m in self.representatives}
+        return next(m for m in (compose(motion, s) for s in self.stabilizer) if _modulo_lattice(m) in cosets)
+
+
+def _modulo_lattice(motion: Motion) -> Motion:
+    """Return the one of a motion's lattice translates that stands for all."""
+    return (*motion[:4], motion[4] % 2, motion[5] % 2)
 
 
 def place(action: Action, nodes: Complexes, segments: Ints) -> Placed:
@@ -174,16 +179,11 @@ def place(action: Action, nodes: Complexes, segments: Ints) -> Placed:
     centre = (box[0] + box[1]) / 2
     stabilizer = _stabilizer(action, nodes, segments)
     representatives: list[Motion] = []
-    covered: set[tuple[int, ...]] = set()
+    covered: set[Motion] = set()
     for motion in action.motions:
-        # In a centred cell two motions share a linear part, and differ by a translation that moves every site.
-        key = (*motion[:4], motion[4] % 2, motion[5] % 2)
-        if key in covered:
-            continue
-        representatives.append(motion)
-        for element in stabilizer:
-            m = compose(motion, element)
-            covered.add((*m[:4], m[4] % 2, m[5] % 2))
+        if _modulo_lattice(motion) not in covered:
+            representatives.append(motion)
+            covered |= {_modulo_lattice(compose(motion, element)) for element in stabilizer}
     return Placed(
         nodes=nodes,
         segments=segments,

@@ -51,8 +51,11 @@ class Traced:
         return np.split(np.arange(len(self.ring)), opening[1:])
 
 
-# How near the image of a vertex must come to be taken for another one, relative to the cell's size: far above rounding.
-_PAIRING = 1e-6
+# How near vertices must be to count as one, relative to the cell's size: far above rounding.
+_SAME = 1e-6
+# How far an edge may be from the image of its counterpart, on the same scale. Where copies nearly touch, vertices are
+# known to far fewer digits along their edges; the proof judges what comes of it.
+PAIRING = 1e-3
 
 Corner = tuple[int, int]
 """Tile and index of the arc that starts there."""
@@ -115,15 +118,17 @@ def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pi
     faces: defaultdict[tuple[int, int, Motion], list[Edge]] = defaultdict(list)
     for edge in edges:
         faces[edge.tile, edge.target, edge.motion].append(edge)
-    limit = _PAIRING * action.size
+    limit = PAIRING * action.size
     for edge in edges:
         for motion, tile, target, beyond, flips in _images(placed, edge.tile, edge.target, edge.motion):
-            if motion == IDENTITY:
+            if motion == IDENTITY and not flips:
                 edge.images.insert(0, (motion, edge, False))
                 continue
             image = action.apply(motion, edge.vertex)
             candidates = faces.get((tile, target, beyond), [])
-            gaps = [_gap(image[::-1] if flips else image, other.vertex) for other in candidates]
+            if flips:
+                image = image[::-1]
+            gaps = [_gap(image, other.vertex) for other in candidates]
             best = int(np.argmin(gaps)) if gaps else -1
             if best < 0 or gaps[best] > limit:
                 raise UnpairedEdgeError(edge)
@@ -132,7 +137,12 @@ def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pi
 
 
 def _gap(one: Complexes, other: Complexes) -> float:
-    """Return how far two lists of vertices are from being the same edge: their ends, and how far they run."""
+    """Return how far two lists of vertices are from being the same edge.
+
+    Where rounding has split a vertex on one side only, their ends and how far they run are compared.
+    """
+    if len(one) == len(other):
+        return float(np.abs(one - other).max())
     ends = np.abs(one[[0, -1]] - other[[0, -1]]).max()
     return float(max(ends, abs(np.abs(np.diff(one)).sum() - np.abs(np.diff(other)).sum())))
 
@@ -176,7 +186,7 @@ def _cut_further(
     waiting: list[tuple[int, int]] = []
     for tile, boundary in enumerate(traced):
         if pinched:
-            waiting += [(tile, arc) for arc in _pinches(boundary.vertex, _PAIRING * action.size)]
+            waiting += [(tile, arc) for arc in _pinches(boundary.vertex, _SAME * action.size)]
         waiting += [(tile, int(r[0])) for r, cut in zip(boundary.rings(), cuts[tile], strict=True) if not cut]
     done: set[tuple[int, int]] = set()
     while waiting:
@@ -197,7 +207,7 @@ def _cut_further(
             for motion, other, facing, copy, _ in _images(placed, tile, target, beyond):
                 waiting += [
                     (other, k)
-                    for k in _at(traced[other], action.apply(motion, here), _PAIRING * action.size)
+                    for k in _at(traced[other], action.apply(motion, here), _SAME * action.size)
                     if facing == traced[other].target[k] and copy == _motion(traced[other], k)
                 ]
 

@@ -13,7 +13,10 @@ import numpy as np
 
 from voronoi_tiles.vector.contour import Complexes, Ints
 from voronoi_tiles.vector.copies import IDENTITY, Action, Motion, compose, inverse
-from voronoi_tiles.vector.edges import Corner, Edge, Traced
+from voronoi_tiles.vector.edges import PAIRING, Corner, Edge, Traced
+
+# How near to a vertex the image of its counterpart must be, relative to the cell's size, where some have none.
+_COUNTERPART = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,8 +82,7 @@ class SharedOutline:
         control: (n,) of the quadratic Bezier; its index is -1 for a line.
         focus: (n,) and directrix: (n, 2), of the representative arc, to be moved as the control point.
         ring_offsets: (r + 1,) the arcs of ring k are ring_offsets[k] to ring_offsets[k + 1].
-        target: (n,) the site beyond each arc.
-        beyond: (n,) into `neighbours`: the motion that names its copy there.
+        beyond: (n,) into `neighbours`: site and motion of the copy beyond each arc.
     """
 
     representatives: Representatives
@@ -89,9 +91,8 @@ class SharedOutline:
     focus: Complexes
     directrix: Complexes
     ring_offsets: Ints
-    target: Ints
     beyond: Ints
-    neighbours: tuple[Motion, ...]
+    neighbours: tuple[tuple[int, Motion], ...]
 
 
 Corners = dict[Corner, tuple[int, Motion]]
@@ -276,13 +277,13 @@ def _represent(
 def _symmetric(action: Action, mirror: Motion, vertex: Complexes, arcs: Ints) -> tuple[Complexes, Ints]:
     """Leave out vertices of a symmetric edge that have no counterpart: rounding splits a vertex on one side only."""
     image = action.apply(mirror, vertex)[::-1]
-    if len(arcs) == 1 or np.abs(image - vertex).max() <= 1e-9 * action.size:
+    if len(arcs) == 1 or np.abs(image - vertex).max() <= PAIRING * action.size:
         return vertex, arcs
     gaps = np.abs(image[:, None] - vertex)
     kept = [0]
     for k in range(1, len(arcs)):
         partner = int(gaps[:, k].argmin())
-        if gaps[partner, k] <= 1e-9 * action.size and int(gaps[partner].argmin()) == k:
+        if gaps[partner, k] <= _COUNTERPART * action.size and int(gaps[partner].argmin()) == k:
             kept.append(k)
     length = np.abs(np.diff(vertex))
     bounds = [*kept, len(arcs)]
@@ -328,9 +329,9 @@ def _assemble(
     """Return a tile's outline from its edges, ring after ring."""
     numbers: dict[Motion, int] = {}
     start, start_by, control, control_by, focus, directrix = [], [], [], [], [], []
-    target, beyond, offsets = [], [], [0]
+    beyond, offsets = [], [0]
     rings = [int(boundary.ring[edge.arcs[0]]) for edge in edges]
-    faces: dict[Motion, int] = {}
+    faces: dict[tuple[int, Motion], int] = {}
     for place, edge in enumerate(edges):
         outer, flips, arcs = sources[id(edge)]
         if flips:
@@ -344,8 +345,7 @@ def _assemble(
         focus.append(arcs.focus)
         directrix.append(arcs.directrix)
         count = len(arcs.control)
-        target.append(np.full(count, edge.target))
-        beyond.append(np.full(count, faces.setdefault(edge.motion, len(faces))))
+        beyond.append(np.full(count, faces.setdefault((edge.target, edge.motion), len(faces))))
         if place and rings[place] != rings[place - 1]:
             offsets.append(offsets[-1])
         if len(offsets) == 1:
@@ -359,7 +359,6 @@ def _assemble(
         focus=np.concatenate(focus),
         directrix=np.concatenate(directrix),
         ring_offsets=np.array(offsets),
-        target=np.concatenate(target),
         beyond=np.concatenate(beyond),
         neighbours=tuple(faces),
     )

@@ -42,7 +42,7 @@ from voronoi_tiles.wallpaper import Lattice, Operation, WallpaperGroup
 # A gap this small between copies, relative to the cell's size, makes the engine look whether they touch.
 _SUSPICIOUS = 1e-9
 # An edge this short, relative to the cell's size, may have come out on one side only.
-_ONE_SIDED = 1e-9
+_ONE_SIDED = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,11 +118,9 @@ class Tessellation:
         shared = self.shared[tile]
         # The copy, not the motion that names it, decides on the bits.
         here = self.placed[tile].canonical(motion)
-        target = np.zeros(len(shared.neighbours), np.intp)
-        target[shared.beyond] = shared.target
         neighbours = [
             Neighbour(self.names[t], to_operation(self.placed[t].canonical(compose(here, motion))))
-            for t, motion in zip(target.tolist(), shared.neighbours, strict=True)
+            for t, motion in shared.neighbours
         ]
         return _outline(self.action, shared, here, neighbours)
 
@@ -198,7 +196,7 @@ def _curves(
     round_here = rows.corner[row] >= 0
     # What an arc's curve depends on: the segment or node on either side.
     node = np.where(round_here, contour.corner_node[rows.corner[row]], 0)
-    here = np.where(round_here, len(contour.nodes) + node, rows.half_edge[row] >> 1)
+    here = np.where(round_here, len(contour.source) + node, rows.half_edge[row] >> 1)
     point = np.zeros(len(part), complex)
     line = np.zeros((len(part), 2), complex)
     there = np.zeros(len(part), np.intp)
@@ -215,7 +213,7 @@ def _curves(
         corner_node = other.corner_node[np.where(is_corner, i - count, 0)]
         edge = np.where(is_corner, 0, i)
         round_there[chosen] = is_corner
-        there[chosen] = np.where(is_corner, len(other.nodes) + corner_node, i >> 1)
+        there[chosen] = np.where(is_corner, len(other.source) + corner_node, i >> 1)
         unit, shift, conj = copies[t].unit[c], copies[t].shift[c], copies[t].conj[c]
         corners, lines = chosen[is_corner], chosen[~is_corner]
         images = move(other.nodes[corner_node], unit, shift, conj)
