@@ -143,7 +143,7 @@ def bisector_pieces(
                 points = _straight_points if straight_rows else _round_points
                 parts.append(points(rows, contour, t, around, row[chosen], copy[chosen], items[chosen]))
     pieces = Pieces(*(np.concatenate([getattr(part, name) for part in parts]) for name in Pieces.__slots__))
-    kept = _below_champion(rows, bounds, pieces)
+    kept = _below_bounds(rows, bounds, pieces)
     return pieces.take(kept[np.argsort(pieces.row[kept], kind="stable")])
 
 
@@ -353,25 +353,29 @@ def _round_points(
     return _pieces(rows, t, row, copy, 2 * around.segments + corner, low, high, quadratic, wraps)
 
 
-def _below_champion(rows: Rows, bounds: Bounds, pieces: Pieces) -> Ints:
-    """Return the indices of the pieces that somewhere fall below the bisector with their row's champion."""
-    straight, height = rows.straight, bounds.height
+def _below_bounds(rows: Rows, bounds: Bounds, pieces: Pieces) -> Ints:
+    """Return the indices of the pieces that somewhere fall below both bounds of their rows."""
+    straight = rows.straight
+    # The height's: h <= H, or -(1 + x^2) / r <= -(1 + x^2) / H.
+    flat = np.where(straight, 0.0, -1.0 / bounds.height)
+    zero = np.zeros(len(rows))
+    kept = _below(pieces, flat, zero, np.where(straight, bounds.height, flat), zero)
+    if np.isnan(bounds.champion).any():
+        return kept
+    # The bisector's with the champion.
     away = bounds.champion - rows.origin
     p, q = _coordinates(rows.axis, away)
     square = away.real**2 + away.imag**2
-    with np.errstate(divide="ignore", invalid="ignore"):
-        a = np.where(straight, 0.5 / q, 2.0 * p / square)
-        b = np.where(straight, 0.0, -4.0 * q / square)
-        c = np.where(straight, q / 2.0, -2.0 * p / square)
-        m = np.where(straight, p, 0.0)
-    # Without a champion the bound is the lattice's: h <= H, or -(1 + x^2) / r <= -(1 + x^2) / H.
-    none = np.isnan(bounds.champion)
-    if none.any():
-        a = np.where(none, np.where(straight, 0.0, -1.0 / height), a)
-        b, m = np.where(none, 0.0, b), np.where(none, 0.0, m)
-        c = np.where(none, np.where(straight, height, -1.0 / height), c)
+    a = np.where(straight, 0.5 / np.where(straight, q, 1.0), 2.0 * p / square)
+    b = np.where(straight, 0.0, -4.0 * q / square)
+    c = np.where(straight, q / 2.0, -2.0 * p / square)
+    return kept[_below(pieces.take(kept), a, b, c, np.where(straight, p, 0.0))]
+
+
+def _below(pieces: Pieces, a0: Floats, b0: Floats, c0: Floats, m0: Floats) -> Ints:
+    """Return the indices of the pieces that somewhere fall below the quadratic of their row."""
     row, low, high = pieces.row, pieces.low, pieces.high
-    a0, b0, c0, m0 = a[row], b[row], c[row], m[row]
+    a0, b0, c0, m0 = a0[row], b0[row], c0[row], m0[row]
     x, y = low - m0, high - m0
     bound_low, bound_high = c0 + x * (b0 + x * a0), c0 + y * (b0 + y * a0)
     u, v = low - pieces.m, high - pieces.m
