@@ -25,7 +25,7 @@ Segment = list[list[float]]
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What an outline needs of a diagram: of each cell of the base site its segment's number, its category and its edges.
+    """What an outline needs of a diagram: the numbers and edges of the base site's cells.
 
     An edge is its start, its end, whether it is straight, and the cell beyond; `owner` tells every cell's segment and
     category.

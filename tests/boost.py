@@ -104,7 +104,7 @@ def _round(z: Complexes, unit: float) -> list[complex]:
 
 
 def _copies(plane: brute.Plane, site: int, rim: float) -> list[tuple[int, Complexes, Complexes]]:
-    """Give the site, the start and end points of every copy that comes within `rim` of a site's centre, itself first."""
+    """Give site, start and end points of every copy that comes within `rim` of a site's centre, itself first."""
     centre, (p, q) = plane.centres[site], plane.reduced
     det = abs((np.conj(p) * q).imag)
     found: list[tuple[int, Complexes, Complexes]] = [(site, plane.starts[site], plane.ends[site])]

@@ -103,19 +103,21 @@ def motions(group: str) -> tuple[Motion, ...]:
 
 def read_operation(group: str, text: str) -> Motion:
     """Read a coordinate triplet, which must belong to the group. Raises ValueError where it does not."""
-    numbers: list[list[Fraction]] = []
+    rows = []
     for row in text.split(","):
-        terms = row.replace("-", "+-").split("+")
         sums = {"x": Fraction(0), "y": Fraction(0), "": Fraction(0)}
-        for term in filter(None, terms):
+        for term in filter(None, row.replace("-", "+-").split("+")):
             name = term[-1] if term[-1] in "xy" else ""
             factor = term.removesuffix(name)
-            sums[name] += Fraction(factor + "1" if name and factor in ("", "-") else factor)
-        numbers.append([sums["x"], sums["y"], sums[""]])
-    (a, b, s), (c, d, t) = numbers
+            sums[name] += Fraction(factor + "1" if name and factor in {"", "-"} else factor)
+        rows.append(sums)
+    first, second = rows
+    matrix = [first["x"], first["y"], second["x"], second["y"]]
+    shift = (first[""], second[""])
     for motion in motions(group):
-        if motion.matrix == (a, b, c, d) and ((s - motion.shift[0]) % 1, (t - motion.shift[1]) % 1) == (0, 0):
-            return Motion(motion.turn, motion.mirrored, motion.matrix, (s, t))
+        offsets = [x - y for x, y in zip(shift, motion.shift, strict=True)]
+        if list(motion.matrix) == matrix and all(offset.denominator == 1 for offset in offsets):
+            return Motion(motion.turn, motion.mirrored, motion.matrix, shift)
     raise ValueError(f"{text} is no operation of {group}")
 
 
@@ -165,11 +167,11 @@ class Plane:
     def pull(self, motion: Motion, z: Complexes, extra: Complexes | complex = 0.0) -> Complexes:
         """Give the points that a motion, followed by the translation `extra`, takes to z."""
         back = TURNS[motion.turn].conjugate() * (z - (self.shift(motion) + extra))
-        return np.conj(back) if motion.mirrored else back
+        return np.asarray(np.conj(back) if motion.mirrored else back)
 
     def push(self, motion: Motion, z: Complexes) -> Complexes:
         """Give the images of points."""
-        return TURNS[motion.turn] * (np.conj(z) if motion.mirrored else z) + self.shift(motion)
+        return np.asarray(TURNS[motion.turn] * (np.conj(z) if motion.mirrored else z) + self.shift(motion))
 
     def distance(self, site: int, z: Complexes) -> Floats:
         """Give the distance of each point from a base site, over all its elements."""
@@ -270,7 +272,7 @@ class Shape:
     def at(self, arc: Ints, t: Floats) -> Complexes:
         """Give points of arcs."""
         curve = (1 - t) ** 2 * self.start[arc] + 2 * t * (1 - t) * self.control[arc] + t * t * self.end[arc]
-        return np.where(self.curved[arc], curve, (1 - t) * self.start[arc] + t * self.end[arc])
+        return np.asarray(np.where(self.curved[arc], curve, (1 - t) * self.start[arc] + t * self.end[arc]))
 
     def ring_areas(self) -> list[float]:
         """Give the signed area of each ring, by the shoelace formula and two thirds of each arc's triangle."""
@@ -281,7 +283,7 @@ class Shape:
         return [math.fsum(part) for part in np.split(parts, np.cumsum(self.sizes)[:-1])]
 
     def contains(self, z: Complexes) -> NDArray[np.bool_]:
-        """Tell for each point whether it is inside: whether a ray to the right meets the outline an odd number of times."""
+        """Tell for each point whether it is inside: a ray to the right meets the outline an odd number of times."""
         x0, x1, y0, y1 = self.box
         inside = np.zeros(len(z), bool)
         near = np.flatnonzero((z.real >= x0) & (z.real <= x1) & (z.imag >= y0) & (z.imag <= y1))
@@ -365,7 +367,6 @@ def _rings(plane: Plane, document: Mapping[str, Any], shapes: list[Shape]) -> li
 
 def _owners(plane: Plane, shapes: list[Shape], z: Complexes, reach: list[float]) -> list[str]:
     """Test that points are inside the copy of a tile whose site is nearest, and in no other."""
-    found = []
     block = plane.around(z, reach)
     nearest = np.full(len(z), np.inf)
     np.minimum.at(nearest, block.point, block.distance)
@@ -374,8 +375,8 @@ def _owners(plane: Plane, shapes: list[Shape], z: Complexes, reach: list[float])
         chosen = np.flatnonzero(block.site == s)
         inside[chosen] = shape.contains(block.moved[chosen])
     tied = block.distance <= nearest[block.point] + plane.slack
-    for k in np.unique(block.point[inside & ~tied]).tolist():
-        found.append(f"the point {z[k]} is in a tile that is not its own")
+    strangers = np.unique(block.point[inside & ~tied]).tolist()
+    found = [f"the point {z[k]} is in a tile that is not its own" for k in strangers]
     owned = np.zeros(len(z), bool)
     owned[block.point[inside & tied]] = True
     found += [f"the point {z[k]} is not in the tile of the nearest site" for k in np.flatnonzero(~owned).tolist()]
@@ -400,17 +401,17 @@ def _edges(plane: Plane, site: int, shape: Shape, rng: np.random.Generator, coun
             found.append(str(error))
             continue
         there = plane.distance(plane.names.index(name), plane.pull(motion, z[chosen]))
-        error = float(np.abs(there - here[chosen]).max())
+        off = float(np.abs(there - here[chosen]).max())
         slack = plane.slack + 32 * EPS * abs(plane.shift(motion))
-        if not error <= slack:
-            found.append(f"edge {k} of {plane.names[site]} is {error / plane.size:.3g} off from {name} {text}")
+        if not off <= slack:
+            found.append(f"edge {k} of {plane.names[site]} is {off / plane.size:.3g} off from {name} {text}")
         if edge["kind"] == "parabola":
             p, q = (complex(*v) for v in edge["directrix"])
             focus = np.abs(z[chosen] - complex(*edge["focus"]))
             line = np.abs((np.conj(q - p) * (z[chosen] - p)).imag) / abs(q - p)
-            error = float(max(np.abs(focus - here[chosen]).max(), np.abs(line - here[chosen]).max()))
-            if not error <= slack:
-                found.append(f"edge {k} of {plane.names[site]}: focus or directrix is {error / plane.size:.3g} off")
+            off = float(max(np.abs(focus - here[chosen]).max(), np.abs(line - here[chosen]).max()))
+            if not off <= slack:
+                found.append(f"edge {k} of {plane.names[site]}: focus or directrix is {off / plane.size:.3g} off")
     block = plane.around(z)
     nearest = np.full(len(z), np.inf)
     np.minimum.at(nearest, block.point, block.distance)

@@ -1,7 +1,8 @@
 """All random designs: one set of generators, drawn from by Hypothesis and by numpy's generator (`make fuzz`).
 
-A generator takes a `Chance`, the source of its decisions, and a `Canvas`, the cell to draw in, and gives the sites of a
-design. Most draw within the domain of one copy, so that few designs touch their copies; some cross its border on purpose.
+A generator takes a `Chance`, the source of its decisions, and a `Canvas`, the cell to draw in, and gives the sites
+of a design. Most draw within the domain of one copy, so that few designs touch their copies; some cross its border
+on purpose.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ import cmath
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Protocol, TypeVar
 
 import numpy as np
@@ -221,39 +223,46 @@ def stroke(chance: Chance, at: Callable[[], complex], size: float, kind: str | N
     few, many = counts.get(kind, (4, 6))
     points = _apart([at() for _ in range(chance.whole(few, many))], 0.02 * size)
     shown = [xy(z) for z in points]
+    more: dict[str, Any] = {}
     match kind:
-        case "segment" | "point":
-            return {kind: shown if kind == "segment" else shown[0]}
-        case "polyline":
-            return {kind: shown}
+        case "point":
+            return {kind: shown[0]}
+        case "path":
+            return path(points, size)
         case "closed":
             return closed(points)
         case "bezier":
-            return {kind: shown[:4]}
+            # A chain that ends where it begins, or one piece.
+            shown = [*shown, shown[0]] if len(shown) == 6 else shown[:4]
         case "hermite":
-            return {kind: shown[:2], "tangents": [xy((z - points[0]) * 1.5) for z in points[2:4]]}
+            more["tangents"] = [xy((z - points[0]) * 1.5) for z in points[2:4]]
+            shown = shown[:2]
         case "catmull_rom":
-            return {kind: shown, "alpha": chance.pick((0.0, 0.5, 1.0)), "closed": chance.pick((False, True))}
+            more = {"alpha": chance.pick((0.0, 0.5, 1.0)), "closed": chance.pick((False, True))}
         case "bspline":
-            return {kind: shown, "closed": chance.pick((False, True))}
+            more["closed"] = chance.pick((False, True))
         case "circle":
             return {kind: shown[0], "radius": size * chance.pick((0.2, 0.1, 0.01))}
-        case _:
-            return path(points, size)
+    return {kind: shown, **more}
 
 
 def carried(chance: Chance, drawn: Stroke) -> Stroke:
-    """Give a stroke of points drawn elsewhere, with the scale, rotation and translation that bring it back."""
+    """Give a stroke drawn elsewhere, with the scale, rotation and translation that bring it back."""
     scale, turn = chance.pick((1.0, 2.0, -0.5, 1.7)), chance.pick((0.0, 90.0, 60.0, -17.0))
     shift = complex(chance.whole(-9, 9), chance.whole(-9, 9))
     kind = next(iter(drawn))
-    if kind in {"path", "hermite", "circle"}:
-        return drawn
+    if kind == "path":
+        return {**drawn, "translate": [0.0, 0.0], "scale": 1.0}
     back = cmath.rect(1 / scale, -math.radians(turn))
-    points = drawn[kind] if kind != "point" else [drawn[kind]]
+    lone = kind in {"point", "circle"}
+    points = [drawn[kind]] if lone else drawn[kind]
     moved = [xy((complex(*point) - shift) * back) for point in points]
-    placed = {"scale": scale, "rotate": turn, "translate": xy(shift)}
-    return {**drawn, kind: moved if kind != "point" else moved[0], **placed}
+    more: dict[str, Any] = {"scale": scale, "rotate": turn, "translate": xy(shift)}
+    if kind == "hermite":
+        more["tangents"] = [xy(complex(*tangent) * back) for tangent in drawn["tangents"]]
+    if kind == "circle":
+        more["radius"] = drawn["radius"] / abs(scale)
+    return {**drawn, kind: moved[0] if lone else moved, **more}
 
 
 # --- what is drawn -------------------------------------------------------------------------------------------
@@ -420,6 +429,11 @@ def points(chance: Chance, on: Canvas) -> Sites:
     return [[{"point": xy(z)} for z in places]]
 
 
+def _within(chance: Chance, middle: complex, reach: float) -> complex:
+    """Give a point in a ring about another."""
+    return middle + cmath.rect(reach * chance.real(0.2, 1.0), chance.real(0.0, 6.2))
+
+
 def several(chance: Chance, on: Canvas) -> Sites:
     """Two to four sites; sometimes one inside a closed curve of another."""
     count = chance.whole(2, 4)
@@ -435,10 +449,7 @@ def several(chance: Chance, on: Canvas) -> Sites:
     middles = _apart(middles, 0.1 * on.inradius())
     least = min(abs(p - q) for k, p in enumerate(middles) for q in middles[:k])
     reach = 0.45 * min(least, on.inradius())
-    return [
-        [stroke(chance, lambda m=middle: m + cmath.rect(reach * chance.real(0.2, 1.0), chance.real(0.0, 6.2)), reach)]
-        for middle in middles
-    ]
+    return [[stroke(chance, partial(_within, chance, middle, reach), reach)] for middle in middles]
 
 
 def long(chance: Chance, on: Canvas) -> Sites:

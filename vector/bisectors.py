@@ -217,11 +217,13 @@ def _straight_lines(
     p1, q1 = _coordinates(axis, node[first + start] - origin)
     p2, q2 = _coordinates(axis, node[first + end] - origin)
     if around.own:
-        # The row's own ends lie on its line, exactly.
+        # The half-edge's own end lies on its line and at its length, exactly.
         here, edge = copy == 0, rows.half_edge[row]
-        last = contour.target[edge]
-        q1[here & (start == last)] = 0.0
-        q2[here & (end == last)] = 0.0
+        last, length = contour.target[edge], contour.length[edge]
+        for node_here, p, q in ((start, p1, q1), (end, p2, q2)):
+            own_end = here & (node_here == last)
+            q[own_end] = 0.0
+            p[own_end] = length[own_end]
         other = ~(here & (item >> 1 == edge >> 1))
     else:
         other = np.ones(len(row), bool)
@@ -359,7 +361,7 @@ def _below_bounds(rows: Rows, bounds: Bounds, pieces: Pieces) -> Ints:
     # The height's: h <= H, or -(1 + x^2) / r <= -(1 + x^2) / H.
     flat = np.where(straight, 0.0, -1.0 / bounds.height)
     zero = np.zeros(len(rows))
-    kept = _below(pieces, flat, zero, np.where(straight, bounds.height, flat), zero)
+    kept = _below(rows, pieces, flat, zero, np.where(straight, bounds.height, flat), zero, zero)
     if np.isnan(bounds.champion).any():
         return kept
     # The bisector's with the champion.
@@ -369,11 +371,14 @@ def _below_bounds(rows: Rows, bounds: Bounds, pieces: Pieces) -> Ints:
     a = np.where(straight, 0.5 / np.where(straight, q, 1.0), 2.0 * p / square)
     b = np.where(straight, 0.0, -4.0 * q / square)
     c = np.where(straight, q / 2.0, -2.0 * p / square)
-    return kept[_below(pieces.take(kept), a, b, c, np.where(straight, p, 0.0))]
+    # A champion that is near is known to fewer digits.
+    doubt = 4.0 * bounds.rounding / np.where(straight, q, np.sqrt(square))
+    kept = kept[_below(rows, pieces.take(kept), a, b, c, np.where(straight, p, 0.0), doubt)]
+    return kept
 
 
-def _below(pieces: Pieces, a0: Floats, b0: Floats, c0: Floats, m0: Floats) -> Ints:
-    """Return the indices of the pieces that somewhere fall below the quadratic of their row."""
+def _below(rows: Rows, pieces: Pieces, a0: Floats, b0: Floats, c0: Floats, m0: Floats, doubt: Floats) -> Ints:
+    """Return the indices of the pieces that somewhere fall below the quadratic of their row, give or take its doubt."""
     row, low, high = pieces.row, pieces.low, pieces.high
     a0, b0, c0, m0 = a0[row], b0[row], c0[row], m0[row]
     x, y = low - m0, high - m0
@@ -388,4 +393,5 @@ def _below(pieces: Pieces, a0: Floats, b0: Floats, c0: Floats, m0: Floats) -> In
         inside = (curvature > 0.0) & (step > 0.0) & (step < high - low)
         dip = np.where(inside, over_low + slope * step / 2.0, over_low)
     least = np.minimum(np.minimum(over_low, over_high), dip)
-    return np.flatnonzero(least <= _SLACK * (np.abs(bound_low) + np.abs(bound_high)))
+    terms = np.abs(bound_low) + np.abs(bound_high) + np.where(rows.straight[row], 0.0, np.abs(a0) + np.abs(b0))
+    return np.flatnonzero(least <= (_SLACK + doubt[row]) * terms)

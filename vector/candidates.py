@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from voronoi_tiles.tolerance import EPSILON
 from voronoi_tiles.vector.contour import Bools, Complexes, Contour, Floats, Ints
 from voronoi_tiles.vector.copies import Copies, move
 from voronoi_tiles.vector.rows import Rows
@@ -122,13 +123,13 @@ class Bounds:
     """What bounds each row's cell; tightened in place.
 
     Attributes:
-        covering_radius: of the lattice.
+        rounding: by how much coordinates, and their differences, may be off.
         height: (rows,) no point of the cell is farther from the element.
         by_point: (rows,) the best such bound by the bisector with a single point.
         champion: (rows,) that point, NaN where there is none.
     """
 
-    covering_radius: float
+    rounding: float
     height: Floats
     by_point: Floats
     champion: Complexes
@@ -150,7 +151,8 @@ def find_candidates(
     """
     none = np.full(len(rows), np.nan, complex)
     infinite = np.full(len(rows), np.inf)
-    bounds = Bounds(covering_radius, height=np.full(len(rows), covering_radius), by_point=infinite, champion=none)
+    rounding = 16.0 * EPSILON * float(max(np.abs(hierarchy.levels[0].start).max() for hierarchy in targets))
+    bounds = Bounds(rounding, height=np.full(len(rows), covering_radius), by_point=infinite, champion=none)
     pairs: list[tuple[Ints, Ints, Ints]] = []
     for hierarchy in targets:
         count = len(hierarchy.levels[0].start)
@@ -188,7 +190,8 @@ def _narrow(
     flat = copy * len(level.radius) + place
     anchor = level.anchor_start.reshape(-1)[flat]
     height = np.maximum(
-        _bisector(rows.base0[row], rows.ray0[row], anchor), _bisector(rows.base1[row], rows.ray1[row], anchor)
+        _bisector(rows.base0[row], rows.ray0[row], anchor, bounds.rounding),
+        _bisector(rows.base1[row], rows.ray1[row], anchor, bounds.rounding),
     )
     _lower(bounds.by_point, row, height)
     best = np.flatnonzero(height == bounds.by_point[row])
@@ -199,9 +202,8 @@ def _narrow(
     if len(wide):
         at, by = row[wide], flat[wide]
         start, end = level.anchor_start.reshape(-1)[by], level.anchor_end.reshape(-1)[by]
-        least = _SLACK * bounds.covering_radius
-        height = _bisector_of_segment(rows.base0[at], rows.ray0[at], start, end, least)
-        height = np.maximum(height, _bisector_of_segment(rows.base1[at], rows.ray1[at], start, end, least))
+        height = _bisector_of_segment(rows.base0[at], rows.ray0[at], start, end, bounds.rounding)
+        height = np.maximum(height, _bisector_of_segment(rows.base1[at], rows.ray1[at], start, end, bounds.rounding))
         _lower(bounds.height, at, height)
     kept = _in_reach(rows, row, flat, level.radius[place], level, bounds)
     return row[kept], copy[kept], place[kept]
@@ -229,7 +231,7 @@ def _in_reach(rows: Rows, row: Ints, flat: Ints, radius: Floats, level: Level, b
     lone = np.isnan(bounds.champion)
     near = lone[row]
     for base, ray in ((rows.base0, rows.ray0), (rows.base1, rows.ray1)):
-        height = np.where(lone, 0.0, _bisector(base, ray, bounds.champion))
+        height = np.where(lone, 0.0, _bisector(base, ray, bounds.champion, bounds.rounding))
         centre, reach = base + height * ray, np.hypot(height, rows.spread) * (1.0 + _SLACK)
         away = centre[row] - start
         along = np.minimum(np.maximum((away.real * chord.real + away.imag * chord.imag) / square, 0.0), 1.0)
@@ -270,22 +272,25 @@ def _enters_box(
     return np.asarray(enter <= leave + _SLACK)
 
 
-def _bisector(base: Complexes, ray: Complexes, points: Complexes) -> Floats:
-    """Return the heights at which rays meet the bisectors of their base and points; infinite where they do not."""
+def _bisector(base: Complexes, ray: Complexes, points: Complexes, rounding: float) -> Floats:
+    """Return bounds on the heights at which rays meet the bisectors of their base and points; infinite if they do not.
+
+    Coordinates are uncertain by `rounding`, which counts where a point is near the base or square to the ray.
+    """
     away = points - base
-    along = away.real * ray.real + away.imag * ray.imag
+    along = away.real * ray.real + away.imag * ray.imag - rounding
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(along > 0.0, (away.real**2 + away.imag**2) / (2.0 * along), np.inf)
 
 
 def _bisector_of_segment(
-    base: Complexes, ray: Complexes, start: Complexes, end: Complexes, least: float
+    base: Complexes, ray: Complexes, start: Complexes, end: Complexes, rounding: float
 ) -> Floats:
-    """Return the heights at which rays meet the bisectors of their base and segments; infinite where they do not.
+    """Return the same for segments.
 
-    Where the base is no farther than `least` from a segment's line, only its ends count: it may be the row's own.
+    Where the base is near a segment's line only its ends count: it may be the row's own.
     """
-    height = np.minimum(_bisector(base, ray, start), _bisector(base, ray, end))
+    height = np.minimum(_bisector(base, ray, start, rounding), _bisector(base, ray, end, rounding))
     chord = end - start
     away = base - start
     square = chord.real**2 + chord.imag**2
@@ -296,5 +301,5 @@ def _bisector_of_segment(
         growth = (chord.real * ray.imag - chord.imag * ray.real) / length * np.sign(distance)
         touching = np.abs(distance) / (1.0 - growth)
         foot = chord.real * (away.real + touching * ray.real) + chord.imag * (away.imag + touching * ray.imag)
-        inside = (foot >= 0.0) & (foot <= square) & (np.abs(distance) > least) & (growth < 1.0 - _SLACK)
+        inside = (foot >= 0.0) & (foot <= square) & (np.abs(distance) > rounding / _SLACK) & (growth < 1.0 - _SLACK)
     return np.where(inside, np.minimum(height, touching), height)

@@ -128,7 +128,7 @@ def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pi
             candidates = faces.get((tile, target, beyond), [])
             if flips:
                 image = image[::-1]
-            gaps = [_gap(image, other.vertex) for other in candidates]
+            gaps = [_gap(image, other.vertex, limit) for other in candidates]
             best = int(np.argmin(gaps)) if gaps else -1
             if best < 0 or gaps[best] > limit:
                 raise UnpairedEdgeError(edge)
@@ -136,15 +136,22 @@ def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pi
     return edges
 
 
-def _gap(one: Complexes, other: Complexes) -> float:
+def _gap(one: Complexes, other: Complexes, limit: float) -> float:
     """Return how far two lists of vertices are from being the same edge.
 
-    Where rounding has split a vertex on one side only, their ends and how far they run are compared.
+    Where they do not agree one by one, points at equal shares of their lengths are compared: rounding may split a vertex,
+    on one side only, into several.
     """
     if len(one) == len(other):
-        return float(np.abs(one - other).max())
-    ends = np.abs(one[[0, -1]] - other[[0, -1]]).max()
-    return float(max(ends, abs(np.abs(np.diff(one)).sum() - np.abs(np.diff(other)).sum())))
+        gap = float(np.abs(one - other).max())
+        if gap <= limit:
+            return gap
+    shares = np.linspace(0.0, 1.0, 9)
+    places = []
+    for vertex in (one, other):
+        run = np.append(0.0, np.cumsum(np.abs(np.diff(vertex))))
+        places.append(np.interp(shares * run[-1], run, vertex.real) + 1j * np.interp(shares * run[-1], run, vertex.imag))
+    return float(np.abs(places[0] - places[1]).max())
 
 
 def _cuts(boundary: Traced) -> list[list[int]]:
@@ -186,7 +193,7 @@ def _cut_further(
     waiting: list[tuple[int, int]] = []
     for tile, boundary in enumerate(traced):
         if pinched:
-            waiting += [(tile, arc) for arc in _pinches(boundary.vertex, _SAME * action.size)]
+            waiting += [(tile, arc) for arc in _pinches(boundary, _SAME * action.size)]
         waiting += [(tile, int(r[0])) for r, cut in zip(boundary.rings(), cuts[tile], strict=True) if not cut]
     done: set[tuple[int, int]] = set()
     while waiting:
@@ -217,14 +224,16 @@ def _at(boundary: Traced, point: Complexes, limit: float) -> list[int]:
     return np.flatnonzero(np.abs(boundary.vertex - point) <= limit).tolist()
 
 
-def _pinches(vertex: Complexes, limit: float) -> list[int]:
+def _pinches(boundary: Traced, limit: float) -> list[int]:
     """Return the vertices that another one coincides with."""
     from scipy.spatial import cKDTree
 
-    pairs = cKDTree(np.stack((vertex.real, vertex.imag), axis=1)).query_pairs(limit, output_type="ndarray")
+    tree = cKDTree(np.stack((boundary.vertex.real, boundary.vertex.imag), axis=1))
+    one, two = tree.query_pairs(limit, output_type="ndarray").T
     # Neighbours on the boundary may be as close without touching: a short arc lies between them.
-    apart = np.abs(pairs[:, 0] - pairs[:, 1]) > 1
-    return np.unique(pairs[apart]).tolist()
+    following = np.concatenate([np.roll(ring, -1) for ring in boundary.rings()])
+    apart = (following[one] != two) & (following[two] != one)
+    return np.unique(np.concatenate((one[apart], two[apart]))).tolist()
 
 
 def _edges(tile: int, boundary: Traced, ring: Ints, cut: list[int]) -> Iterator[Edge]:

@@ -16,7 +16,7 @@ from voronoi_tiles.vector.copies import IDENTITY, Action, Motion, compose, inver
 from voronoi_tiles.vector.edges import PAIRING, Corner, Edge, Traced
 
 # How near to a vertex the image of its counterpart must be, relative to the cell's size, where some have none.
-_COUNTERPART = 1e-9
+_COUNTERPART = 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,11 +138,26 @@ class _Builder:
         self._count += len(positions)
         return np.arange(self._count - len(positions), self._count)
 
-    def add_fixed(self, position: complex, stabilizer: tuple[Motion, ...]) -> int:
-        """Add a representative that these motions fix, put exactly where they do; return its index."""
+    def add_fixed(self, position: complex, stabilizer: tuple[Motion, ...], tangent: complex | None = None) -> int:
+        """Add a representative that these motions fix, put exactly where they do; return its index.
+
+        Onto a mirror it is moved along `tangent`, if one is given.
+        """
         here = np.array([position])
         images = [complex(self.action.apply(motion, here)[0]) for motion in stabilizer]
-        number = int(self.add(np.array([sum(images) / len(images)]))[0])
+        place = sum(images) / len(images)
+        if tangent is not None and len(stabilizer) == 2:
+            # A vertex on a mirror from which the site keeps little distance is known badly across the mirror, but is
+            # exactly on the other edge that ends there.
+            off = place - position
+            square = (tangent.conjugate() * off).real
+            if square != 0.0:
+                along = tangent * (abs(off) ** 2 / square)
+                if abs(along) <= 1e3 * abs(off):
+                    target = position + along
+                    mirrored = complex(self.action.apply(stabilizer[1], np.array([target]))[0])
+                    place = (target + mirrored) / 2
+        number = int(self.add(np.array([place]))[0])
         if len(stabilizer) > 1:
             self._stabilizer[number] = stabilizer
         return number
@@ -160,7 +175,7 @@ def share_edges(action: Action, traced: list[Traced], edges: list[Edge]) -> list
         edges: of these boundaries, paired, ring after ring.
     """
     builder = _Builder(action)
-    corners = _find_corners(builder, edges)
+    corners = _find_corners(builder, traced, edges)
     positions = builder.finish()
     sources: dict[int, tuple[Motion, bool, _Arcs]] = {}
     for edge in edges:
@@ -176,12 +191,17 @@ def share_edges(action: Action, traced: list[Traced], edges: list[Edge]) -> list
     return outlines
 
 
-def _find_corners(builder: _Builder, edges: list[Edge]) -> Corners:
+def _find_corners(builder: _Builder, traced: list[Traced], edges: list[Edge]) -> Corners:
     """Return all corners as images of representatives, and put those on rotation centres and mirrors there."""
+    on_mirror = {id(edge) for edge in edges for m, image, flips in edge.images if image is edge and m != IDENTITY and not flips}
+    tangents: dict[Corner, complex] = {}
     position: dict[Corner, complex] = {}
     related: defaultdict[Corner, list[tuple[Corner, Motion]]] = defaultdict(list)
     for edge in edges:
         position[edge.start] = complex(edge.vertex[0])
+        if id(edge) not in on_mirror:
+            tangents[edge.start] = _tangent(traced[edge.tile], edge, 0)
+            tangents.setdefault(edge.end, _tangent(traced[edge.tile], edge, -1))
         for motion, image, flips in edge.images:
             ends = (image.end, image.start) if flips else (image.start, image.end)
             for corner, other in zip((edge.start, edge.end), ends, strict=True):
@@ -203,9 +223,18 @@ def _find_corners(builder: _Builder, edges: list[Edge]) -> Corners:
                     stack.append(other)
                 elif reached[other] != there:
                     fixing.add(compose(inverse(reached[other]), there))
-        number = builder.add_fixed(where, _generated(fixing))
+        number = builder.add_fixed(where, _generated(fixing), tangents.get(first))
         found.update({corner: (number, motion) for corner, motion in reached.items()})
     return found
+
+
+def _tangent(boundary: Traced, edge: Edge, place: int) -> complex:
+    """Return the direction of an edge at its start (place 0) or end (place -1)."""
+    arc, (start, end) = edge.arcs[place], edge.vertex[[place, place + 1] if place == 0 else [-2, -1]]
+    if not boundary.curved[arc]:
+        return complex(end - start)
+    control = parabola_controls(*(np.array([z]) for z in (start, end, boundary.focus[arc])), boundary.directrix[[arc]])[0]
+    return complex(control - start if place == 0 else end - control)
 
 
 def _generated(motions: set[Motion]) -> tuple[Motion, ...]:
