@@ -67,7 +67,7 @@ types: $(INSTALLED_TYPES)
 	cd $(TYPES_VENV) && bin/mypy --config-file $(abspath pyproject.toml) --cache-dir cache -p voronoi_tiles
 
 bench: $(INSTALLED_DEV)
-	$(VENV)/bin/python bench/bench.py
+	$(VENV)/bin/python bench/engine.py
 
 fuzz: $(INSTALLED_DEV)
 	$(VENV)/bin/python tests/fuzz.py $(N)

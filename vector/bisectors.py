@@ -31,6 +31,10 @@ _TINY = 1e-6
 _SLACK = 1e-9
 
 
+class TouchingElementsError(ArithmeticError):
+    """A node of one copy lies on another copy."""
+
+
 @dataclass(frozen=True, slots=True)
 class Pieces:
     """Partial quadratics a (x - m)^2 + b (x - m) + c on [low, high].
@@ -125,6 +129,9 @@ def bisector_pieces(
         rows, contour: of the base site.
         targets: for each site its copies and the pairs to look at.
         bounds: of the rows; pieces above them are left out.
+
+    Raises:
+        TouchingElementsError: where a node lies, but for rounding, on an element of another copy.
     """
     parts: list[Pieces] = []
     straight = rows.straight
@@ -141,7 +148,9 @@ def bisector_pieces(
             chosen = np.flatnonzero(kind & corner)
             if len(chosen):
                 points = _straight_points if straight_rows else _round_points
-                parts.append(points(rows, contour, t, around, row[chosen], copy[chosen], items[chosen]))
+                parts.append(
+                    points(rows, contour, t, around, row[chosen], copy[chosen], items[chosen], bounds.rounding)
+                )
     pieces = Pieces(*(np.concatenate([getattr(part, name) for part in parts]) for name in Pieces.__slots__))
     kept = _below_bounds(rows, bounds, pieces)
     return pieces.take(kept[np.argsort(pieces.row[kept], kind="stable")])
@@ -248,17 +257,21 @@ def _straight_lines(
 
 
 def _straight_points(
-    rows: Rows, contour: Contour, t: int, around: Surroundings, row: Ints, copy: Ints, corner: Ints
+    rows: Rows, contour: Contour, t: int, around: Surroundings, row: Ints, copy: Ints, corner: Ints, rounding: float
 ) -> Pieces:
     """Bisectors of half-edges' rows with corners: h = ((s - p)^2 + q^2) / 2q where the wedge sees the row."""
     node = around.corner[corner]
     axis = rows.axis[row]
     p, q = _coordinates(axis, around.node.reshape(-1)[copy * around.node.shape[1] + node] - rows.origin[row])
-    valid = q > 0.0
+    edge = rows.half_edge[row]
     if around.own:
-        edge = rows.half_edge[row]
-        valid &= ~((copy == 0) & ((node == contour.source[edge]) | (node == contour.target[edge])))
-    v = np.flatnonzero(valid)
+        other = ~((copy == 0) & ((node == contour.source[edge]) | (node == contour.target[edge])))
+    else:
+        other = np.ones(len(row), bool)
+    on_line = np.flatnonzero(other & (np.abs(q) <= rounding))
+    if (np.abs(p[on_line] - contour.length[edge[on_line]] / 2) <= contour.length[edge[on_line]] / 2 + rounding).any():
+        raise TouchingElementsError
+    v = np.flatnonzero(other & (q > 0.0))
     row, copy, corner, p, q, axis = row[v], copy[v], corner[v], p[v], q[v], axis[v]
     place = copy * len(around.corner) + corner
     first = _tangent(*_coordinates(axis, around.arriving.reshape(-1)[place]), _INFINITE)
@@ -331,16 +344,18 @@ def _round_lines(
 
 
 def _round_points(
-    rows: Rows, contour: Contour, t: int, around: Surroundings, row: Ints, copy: Ints, corner: Ints
+    rows: Rows, contour: Contour, t: int, around: Surroundings, row: Ints, copy: Ints, corner: Ints, rounding: float
 ) -> Pieces:
     """Bisectors of corners' rows with corners: 1 / r = 2 cos / d."""
     node = around.corner[corner]
     away = around.node.reshape(-1)[copy * around.node.shape[1] + node] - rows.origin[row]
     square = away.real**2 + away.imag**2
-    valid = square > 0.0
+    other = np.ones(len(row), bool)
     if around.own:
-        valid &= ~((copy == 0) & (node == contour.corner_node[rows.corner[row]]))
-    v = np.flatnonzero(valid)
+        other = ~((copy == 0) & (node == contour.corner_node[rows.corner[row]]))
+    if (square[other] <= rounding**2).any():
+        raise TouchingElementsError
+    v = np.flatnonzero(other)
     row, copy, corner, away, square = row[v], copy[v], corner[v], away[v], square[v]
     axis = rows.axis[row]
     place = copy * len(around.corner) + corner

@@ -194,7 +194,7 @@ def _narrow(
         _bisector(rows.base1[row], rows.ray1[row], anchor, bounds.rounding),
     )
     _lower(bounds.by_point, row, height)
-    best = np.flatnonzero(height == bounds.by_point[row])
+    best = np.flatnonzero((height == bounds.by_point[row]) & (height < np.inf))
     bounds.champion[row[best]] = anchor[best]
     np.minimum(bounds.height, bounds.by_point, out=bounds.height)
     # Points bound rows badly that are long beside their height; segments do it well.

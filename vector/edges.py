@@ -28,6 +28,7 @@ class Traced:
         curved: (n,) whether the arc lies on a parabola; else on a line.
         focus: (n,) of the parabola.
         directrix: (n, 2) two points of its directrix.
+        nodes: (n, 2) the nodes between which an arc is the bisector, NaN where they are not two.
         copies: for each site, its copies around this tile.
     """
 
@@ -38,6 +39,7 @@ class Traced:
     curved: Bools
     focus: Complexes
     directrix: Complexes
+    nodes: Complexes
     copies: list[Copies]
 
     def take(self, index: Ints) -> Traced:

@@ -193,22 +193,22 @@ def share_edges(action: Action, traced: list[Traced], edges: list[Edge]) -> list
 
 def _find_corners(builder: _Builder, traced: list[Traced], edges: list[Edge]) -> Corners:
     """Return all corners as images of representatives, and put those on rotation centres and mirrors there."""
-    on_mirror = {id(edge) for edge in edges for m, image, flips in edge.images if image is edge and m != IDENTITY and not flips}
-    tangents: dict[Corner, complex] = {}
-    position: dict[Corner, complex] = {}
     related: defaultdict[Corner, list[tuple[Corner, Motion]]] = defaultdict(list)
+    ends: defaultdict[Corner, list[tuple[Edge, int]]] = defaultdict(list)
+    images: set[int] = set()
     for edge in edges:
-        position[edge.start] = complex(edge.vertex[0])
-        if id(edge) not in on_mirror:
-            tangents[edge.start] = _tangent(traced[edge.tile], edge, 0)
-            tangents.setdefault(edge.end, _tangent(traced[edge.tile], edge, -1))
+        ends[edge.start].append((edge, 0))
+        ends[edge.end].append((edge, -1))
         for motion, image, flips in edge.images:
-            ends = (image.end, image.start) if flips else (image.start, image.end)
-            for corner, other in zip((edge.start, edge.end), ends, strict=True):
+            if image is not edge and id(edge) not in images:
+                images.add(id(image))
+            there = (image.end, image.start) if flips else (image.start, image.end)
+            for corner, other in zip((edge.start, edge.end), there, strict=True):
                 related[corner].append((other, motion))
                 related[other].append((corner, inverse(motion)))
     found: Corners = {}
-    for first, where in position.items():
+    for edge in edges:
+        first = edge.start
         if first in found:
             continue
         reached = {first: IDENTITY}
@@ -217,15 +217,63 @@ def _find_corners(builder: _Builder, traced: list[Traced], edges: list[Edge]) ->
         while stack:
             corner = stack.pop()
             for other, motion in related[corner]:
-                there = compose(motion, reached[corner])
+                there_by = compose(motion, reached[corner])
                 if other not in reached:
-                    reached[other] = there
+                    reached[other] = there_by
                     stack.append(other)
-                elif reached[other] != there:
-                    fixing.add(compose(inverse(reached[other]), there))
-        number = builder.add_fixed(where, _generated(fixing), tangents.get(first))
+                elif reached[other] != there_by:
+                    fixing.add(compose(inverse(reached[other]), there_by))
+        where = complex(edge.vertex[0])
+        for corner, motion in reached.items():
+            sources = [(e, place) for e, place in ends[corner] if id(e) not in images]
+            where = _sharpened(builder.action, traced[corner[0]], where, motion, sources, ends[corner])
+        stabilizer = _generated(fixing)
+        number = builder.add_fixed(where, stabilizer, _across(traced, ends[first]))
         found.update({corner: (number, motion) for corner, motion in reached.items()})
     return found
+
+
+# Two nodes this near to each other, relative to a vertex's distance from them, determine it badly across their bisector.
+_NEAR = 1e-4
+
+
+def _sharpened(
+    action: Action,
+    boundary: Traced,
+    where: complex,
+    motion: Motion,
+    sources: list[tuple[Edge, int]],
+    ends: list[tuple[Edge, int]],
+) -> complex:
+    """Return a corner's representative, moved onto the bisector of two nodes that are near to each other.
+
+    Copies that nearly touch leave a corner uncertain across the bisector between them: by eps R^2 / d at a distance R
+    from nodes a distance d apart. Where the edge passes between these nodes this matters; along the other edge that
+    ends there the corner may be moved freely.
+    """
+    for edge, place in sources:
+        one, two = boundary.nodes[edge.arcs[place]].tolist()
+        here = complex(action.apply(motion, np.array([where]))[0])
+        gap = abs(two - one)
+        if not gap < _NEAR * abs(here - one):
+            continue
+        normal = (two - one) / gap
+        off = gap / 2 - (normal.conjugate() * (here - one)).real
+        tangents = [_tangent(boundary, e, p) for e, p in ends if e is not edge]
+        best = max(tangents, key=lambda t: abs((normal.conjugate() * t).real) / abs(t), default=0j)
+        across = (normal.conjugate() * best).real
+        if abs(across) > 1e-3 * abs(best):
+            moved = np.array([here + best * (off / across)])
+            where = complex(action.apply(inverse(motion), moved)[0])
+    return where
+
+
+def _across(traced: list[Traced], ends: list[tuple[Edge, int]]) -> complex | None:
+    """Return the direction of an edge at a corner, of one that does not lie on a mirror."""
+    for edge, place in ends:
+        if not any(image is edge and motion != IDENTITY and not flips for motion, image, flips in edge.images):
+            return _tangent(traced[edge.tile], edge, place)
+    return None
 
 
 def _tangent(boundary: Traced, edge: Edge, place: int) -> complex:

@@ -12,7 +12,7 @@ from voronoi_tiles.errors import ProofError
 from voronoi_tiles.site import Site
 from voronoi_tiles.tolerance import SAME_POINT
 from voronoi_tiles.vector.arcs import Neighbour
-from voronoi_tiles.vector.bisectors import surround
+from voronoi_tiles.vector.bisectors import TouchingElementsError, surround
 from voronoi_tiles.vector.candidates import build_hierarchy
 from voronoi_tiles.vector.cells import Parts, UnboundedCellError, bound_cells
 from voronoi_tiles.vector.contour import Complexes, Contour, Ints, trace_contour
@@ -149,7 +149,7 @@ def tessellate(sites: Sequence[Site], group: WallpaperGroup, lattice: Lattice) -
     try:
         found = [_trace(action, placed, tile) for tile in range(len(sites))]
         traced, edges = _pair(action, placed, [boundary for boundary, _ in found])
-    except (UnboundedCellError, OpenBoundaryError, UnpairedEdgeError) as error:
+    except (TouchingElementsError, UnboundedCellError, OpenBoundaryError, UnpairedEdgeError) as error:
         refuse_touching(action, names, placed)
         raise ProofError("the boundary of a tile does not close, though no copies touch; please report this design") from error
     if min(clearance for _, clearance in found) < _SUSPICIOUS * action.size:
@@ -197,6 +197,8 @@ def _curves(
     # What an arc's curve depends on: the segment or node on either side.
     node = np.where(round_here, contour.corner_node[rows.corner[row]], 0)
     here = np.where(round_here, len(contour.source) + node, rows.half_edge[row] >> 1)
+    nodes = np.full((len(part), 2), np.nan, complex)
+    nodes[:, 0] = rows.origin[row]
     point = np.zeros(len(part), complex)
     line = np.zeros((len(part), 2), complex)
     there = np.zeros(len(part), np.intp)
@@ -219,6 +221,7 @@ def _curves(
         images = move(other.nodes[corner_node], unit, shift, conj)
         only = ~round_here[corners]
         point[corners[only]] = images[is_corner][only]
+        nodes[corners[~only], 1] = images[is_corner][~only]
         if len(other.source):
             first = move(other.nodes[other.source[edge]], unit, shift, conj)[~is_corner]
             second = move(other.nodes[other.target[edge]], unit, shift, conj)[~is_corner]
@@ -230,7 +233,7 @@ def _curves(
     straight_distance = np.abs(away.real * normal.real + away.imag * normal.imag)
     clearance = float(np.where(round_here, np.abs(away), straight_distance).min())
     point[~curved], line[~curved] = 0, 0
-    traced = Traced(boundary.vertex, boundary.ring, target, copy, curved, point, line, copies)
+    traced = Traced(boundary.vertex, boundary.ring, target, copy, curved, point, line, nodes, copies)
     return _tidy(traced, np.stack((here, target, copy, there))), clearance
 
 
