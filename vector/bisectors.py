@@ -283,9 +283,7 @@ def _straight_points(
     return _pieces(rows, t, row, copy, 2 * around.segments + corner, low, high, quadratic, wraps)
 
 
-def _half_tangent(
-    direction: Complexes, axis: Complexes, vector: Complexes, square: Floats, infinite: float
-) -> Floats:
+def _half_tangent(direction: Complexes, axis: Complexes, vector: Complexes, square: Floats, infinite: float) -> Floats:
     """Return x of the ray on which a disc through 0 touches a line of this direction, from its left, at `vector`.
 
     `infinite` where that ray is exactly opposite to the axis.
@@ -388,8 +386,7 @@ def _below_bounds(rows: Rows, bounds: Bounds, pieces: Pieces) -> Ints:
     c = np.where(straight, q / 2.0, -2.0 * p / square)
     # A champion that is near is known to fewer digits.
     doubt = 4.0 * bounds.rounding / np.where(straight, q, np.sqrt(square))
-    kept = kept[_below(rows, pieces.take(kept), a, b, c, np.where(straight, p, 0.0), doubt)]
-    return kept
+    return np.asarray(kept[_below(rows, pieces.take(kept), a, b, c, np.where(straight, p, 0.0), doubt)])
 
 
 def _below(rows: Rows, pieces: Pieces, a0: Floats, b0: Floats, c0: Floats, m0: Floats, doubt: Floats) -> Ints:

@@ -21,7 +21,7 @@ _SLACK = 1e-9
 class Level:
     """Capsules of all copies that together hold all elements.
 
-    A capsule is all that is within a radius of a segment; it fits a piece of a smooth curve far better than a disc does.
+    A capsule is all that is within a radius of a segment; it fits a piece of a smooth curve far better than a disc.
 
     Attributes:
         start, end: (copies, k) the capsules' segments.
@@ -67,8 +67,8 @@ def build_hierarchy(contour: Contour, copies: Copies) -> Hierarchy:
         first = np.arange(0, len(order), size)
         from_, to, radius = _capsules(start, end, first)
         anchor = np.minimum(first + size // 2, len(order) - 1)
-        moved = (move(z, unit, shift, conj) for z in (from_, to))
-        levels.insert(0, Level(*moved, radius, starts[:, anchor], ends[:, anchor]))
+        from_, to = move(from_, unit, shift, conj), move(to, unit, shift, conj)
+        levels.insert(0, Level(from_, to, radius, starts[:, anchor], ends[:, anchor]))
         size *= _BRANCH
     return Hierarchy(tuple(levels), order)
 
@@ -135,13 +135,11 @@ class Bounds:
     champion: Complexes
 
 
-def find_candidates(
-    rows: Rows, targets: list[Hierarchy], covering_radius: float
-) -> tuple[list[Candidates], Bounds]:
+def find_candidates(rows: Rows, targets: list[Hierarchy], covering_radius: float) -> tuple[list[Candidates], Bounds]:
     """Return, for each target, a superset of the pairs in which the element shapes the row's cell.
 
-    An element matters only if, for some point of the row's cell, it meets the disc about that point that just reaches the
-    row's element. The row's bisector with a point z, its champion, bounds the cell. The discs about the points of
+    An element matters only if, for some point of the row's cell, it meets the disc about that point that just reaches
+    the row's element. The row's bisector with a point z, its champion, bounds the cell. The discs about the points of
     that bisector all pass through z; let h0 and h1 be the radii of those on the outermost rays, a distance w
     apart. By the powers of points with respect to these circles, every other one lies in the union of these two,
     their radii enlarged to sqrt(h^2 + w^2 / 4). For a corner's fan, w is 0.
@@ -181,9 +179,7 @@ def _children(row: Ints, copy: Ints, place: Ints, count: int) -> tuple[Ints, Int
     return row[exists], copy[exists], child[exists]
 
 
-def _narrow(
-    rows: Rows, row: Ints, copy: Ints, place: Ints, level: Level, bounds: Bounds
-) -> tuple[Ints, Ints, Ints]:
+def _narrow(rows: Rows, row: Ints, copy: Ints, place: Ints, level: Level, bounds: Bounds) -> tuple[Ints, Ints, Ints]:
     """Drop the pairs with capsules that cannot matter; tighten the bounds by their anchors."""
     kept = _in_reach(rows, row, copy * len(level.radius) + place, level.radius[place], level, bounds)
     row, copy, place = row[kept], copy[kept], place[kept]
@@ -257,9 +253,7 @@ def _frame(origin: Complexes, ray: Complexes, points: Complexes) -> tuple[Floats
     return away.real * ray.imag - away.imag * ray.real, away.real * ray.real + away.imag * ray.imag
 
 
-def _enters_box(
-    x0: Floats, y0: Floats, x1: Floats, y1: Floats, width: Floats, low: Floats, high: Floats
-) -> Bools:
+def _enters_box(x0: Floats, y0: Floats, x1: Floats, y1: Floats, width: Floats, low: Floats, high: Floats) -> Bools:
     """Tell which segments enter the boxes |x| <= width, low <= y <= high (Liang and Barsky)."""
     enter, leave = np.zeros(len(x0)), np.ones(len(x0))
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -283,9 +277,7 @@ def _bisector(base: Complexes, ray: Complexes, points: Complexes, rounding: floa
         return np.where(along > 0.0, (away.real**2 + away.imag**2) / (2.0 * along), np.inf)
 
 
-def _bisector_of_segment(
-    base: Complexes, ray: Complexes, start: Complexes, end: Complexes, rounding: float
-) -> Floats:
+def _bisector_of_segment(base: Complexes, ray: Complexes, start: Complexes, end: Complexes, rounding: float) -> Floats:
     """Return the same for segments.
 
     Where the base is near a segment's line only its ends count: it may be the row's own.

@@ -77,9 +77,7 @@ def _locate(rows: Rows, pieces: Pieces, row: Ints, start: Floats, end: Floats, p
     # the point by no more than itself.
     inner = np.flatnonzero(row[1:] == row[:-1])
     at_start, at_end = piece.copy(), piece.copy()
-    flatter = np.abs(pieces.slope(piece[inner], end[inner])) <= np.abs(
-        pieces.slope(piece[inner + 1], end[inner])
-    )
+    flatter = np.abs(pieces.slope(piece[inner], end[inner])) <= np.abs(pieces.slope(piece[inner + 1], end[inner]))
     at_end[inner] = np.where(flatter, piece[inner], piece[inner + 1])
     at_start[inner + 1] = at_end[inner]
     value = pieces.value(at_start, start)

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from voronoi_tiles.tolerance import SAME_POINT
-from voronoi_tiles.vector.contour import Bools, Complexes, Floats, Ints
+from voronoi_tiles.vector.contour import Bools, Complexes, Ints
 from voronoi_tiles.wallpaper import Lattice, Operation, WallpaperGroup
 
 Motion = tuple[int, int, int, int, int, int]
@@ -40,9 +40,13 @@ def reverses_orientation(motion: Motion) -> bool:
 
 
 def to_motion(operation: Operation) -> Motion:
-    """Return an operation as a motion; its translation must consist of halves, as in all plane groups."""
+    """Return an operation as a motion.
+
+    Raises ValueError where its translation does not consist of halves, as in all plane groups it does.
+    """
     x, y = (2 * part for part in operation.translation)
-    assert x.denominator == 1 and y.denominator == 1
+    if x.denominator != 1 or y.denominator != 1:
+        raise ValueError(f"{operation} is an operation of no wallpaper group")
     return (*operation.linear, x.numerator, y.numerator)
 
 
@@ -158,11 +162,11 @@ class Placed:
         """Return the motion that names the copy onto which `motion` takes the site."""
         if len(self.stabilizer) == 1:
             return motion
-        cosets = {_modulo_lattice(m) for m in self.representatives}
-        return next(m for m in (compose(motion, s) for s in self.stabilizer) if _modulo_lattice(m) in cosets)
+        cosets = {modulo_lattice(m) for m in self.representatives}
+        return next(m for m in (compose(motion, s) for s in self.stabilizer) if modulo_lattice(m) in cosets)
 
 
-def _modulo_lattice(motion: Motion) -> Motion:
+def modulo_lattice(motion: Motion) -> Motion:
     """Return the one of a motion's lattice translates that stands for all."""
     return (*motion[:4], motion[4] % 2, motion[5] % 2)
 
@@ -181,9 +185,9 @@ def place(action: Action, nodes: Complexes, segments: Ints) -> Placed:
     representatives: list[Motion] = []
     covered: set[Motion] = set()
     for motion in action.motions:
-        if _modulo_lattice(motion) not in covered:
+        if modulo_lattice(motion) not in covered:
             representatives.append(motion)
-            covered |= {_modulo_lattice(compose(motion, element)) for element in stabilizer}
+            covered |= {modulo_lattice(compose(motion, element)) for element in stabilizer}
     return Placed(
         nodes=nodes,
         segments=segments,

@@ -1,7 +1,7 @@
 """Edges of the tiling: maximal runs of arcs between two tiles, and the orbits that they form.
 
-Seen from the tile beyond, an edge is the image of an edge of some base tile. One edge of each orbit is computed, and the
-others are its images.
+Seen from the tile beyond, an edge is the image of an edge of some base tile. One edge of each orbit is computed, and
+the others are its images.
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ class Traced:
 
     def take(self, index: Ints) -> Traced:
         """Return the boundary with these arcs only, each ending where the next one starts."""
-        arrays = (getattr(self, name)[index] for name in self.__slots__[:-1])
-        return Traced(*arrays, copies=self.copies)
+        arrays = {name: getattr(self, name)[index] for name in self.__slots__ if name != "copies"}
+        return Traced(**arrays, copies=self.copies)
 
     def rings(self) -> list[Ints]:
         """Return the indices of each ring's arcs."""
@@ -141,8 +141,8 @@ def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pi
 def _gap(one: Complexes, other: Complexes, limit: float) -> float:
     """Return how far two lists of vertices are from being the same edge.
 
-    Where they do not agree one by one, points at equal shares of their lengths are compared: rounding may split a vertex,
-    on one side only, into several.
+    Where they do not agree one by one, points at equal shares of their lengths are compared: rounding may split a
+    vertex, on one side only, into several.
     """
     if len(one) == len(other):
         gap = float(np.abs(one - other).max())
@@ -152,7 +152,9 @@ def _gap(one: Complexes, other: Complexes, limit: float) -> float:
     places = []
     for vertex in (one, other):
         run = np.append(0.0, np.cumsum(np.abs(np.diff(vertex))))
-        places.append(np.interp(shares * run[-1], run, vertex.real) + 1j * np.interp(shares * run[-1], run, vertex.imag))
+        places.append(
+            np.interp(shares * run[-1], run, vertex.real) + 1j * np.interp(shares * run[-1], run, vertex.imag)
+        )
     return float(np.abs(places[0] - places[1]).max())
 
 
@@ -189,7 +191,8 @@ def _cut_further(
 ) -> None:
     """Cut rings at more vertices, and at all images of these, in place.
 
-    They are one vertex of each ring that faces one copy only and, where `pinched`, those where a boundary touches itself.
+    They are one vertex of each ring that faces one copy only and, where `pinched`, those where a boundary touches
+    itself.
     """
     # A vertex is where its arc starts; what it is mapped to depends on the copies beyond the arcs on either side.
     waiting: list[tuple[int, int]] = []
@@ -223,7 +226,7 @@ def _cut_further(
 
 def _at(boundary: Traced, point: Complexes, limit: float) -> list[int]:
     """Return the arcs that start at a point."""
-    return np.flatnonzero(np.abs(boundary.vertex - point) <= limit).tolist()
+    return [int(arc) for arc in np.flatnonzero(np.abs(boundary.vertex - point) <= limit)]
 
 
 def _pinches(boundary: Traced, limit: float) -> list[int]:
@@ -235,7 +238,7 @@ def _pinches(boundary: Traced, limit: float) -> list[int]:
     # Neighbours on the boundary may be as close without touching: a short arc lies between them.
     following = np.concatenate([np.roll(ring, -1) for ring in boundary.rings()])
     apart = (following[one] != two) & (following[two] != one)
-    return np.unique(np.concatenate((one[apart], two[apart]))).tolist()
+    return [int(vertex) for vertex in np.unique(np.concatenate((one[apart], two[apart])))]
 
 
 def _edges(tile: int, boundary: Traced, ring: Ints, cut: list[int]) -> Iterator[Edge]:

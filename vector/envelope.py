@@ -13,8 +13,8 @@ NOTHING = -1
 def lower_envelope(pieces: Pieces, low: Floats, high: Floats) -> tuple[Ints, Floats, Floats, Ints]:
     """Return the lower envelope of each row's pieces.
 
-    By divide and conquer: each piece is an envelope of its own, and neighbouring envelopes are merged in pairs, all rows
-    at once, until each row has one. In a merge every interval between break points has one function from either
+    By divide and conquer: each piece is an envelope of its own, and neighbouring envelopes are merged in pairs, all
+    rows at once, until each row has one. In a merge every interval between break points has one function from either
     side; their crossings cut it into at most three parts, and the middle of each part decides. No tolerance
     takes part; equal functions count as their first.
 

@@ -1,9 +1,9 @@
 """The proof that a result is right: figures computed from the finished outlines, not from the engine's steps.
 
-Equidistance and emptiness show that every edge lies on the boundary of the true tile. So each connected part of the true
-tile is either inside its outline or outside, and as it holds a stroke of the site, and all strokes are inside, it is
-inside; the outline can only be too large, and the area identity says that it is not. Closure, crossings and the bit-for-bit
-agreement of shared edges show that what is cut is that outline. Distances come from shapely.
+Equidistance and emptiness show that every edge lies on the boundary of the true tile. So each connected part of the
+true tile is either inside its outline or outside, and as it holds a stroke of the site, and all strokes are inside, it
+is inside; the outline can only be too large, and the area identity says that it is not. Closure, crossings and the
+bit-for-bit agreement of shared edges show that what is cut is that outline. Distances come from shapely.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import fsum
+
 import numpy as np
 import numpy.typing as npt
 
@@ -24,6 +25,8 @@ from voronoi_tiles.wallpaper import Lattice, Operation, WallpaperGroup
 _PARAMETERS = (0.0, 0.25, 0.5, 0.75)
 # Twice the root of the rounding unit, times a few for constants; relative to the cell's longer side.
 _UNDECIDED = 1e-7
+# Up to this many nodes, asking for each is quicker than finding out which hang together.
+_FEW = 256
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +123,7 @@ class _Site:
         square = chord.real**2 + chord.imag**2
         along = away.real * chord.real + away.imag * chord.imag
         foot = np.clip(along / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
-        return np.abs(away - foot * chord)
+        return np.asarray(np.abs(away - foot * chord))
 
 
 def _distances(group: WallpaperGroup, lattice: Lattice, tiles: Sequence[LocalTile]) -> tuple[float, float]:
@@ -157,8 +160,8 @@ def _nearest_translate(
     away = points - centre
     first = np.round((away.real * q.imag - away.imag * q.real) / det)
     second = np.round((p.real * away.imag - p.imag * away.real) / det)
-    # The copy with the nearest point has that point within the lattice's Voronoi cell about the sample, and its centre a
-    # radius from there: in coordinates of a reduced basis, less than 1 and this much from the sample's.
+    # The copy with the nearest point has that point within the lattice's Voronoi cell about the sample, and its
+    # centre a radius from there: in coordinates of a reduced basis, less than 1 and this much from the sample's.
     m, n = (int(np.ceil(1.5 + site.radius * abs(v) / det)) for v in (q, p))
     result = enough.copy()
     for i in range(-m, m + 1):
@@ -246,7 +249,7 @@ def _crossing(outline: Outline, first: _Piece, second: _Piece, limit: float) -> 
     where = shapely.centroid(common[meeting])
     point = shapely.get_x(where) + 1j * shapely.get_y(where)
     ends = np.stack((a, b, c, d))[:, meeting]
-    return meeting[np.abs(ends - point).min(axis=0) > limit]
+    return np.asarray(meeting[np.abs(ends - point).min(axis=0) > limit])
 
 
 def _lines(start: Complexes, end: Complexes) -> npt.NDArray[np.object_]:
@@ -271,18 +274,20 @@ def _at(outline: Outline, arc: Ints, t: Floats) -> Complexes:
 def _strayed(tile: LocalTile, size: float) -> int:
     """Count the connected parts of a site around which the outline of its tile does not run exactly once.
 
-    A part meets no edge, so one of its nodes stands for all. Where copies are a distance d apart, the edge between them is
-    known to eps R^2 / d at a distance R: a node nearer to an outline than the root of eps times the cell cannot be told
-    to be on either side, and is passed over.
+    A part meets no edge, so one of its nodes stands for all. Where copies are a distance d apart, the edge between
+    them is known to eps R^2 / d at a distance R: a node nearer to an outline than the root of eps times the cell
+    cannot be told to be on either side, and is passed over.
     """
     import shapely
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
 
-    count = len(tile.nodes)
-    joined = coo_array((np.ones(len(tile.segments)), tuple(tile.segments.T)), shape=(count, count))
-    _, label = connected_components(joined, directed=False)
-    nodes = tile.nodes[np.unique(label, return_index=True)[1]]
+    nodes = tile.nodes
+    if len(nodes) > _FEW:
+        from scipy.sparse import coo_array
+        from scipy.sparse.csgraph import connected_components
+
+        shape = (len(nodes), len(nodes))
+        joined = coo_array((np.ones(len(tile.segments)), tuple(tile.segments.T)), shape=shape)
+        nodes = nodes[np.unique(connected_components(joined, directed=False)[1], return_index=True)[1]]
     outside = np.array([node for node in nodes.tolist() if winding_number(tile.outline, node) != 1], complex)
     if not len(outside):
         return 0

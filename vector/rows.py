@@ -20,7 +20,8 @@ class Rows:
 
     The rays of a half-edge's rows are parallel: the point at x and height h is origin + (x + i h) axis, with the
     half-edge's direction as axis. Those of a corner's rows fan out over its wedge: the point at x and distance r is
-    origin + r axis (1 + i x)^2 / (1 + x^2), with the wedge's middle as axis; x is the tangent of half the angle from it.
+    origin + r axis (1 + i x)^2 / (1 + x^2), with the wedge's middle as axis; x is the tangent of half the angle
+    from it.
 
     Attributes:
         half_edge: (rows,) index of the half-edge, or -1.
@@ -65,7 +66,11 @@ def make_rows(contour: Contour, covering_radius: float) -> Rows:
     Long half-edges and wide corners have several rows, by ascending x.
     """
     edge, part, parts = _divide(contour.length / (_LONGEST_PART * covering_radius))
-    start, end, along = contour.nodes[contour.source[edge]], contour.nodes[contour.target[edge]], contour.direction[edge]
+    start, end, along = (
+        contour.nodes[contour.source[edge]],
+        contour.nodes[contour.target[edge]],
+        contour.direction[edge],
+    )
     low, high = contour.length[edge] * (part / parts), contour.length[edge] * ((part + 1) / parts)
     normal = 1j * along
     convex = np.flatnonzero(contour.convex)
@@ -98,7 +103,7 @@ def make_rows(contour: Contour, covering_radius: float) -> Rows:
 
 
 def _divide(size: Floats) -> tuple[Ints, Ints, Floats]:
-    """Divide things of these sizes into parts of size at most 1; return (thing, number of the part, number of parts)."""
+    """Divide things of these sizes into parts of size at most 1; return (thing, part's number, parts' count)."""
     parts = np.maximum(np.ceil(size), 1.0)
     thing = np.repeat(np.arange(len(size)), parts.astype(np.intp))
     part = np.arange(len(thing)) - (np.cumsum(parts) - parts)[thing]

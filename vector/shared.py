@@ -120,7 +120,8 @@ class _Arcs:
 
     def reversed(self) -> _Arcs:
         """Return the same edge run through from its end."""
-        return _Arcs(*(getattr(self, name)[::-1] for name in self.__slots__[:-1]), motions=self.motions)
+        arrays = {name: getattr(self, name)[::-1] for name in self.__slots__ if name != "motions"}
+        return _Arcs(**arrays, motions=self.motions)
 
 
 class _Builder:
@@ -233,7 +234,7 @@ def _find_corners(builder: _Builder, traced: list[Traced], edges: list[Edge]) ->
     return found
 
 
-# Two nodes this near to each other, relative to a vertex's distance from them, determine it badly across their bisector.
+# Nodes this near to each other, relative to a vertex's distance, determine it badly across their bisector.
 _NEAR = 1e-4
 
 
@@ -281,7 +282,8 @@ def _tangent(boundary: Traced, edge: Edge, place: int) -> complex:
     arc, (start, end) = edge.arcs[place], edge.vertex[[place, place + 1] if place == 0 else [-2, -1]]
     if not boundary.curved[arc]:
         return complex(end - start)
-    control = parabola_controls(*(np.array([z]) for z in (start, end, boundary.focus[arc])), boundary.directrix[[arc]])[0]
+    this = edge.arcs[[place]]
+    control = parabola_controls(np.array([start]), np.array([end]), boundary.focus[this], boundary.directrix[this])[0]
     return complex(control - start if place == 0 else end - control)
 
 
@@ -301,9 +303,7 @@ def _generated(motions: set[Motion]) -> tuple[Motion, ...]:
     return tuple(sorted(group))
 
 
-def _represent(
-    builder: _Builder, positions: Representatives, boundary: Traced, edge: Edge, corners: Corners
-) -> _Arcs:
+def _represent(builder: _Builder, positions: Representatives, boundary: Traced, edge: Edge, corners: Corners) -> _Arcs:
     """Return the arcs of an edge that stands for its orbit, symmetric under the motions that map it onto itself."""
     action = builder.action
     selfmaps = [(motion, flips) for motion, image, flips in edge.images if image is edge and motion != IDENTITY]

@@ -24,6 +24,7 @@ from voronoi_tiles.vector.copies import (
     Placed,
     compose,
     copies_near,
+    modulo_lattice,
     move,
     place,
     reverses_orientation,
@@ -64,9 +65,19 @@ class TileRecord:
     def copy(self, operation: Operation) -> Outline:
         """Return the outline of the copy of this tile onto which an operation of the group takes it.
 
-        Where two copies share an edge, its points are the same in both, bit for bit.
+        Where two copies share an edge, its points are the same in both, bit for bit. Raises ValueError where the group
+        has no such operation.
         """
-        return self._tessellation.outline(self._index, to_motion(operation))
+        motion = to_motion(operation)
+        group = self._tessellation.action
+        if modulo_lattice(motion) not in {modulo_lattice(known) for known in group.motions}:
+            raise ValueError(f"{operation} is no operation of the group {group.group.name}")
+        return self._tessellation.outline(self._index, motion)
+
+    def refuse_touching(self) -> None:
+        """Raise TouchingCopiesError if any copies touch."""
+        tessellation = self._tessellation
+        refuse_touching(tessellation.action, tessellation.names, tessellation.placed)
 
     def local(self) -> LocalTile:
         """Return the tile of the site moved by the lattice to near the origin, where rounding is least."""
@@ -151,7 +162,9 @@ def tessellate(sites: Sequence[Site], group: WallpaperGroup, lattice: Lattice) -
         traced, edges = _pair(action, placed, [boundary for boundary, _ in found])
     except (TouchingElementsError, UnboundedCellError, OpenBoundaryError, UnpairedEdgeError) as error:
         refuse_touching(action, names, placed)
-        raise ProofError("the boundary of a tile does not close, though no copies touch; please report this design") from error
+        raise ProofError(
+            "the boundary of a tile does not close, though no copies touch; please report this design"
+        ) from error
     if min(clearance for _, clearance in found) < _SUSPICIOUS * action.size:
         refuse_touching(action, names, placed)
     shared = share_edges(action, traced, edges)
@@ -312,9 +325,3 @@ def _outline(action: Action, shared: SharedOutline, motion: Motion, neighbours: 
         neighbours=tuple(neighbours),
         ring_offsets=offsets,
     )
-
-
-def explain_failure(records: Sequence[TileRecord]) -> None:
-    """Raise TouchingCopiesError if that is why a result failed its proof; else return."""
-    tessellation = records[0]._tessellation
-    refuse_touching(tessellation.action, tessellation.names, tessellation.placed)

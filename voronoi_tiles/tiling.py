@@ -191,13 +191,12 @@ def tessellate(design: Design) -> Tiling:
     Raises TouchingCopiesError where two copies touch, ProofError where the result fails its proof.
     """
     from voronoi_tiles.vector.proof import prove
-    from voronoi_tiles.vector.tessellation import explain_failure
     from voronoi_tiles.vector.tessellation import tessellate as tessellate_sites
 
     records = tessellate_sites(design.sites, design.group, design.lattice)
     proof = prove(design.group, design.lattice, records)
     if not proof.passed:
-        explain_failure(records)
+        records[0].refuse_touching()
         raise ProofError("the result failed its proof: " + "; ".join(proof.failures), proof)
     tiles = tuple(
         Tile(site, record.outline, design.group.order // len(record.symmetry), record.symmetry, record)
