@@ -124,8 +124,24 @@ class Action:
         its place in the array, and the same point must have the same bits from wherever it is reached.
         """
         unit, conj = self.linear[motion[:4]]
-        shift = self.cartesian(motion[4] / 2, motion[5] / 2)
-        return move(z, np.asarray(unit), shift, np.asarray(conj))
+        shift = self._shift(motion)
+        x, y = z.real, (-z.imag if conj else z.imag)
+        result = np.empty(z.shape, complex)
+        result.real = unit.real * x - unit.imag * y + shift.real
+        result.imag = unit.imag * x + unit.real * y + shift.imag
+        return result
+
+    def apply_to_point(self, motion: Motion, z: complex) -> complex:
+        """Return the image of one point: the same bits as `apply` gives, without an array's overhead."""
+        unit, conj = self.linear[motion[:4]]
+        shift = self._shift(motion)
+        x, y = z.real, (-z.imag if conj else z.imag)
+        return complex(unit.real * x - unit.imag * y + shift.real, unit.imag * x + unit.real * y + shift.imag)
+
+    def _shift(self, motion: Motion) -> complex:
+        """Return the translation of a motion."""
+        s, t, a, b = motion[4] / 2, motion[5] / 2, self.lattice.a, self.lattice.b
+        return complex(s * a.real + t * b.real, s * a.imag + t * b.imag)
 
 
 def move(z: Complexes, unit: Complexes, shift: Complexes, conj: Bools) -> Complexes:
@@ -216,12 +232,12 @@ def _stabilizer(action: Action, nodes: Complexes, segments: Ints) -> tuple[Motio
     close = SAME_POINT * max(action.size, extent)
     found = [IDENTITY]
     for motion in action.motions[1:]:
-        image = complex(action.apply(motion, np.asarray(centroid)))
+        image = action.apply_to_point(motion, centroid)
         x, y = action.fractional(centroid - image)
         candidate = (*motion[:4], motion[4] + 2 * round(x), motion[5] + 2 * round(y))
         if candidate[:4] == IDENTITY[:4]:
             continue  # a pure translation, from the centring
-        if abs(complex(action.apply(candidate, np.asarray(centroid))) - centroid) <= close and _maps_onto_itself(
+        if abs(action.apply_to_point(candidate, centroid) - centroid) <= close and _maps_onto_itself(
             action.apply(candidate, nodes), nodes, segments, close
         ):
             found.append(candidate)

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 from collections import defaultdict
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
-from voronoi_tiles.vector.contour import Complexes, Ints
+from voronoi_tiles.vector.contour import Bools, Complexes, Ints
 from voronoi_tiles.vector.copies import IDENTITY, Action, Motion, compose, inverse
 from voronoi_tiles.vector.edges import PAIRING, Corner, Edge, Traced
 
@@ -56,19 +57,24 @@ class Representatives:
     position: Complexes
     stabilizer: dict[int, tuple[Motion, ...]]
 
+    @cached_property
+    def _special(self) -> Bools:
+        """(m,) whether a representative has a stabilizer."""
+        special = np.zeros(len(self.position), bool)
+        special[list(self.stabilizer)] = True
+        return special
+
     def locate(self, points: Points) -> Complexes:
         """Return the positions of images of representatives."""
         result = np.empty(len(points.index), complex)
         for number, motion in enumerate(points.motions):
             chosen = points.motion == number
             result[chosen] = self.action.apply(motion, self.position[points.index[chosen]])
-        if self.stabilizer:
-            special = np.isin(points.index, list(self.stabilizer))
-            for k in np.flatnonzero(special).tolist():
-                point = int(points.index[k])
-                # Several motions lead to this point: the first in a fixed order stands for all.
-                motion = min(compose(points.motions[points.motion[k]], s) for s in self.stabilizer[point])
-                result[k] = self.action.apply(motion, self.position[point : point + 1])[0]
+        for k in np.flatnonzero(self._special[points.index]).tolist():
+            point = int(points.index[k])
+            # Several motions lead to this point: the first in a fixed order stands for all.
+            motion = min(compose(points.motions[points.motion[k]], s) for s in self.stabilizer[point])
+            result[k] = self.action.apply_to_point(motion, complex(self.position[point]))
         return result
 
 
@@ -144,8 +150,7 @@ class _Builder:
 
         Onto a mirror it is moved along `tangent`, if one is given.
         """
-        here = np.array([position])
-        images = [complex(self.action.apply(motion, here)[0]) for motion in stabilizer]
+        images = [self.action.apply_to_point(motion, position) for motion in stabilizer]
         place = sum(images) / len(images)
         if tangent is not None and len(stabilizer) == 2:
             # A vertex on a mirror from which the site keeps little distance is known badly across the mirror, but is
@@ -156,7 +161,7 @@ class _Builder:
                 along = tangent * (abs(off) ** 2 / square)
                 if abs(along) <= 1e3 * abs(off):
                     target = position + along
-                    mirrored = complex(self.action.apply(stabilizer[1], np.array([target]))[0])
+                    mirrored = self.action.apply_to_point(stabilizer[1], target)
                     place = (target + mirrored) / 2
         number = int(self.add(np.array([place]))[0])
         if len(stabilizer) > 1:
@@ -254,7 +259,7 @@ def _sharpened(
     """
     for edge, place in sources:
         one, two = boundary.nodes[edge.arcs[place]].tolist()
-        here = complex(action.apply(motion, np.array([where]))[0])
+        here = action.apply_to_point(motion, where)
         gap = abs(two - one)
         if not gap < _NEAR * abs(here - one):
             continue
@@ -264,8 +269,7 @@ def _sharpened(
         best = max(tangents, key=lambda t: abs((normal.conjugate() * t).real) / abs(t), default=0j)
         across = (normal.conjugate() * best).real
         if abs(across) > 1e-3 * abs(best):
-            moved = np.array([here + best * (off / across)])
-            where = complex(action.apply(inverse(motion), moved)[0])
+            where = action.apply_to_point(inverse(motion), here + best * (off / across))
     return where
 
 
