@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from voronoi_tiles.tolerance import EPSILON
 from voronoi_tiles.vector.bisectors import Pieces, Surroundings, bisector_pieces
 from voronoi_tiles.vector.candidates import Hierarchy, find_candidates
 from voronoi_tiles.vector.contour import Complexes, Contour, Floats, Ints
@@ -69,8 +70,15 @@ def bound_cells(
 
 def _locate(rows: Rows, pieces: Pieces, row: Ints, start: Floats, end: Floats, piece: Ints) -> Parts:
     """Return an envelope's parts with their ends in the plane."""
-    kept = np.flatnonzero(end > start)
+    # Where three functions meet, rounding may leave one of them an interval of an ulp: a break would be located by it.
+    null = 4.0 * EPSILON * np.maximum(np.abs(rows.low), np.abs(rows.high))
+    kept = np.flatnonzero(end - start > null[row])
     row, start, end, piece = row[kept], start[kept], end[kept], piece[kept]
+    first = np.append(True, row[1:] != row[:-1])
+    start[first] = rows.low[row[first]]
+    end[:-1] = np.where(first[1:], end[:-1], start[1:])
+    last = np.append(first[1:], True)
+    end[last] = rows.high[row[last]]
     if len(np.unique(row)) < len(rows) or (piece < 0).any():
         raise UnboundedCellError
     # Each break is located once, with the flatter of the two functions that meet there: an error in x then moves
@@ -84,7 +92,6 @@ def _locate(rows: Rows, pieces: Pieces, row: Ints, start: Floats, end: Floats, p
     begin = _point(rows, row, start, value)
     finish = np.empty(len(row), complex)
     finish[inner] = begin[inner + 1]
-    last = np.append(row[1:] != row[:-1], True)
     finish[last] = _point(rows, row[last], end[last], pieces.value(piece[last], end[last]))
     return Parts(row, pieces.target[piece], pieces.copy[piece], pieces.item[piece], begin, finish)
 
