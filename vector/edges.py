@@ -138,6 +138,16 @@ def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pi
     return edges
 
 
+def long_edges(boundary: Traced, limit: float) -> Ints:
+    """Return the arcs of the edges that extend farther than a limit; all, where no other would be left of a ring."""
+    kept = []
+    for ring, cut in zip(boundary.rings(), _cuts(boundary), strict=True):
+        edges = list(_edges(0, boundary, ring, cut or [0]))
+        long = [e.arcs for e in edges if len(cut) < 2 or np.abs(e.vertex - e.vertex[0]).max() > limit]
+        kept.append(np.sort(np.concatenate(long)) if long else ring)
+    return np.concatenate(kept)
+
+
 def _gap(one: Complexes, other: Complexes, limit: float) -> float:
     """Return how far two lists of vertices are from being the same edge.
 

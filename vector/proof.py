@@ -309,8 +309,11 @@ def winding_number(outline: Outline, point: complex) -> int:
     s, t, r = _cross(control, end), -across, _cross(start, control)
     sign = np.sign(s + t + r)
     s, t, r = s * sign, t * sign, r * sign
-    between = outline.curved & (s > 0.0) & (t > 0.0) & (r > 0.0) & (t * t < 4.0 * s * r)
-    turn -= 2.0 * np.pi * np.sign(across) * between
+    between = outline.curved & (s > 0.0) & (t >= 0.0) & (r > 0.0) & (t * t < 4.0 * s * r)
+    # On the chord itself: as if a little to the side of the curve.
+    on_chord = between & (t == 0.0)
+    turn[on_chord] = -np.pi * sign[on_chord]
+    turn += 2.0 * np.pi * sign * between
     return round(float(turn.sum()) / (2.0 * np.pi))
 
 

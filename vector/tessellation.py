@@ -32,7 +32,7 @@ from voronoi_tiles.vector.copies import (
     to_operation,
     translation,
 )
-from voronoi_tiles.vector.edges import Edge, Traced, UnpairedEdgeError, pair_edges
+from voronoi_tiles.vector.edges import Edge, Traced, UnpairedEdgeError, long_edges, pair_edges
 from voronoi_tiles.vector.outline import Outline
 from voronoi_tiles.vector.rows import Rows, make_rows
 from voronoi_tiles.vector.shared import SharedOutline, parabola_controls, share_edges
@@ -147,8 +147,15 @@ class Tessellation:
         return replace(outline, neighbours=neighbours)
 
 
-def tessellate(sites: Sequence[Site], group: WallpaperGroup, lattice: Lattice) -> list[TileRecord]:
+def tessellate(
+    sites: Sequence[Site], group: WallpaperGroup, lattice: Lattice, *, without_short: bool = False
+) -> list[TileRecord]:
     """Return the tile of each site: all that is nearer to it than to any other copy of any site.
+
+    Args:
+        sites, group, lattice: of a design.
+        without_short: leave out edges that are so short that rounding may have made them. Beside copies that nearly
+            touch, two neighbours may take turns along an edge by rounding alone; a proof tells.
 
     Raises:
         TouchingCopiesError: where two copies touch or cross.
@@ -159,7 +166,7 @@ def tessellate(sites: Sequence[Site], group: WallpaperGroup, lattice: Lattice) -
     names = tuple(site.name for site in sites)
     try:
         found = [_trace(action, placed, tile) for tile in range(len(sites))]
-        traced, edges = _pair(action, placed, [boundary for boundary, _ in found])
+        traced, edges = _pair(action, placed, [boundary for boundary, _ in found], without_short=without_short)
     except (TouchingElementsError, UnboundedCellError, OpenBoundaryError, UnpairedEdgeError) as error:
         refuse_touching(action, names, placed)
         raise ProofError(
@@ -195,7 +202,8 @@ def _trace(action: Action, placed: list[Placed], tile: int) -> tuple[Traced, flo
     ]
     parts = bound_cells(rows, contour, targets, action.covering_radius)
     inner = (parts.target == tile) & (parts.copy == 0)
-    boundary = trace_boundary(rows, contour, parts, inner, SAME_POINT * action.size)
+    # Beside the shorter side of the cell: an edge as long as the longer side may turn about what is left out.
+    boundary = trace_boundary(rows, contour, parts, inner, SAME_POINT * abs(action.lattice.reduced_basis[0]))
     return _curves(rows, contours, tile, parts, boundary, copies)
 
 
@@ -274,8 +282,12 @@ def _tidy(traced: Traced, curve: Ints) -> Traced:
     return replace(tidy, ring=ring_number)
 
 
-def _pair(action: Action, placed: list[Placed], traced: list[Traced]) -> tuple[list[Traced], list[Edge]]:
+def _pair(
+    action: Action, placed: list[Placed], traced: list[Traced], *, without_short: bool
+) -> tuple[list[Traced], list[Edge]]:
     """Pair the edges; those that rounding has put on one side only, where four tiles meet, are left out."""
+    if without_short:
+        traced = [boundary.take(long_edges(boundary, _ONE_SIDED * action.size)) for boundary in traced]
     pinched = False
     while True:
         try:
@@ -289,6 +301,8 @@ def _pair(action: Action, placed: list[Placed], traced: list[Traced]) -> tuple[l
                 traced = [boundary.take(rest) if t == edge.tile else other for t, other in enumerate(traced)]
             elif not pinched:
                 pinched = True
+            elif not without_short:
+                return _pair(action, placed, traced, without_short=True)
             else:
                 raise
 

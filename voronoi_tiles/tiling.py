@@ -197,6 +197,9 @@ def tessellate(design: Design) -> Tiling:
     proof = prove(design.group, design.lattice, records)
     if not proof.passed:
         records[0].refuse_touching()
+        records = tessellate_sites(design.sites, design.group, design.lattice, without_short=True)
+        proof = prove(design.group, design.lattice, records)
+    if not proof.passed:
         raise ProofError("the result failed its proof: " + "; ".join(proof.failures), proof)
     tiles = tuple(
         Tile(site, record.outline, design.group.order // len(record.symmetry), record.symmetry, record)
