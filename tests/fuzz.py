@@ -29,6 +29,9 @@ from voronoi_tiles.design import Design
 from voronoi_tiles.errors import TouchingCopiesError
 from voronoi_tiles.site import Site
 
+TOUCHING = 1e-11
+"""Copies nearer than this, relative to the cell, may be refused: ten times the accuracy that is promised."""
+
 SECONDS = 300
 """How long one design may take."""
 
@@ -83,7 +86,7 @@ def _refusal(read: Design, error: TouchingCopiesError) -> str:
     gap = shapely.distance(geometry(plane, here), geometry(plane, there, motion))
     place = np.array([error.place])
     away = max(plane.distance(here, place)[0], plane.distance(there, plane.pull(motion, place))[0])
-    if max(gap, away) <= plane.slack:
+    if max(gap, away) <= max(plane.slack, TOUCHING * 1.01 * plane.size):
         return "refused"
     return f"refused, but the copies are {gap / plane.size:.3g} of the cell apart, the place {away / plane.size:.3g}"
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from voronoi_tiles.errors import TouchingCopiesError
-from voronoi_tiles.tolerance import EPSILON, SAME_POINT
+from voronoi_tiles.tolerance import EPSILON, TOUCHING
 from voronoi_tiles.vector.contour import Complexes, Ints
 from voronoi_tiles.vector.copies import Action, Placed, compose, copies_near, move, to_operation, translation
 
@@ -21,7 +21,7 @@ def refuse_touching(action: Action, names: tuple[str, ...], placed: list[Placed]
 
     # Sites drawn far from the origin are known to fewer digits.
     far = max(abs(complex(action.cartesian(*site.shift))) for site in placed)
-    nearest = max(SAME_POINT * action.size, 4 * EPSILON * far)
+    nearest = max(TOUCHING * action.size, 4 * EPSILON * far)
     found = None
     for i, base in enumerate(placed):
         here = _geometry(base.nodes, base.segments)

@@ -66,3 +66,7 @@ SAME_POINT: Final = 1e-13
 """How near the image of a node must be to a node for an operation to map a site onto itself; relative to
 the cell or the site, whichever is larger. Hundreds of ulps, as flattened curves are symmetric only up to
 rounding."""
+
+TOUCHING: Final = 1e-11
+"""Copies that are nearer than this touch; relative to the cell's longer side. Ten times PROOF_LIMIT: at less, the width of
+the neck between them would be lost in the accuracy that is promised."""
