@@ -135,8 +135,12 @@ class Bounds:
     champion: Complexes
 
 
-def find_candidates(rows: Rows, targets: list[Hierarchy], covering_radius: float) -> tuple[list[Candidates], Bounds]:
+def find_candidates(
+    rows: Rows, targets: list[Hierarchy], covering_radius: float, most: int | None
+) -> tuple[list[Candidates], Bounds] | None:
     """Return, for each target, a superset of the pairs in which the element shapes the row's cell.
+
+    None where more than `most` pairs would be held at once.
 
     An element matters only if, for some point of the row's cell, it meets the disc about that point that just reaches
     the row's element. The row's bisector with a point z, its champion, bounds the cell. The discs about the points of
@@ -160,6 +164,8 @@ def find_candidates(rows: Rows, targets: list[Hierarchy], covering_radius: float
         for t, hierarchy in enumerate(targets):
             if depth < len(hierarchy.levels):
                 level = hierarchy.levels[depth]
+                if most is not None and depth and len(pairs[t][0]) * _BRANCH > 4 * most:
+                    return None
                 row, copy, place = pairs[t] if depth == 0 else _children(*pairs[t], len(level.radius))
                 pairs[t] = _narrow(rows, row, copy, place, level, bounds)
     found = [

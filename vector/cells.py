@@ -15,6 +15,8 @@ from voronoi_tiles.vector.rows import Rows
 
 # Rows that are worked on at once: enough for numpy's overhead to vanish, few enough for some 100 MB.
 _CHUNK = 1024
+# Pairs of rows and elements that are held at once; where there are more, the rows are halved. Each takes some 500 bytes.
+_PAIRS = 1_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,9 +58,18 @@ def bound_cells(
         UnboundedCellError: as it says.
     """
     found = []
-    for start in range(0, len(rows), _CHUNK):
-        chunk = rows.slice(start, start + _CHUNK)
-        candidates, bounds = find_candidates(chunk, [hierarchy for _, hierarchy in targets], covering_radius)
+    hierarchies = [hierarchy for _, hierarchy in targets]
+    count = sum(len(hierarchy.levels[0].start) for hierarchy in hierarchies)
+    waiting = [(start, min(start + _CHUNK, len(rows))) for start in range(0, len(rows), _CHUNK)][::-1]
+    while waiting:
+        start, stop = waiting.pop()
+        chunk = rows.slice(start, stop)
+        pairs = None if (stop - start) * count > _PAIRS else find_candidates(chunk, hierarchies, covering_radius, _PAIRS)
+        if pairs is None and stop - start > 1:
+            middle = (start + stop) // 2
+            waiting += [(middle, stop), (start, middle)]
+            continue
+        candidates, bounds = pairs or find_candidates(chunk, hierarchies, covering_radius, None)
         around = [(copies, pairs) for (copies, _), pairs in zip(targets, candidates, strict=True)]
         pieces = bisector_pieces(chunk, contour, around, bounds)
         parts = _locate(chunk, pieces, *lower_envelope(pieces, chunk.low, chunk.high))

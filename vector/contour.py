@@ -48,6 +48,19 @@ class Contour:
     leaving: Complexes
     turn: Floats
 
+    def faces(self) -> Ints:
+        """Return for each half-edge a number of the cycle that it belongs to: its walk around one face."""
+        following = self.following.tolist()
+        label = [-1] * len(following)
+        number = 0
+        for first in range(len(following)):
+            k = first
+            while label[k] < 0:
+                label[k] = number
+                k = following[k]
+            number += k == first and label[first] == number
+        return np.array(label, np.intp)
+
     @property
     def convex(self) -> Bools:
         """(c,) whether a corner has directions of its own: a wedge at right angles or more to both neighbours."""
@@ -106,3 +119,30 @@ def trace_contour(nodes: Complexes, segments: Ints) -> Contour:
         leaving=leaving,
         turn=turn,
     )
+
+
+def enclosed(contour: Contour, strangers: Complexes) -> Bools:
+    """Tell which half-edges look into a region that the site encloses, and in which no other copy lies.
+
+    Such a region belongs to the site, whatever its elements share of it. A copy of the site itself cannot lie in it
+    without touching: it would have to be smaller.
+
+    Args:
+        contour: of the site.
+        strangers: (k,) nodes of copies of other sites.
+    """
+    face = contour.faces()
+    start, end = contour.nodes[contour.source], contour.nodes[contour.target]
+    result = np.zeros(len(face), bool)
+    if not len(face):
+        return result
+    # Walks around the inside of a closed stroke run counter-clockwise.
+    twice = np.bincount(face, start.real * end.imag - start.imag * end.real)
+    for inside in np.flatnonzero(twice > 0.0).tolist():
+        member = face == inside
+        x, y = start.real[member], start.imag[member]
+        within = (strangers.real >= x.min()) & (strangers.real <= x.max())
+        within &= (strangers.imag >= y.min()) & (strangers.imag <= y.max())
+        if not within.any():
+            result |= member
+    return result

@@ -60,12 +60,19 @@ class Rows:
         return Rows(*(getattr(self, name)[start:stop] for name in self.__slots__))
 
 
-def make_rows(contour: Contour, covering_radius: float) -> Rows:
-    """Return the rows of a contour: those of all half-edges in order, then those of all convex corners in order.
+def make_rows(contour: Contour, covering_radius: float, without: Bools) -> Rows:
+    """Return the rows of a contour: those of half-edges in order, then those of convex corners in order.
 
     Long half-edges and wide corners have several rows, by ascending x.
+
+    Args:
+        contour: of the site.
+        covering_radius: of the lattice.
+        without: (h,) half-edges that get no rows, nor do the corners at their ends.
     """
-    edge, part, parts = _divide(contour.length / (_LONGEST_PART * covering_radius))
+    wanted = np.flatnonzero(~without)
+    edge, part, parts = _divide(contour.length[wanted] / (_LONGEST_PART * covering_radius))
+    edge = wanted[edge]
     start, end, along = (
         contour.nodes[contour.source[edge]],
         contour.nodes[contour.target[edge]],
@@ -73,7 +80,9 @@ def make_rows(contour: Contour, covering_radius: float) -> Rows:
     )
     low, high = contour.length[edge] * (part / parts), contour.length[edge] * ((part + 1) / parts)
     normal = 1j * along
-    convex = np.flatnonzero(contour.convex)
+    convex = contour.convex
+    convex[: len(without)] &= ~without
+    convex = np.flatnonzero(convex)
     corner, part, parts_of_corner = _divide(contour.turn[convex] / _WIDEST_FAN)
     corner = convex[corner]
     turn, point = contour.turn[corner], contour.nodes[contour.corner_node[corner]]

@@ -15,7 +15,7 @@ from voronoi_tiles.vector.arcs import Neighbour
 from voronoi_tiles.vector.bisectors import TouchingElementsError, surround
 from voronoi_tiles.vector.candidates import build_hierarchy
 from voronoi_tiles.vector.cells import Parts, UnboundedCellError, bound_cells
-from voronoi_tiles.vector.contour import Complexes, Contour, Ints, trace_contour
+from voronoi_tiles.vector.contour import Complexes, Contour, Ints, enclosed, trace_contour
 from voronoi_tiles.vector.copies import (
     IDENTITY,
     Action,
@@ -165,7 +165,8 @@ def tessellate(
     placed = [place(action, site.nodes, site.segments) for site in sites]
     names = tuple(site.name for site in sites)
     try:
-        found = [_trace(action, placed, tile) for tile in range(len(sites))]
+        contours = [trace_contour(p.nodes, p.segments) for p in placed]
+        found = [_trace(action, placed, contours, tile) for tile in range(len(sites))]
         traced, edges = _pair(action, placed, [boundary for boundary, _ in found], without_short=without_short)
     except (TouchingElementsError, UnboundedCellError, OpenBoundaryError, UnpairedEdgeError) as error:
         refuse_touching(action, names, placed)
@@ -190,16 +191,19 @@ def tessellate(
     ]
 
 
-def _trace(action: Action, placed: list[Placed], tile: int) -> tuple[Traced, float]:
+def _trace(
+    action: Action, placed: list[Placed], contours: list[Contour], tile: int
+) -> tuple[Traced, float]:
     """Return the boundary of one tile, and the site's distance from the nearest of its vertices."""
-    contours = [trace_contour(p.nodes, p.segments) for p in placed]
     contour = contours[tile]
-    rows = make_rows(contour, action.covering_radius)
     copies = [copies_near(action, placed[tile], other) for other in placed]
     targets = [
         (surround(other, near, own=t == tile), build_hierarchy(other, near))
         for t, (other, near) in enumerate(zip(contours, copies, strict=True))
     ]
+    strangers = [around.node.reshape(-1) for t, (around, _) in enumerate(targets) if t != tile]
+    inside = enclosed(contour, np.concatenate([np.zeros(0, complex), *strangers]))
+    rows = make_rows(contour, action.covering_radius, inside)
     parts = bound_cells(rows, contour, targets, action.covering_radius)
     inner = (parts.target == tile) & (parts.copy == 0)
     # Beside the shorter side of the cell: an edge as long as the longer side may turn about what is left out.

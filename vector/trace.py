@@ -94,17 +94,15 @@ def _links(rows: Rows, contour: Contour, parts: Parts, inner: Bools, straight: B
     falling, rising = before[rows.straight[before]], before[~rows.straight[before]]
     following[first[falling + 1]] = last[falling]
     following[last[rising]] = first[rising + 1]
-    # The first and last part of each half-edge and corner; -1 for corners that have no rows.
+    # The first and last row of each half-edge and corner.
     opening, closing = np.flatnonzero(np.append(True, ~again)), np.flatnonzero(np.append(~again, True))
     half_edges = len(contour.source)
-    edge_first, edge_last = first[opening[:half_edges]], last[closing[:half_edges]]
-    corner_first = np.full(len(contour.corner_node), -1)
-    corner_last = corner_first.copy()
-    corners = rows.corner[opening[half_edges:]]
-    corner_first[corners], corner_last[corners] = first[opening[half_edges:]], last[closing[half_edges:]]
+    edge_first, edge_last = _ends(rows.half_edge, half_edges, opening, closing, first, last)
+    corner_first, corner_last = _ends(rows.corner, len(contour.corner_node), opening, closing, first, last)
     # The corner between half-edges a and b = following[a]: counter-clockwise around the tile, from b over it to a.
-    a, b = np.arange(half_edges), contour.following
-    has, bare = np.flatnonzero(corner_first[a] >= 0), np.flatnonzero(corner_first[a] < 0)
+    b = contour.following
+    present, round_corner = edge_first >= 0, corner_first[:half_edges] >= 0
+    has, bare = np.flatnonzero(present & round_corner), np.flatnonzero(present & ~round_corner)
     following[edge_first[b[has]]] = corner_first[has]
     following[corner_last[has]] = edge_last[has]
     following[edge_first[b[bare]]] = edge_last[bare]
@@ -113,6 +111,17 @@ def _links(rows: Rows, contour: Contour, parts: Parts, inner: Bools, straight: B
     following[corner_last[lone]] = corner_first[lone - 1 + 4 * ((lone - half_edges) % 4 == 0)]
     following[inner | inner[following]] = -1
     return following
+
+
+def _ends(
+    owner: Ints, count: int, opening: Ints, closing: Ints, first: Ints, last: Ints
+) -> tuple[Ints, Ints]:
+    """Return the first and last part of each half-edge or corner, -1 where it has no rows."""
+    result = np.full((2, count), -1)
+    rows = np.flatnonzero(owner[opening] >= 0)
+    which = owner[opening[rows]]
+    result[0, which], result[1, which] = first[opening[rows]], last[closing[rows]]
+    return result[0], result[1]
 
 
 def _match(ends: Complexes, starts: Complexes) -> Ints:
