@@ -64,7 +64,9 @@ def bound_cells(
     while waiting:
         start, stop = waiting.pop()
         chunk = rows.slice(start, stop)
-        pairs = None if (stop - start) * count > _PAIRS else find_candidates(chunk, hierarchies, covering_radius, _PAIRS)
+        pairs = (
+            None if (stop - start) * count > _PAIRS else find_candidates(chunk, hierarchies, covering_radius, _PAIRS)
+        )
         if pairs is None and stop - start > 1:
             middle = (start + stop) // 2
             waiting += [(middle, stop), (start, middle)]

@@ -191,9 +191,7 @@ def tessellate(
     ]
 
 
-def _trace(
-    action: Action, placed: list[Placed], contours: list[Contour], tile: int
-) -> tuple[Traced, float]:
+def _trace(action: Action, placed: list[Placed], contours: list[Contour], tile: int) -> tuple[Traced, float]:
     """Return the boundary of one tile, and the site's distance from the nearest of its vertices."""
     contour = contours[tile]
     copies = [copies_near(action, placed[tile], other) for other in placed]
@@ -202,7 +200,8 @@ def _trace(
         for t, (other, near) in enumerate(zip(contours, copies, strict=True))
     ]
     strangers = [around.node.reshape(-1) for t, (around, _) in enumerate(targets) if t != tile]
-    inside = enclosed(contour, np.concatenate([np.zeros(0, complex), *strangers]))
+    siblings = targets[tile][0].node[1:].reshape(-1)
+    inside = enclosed(contour, np.concatenate([np.zeros(0, complex), *strangers]), siblings)
     rows = make_rows(contour, action.covering_radius, inside)
     parts = bound_cells(rows, contour, targets, action.covering_radius)
     inner = (parts.target == tile) & (parts.copy == 0)

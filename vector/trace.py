@@ -113,9 +113,7 @@ def _links(rows: Rows, contour: Contour, parts: Parts, inner: Bools, straight: B
     return following
 
 
-def _ends(
-    owner: Ints, count: int, opening: Ints, closing: Ints, first: Ints, last: Ints
-) -> tuple[Ints, Ints]:
+def _ends(owner: Ints, count: int, opening: Ints, closing: Ints, first: Ints, last: Ints) -> tuple[Ints, Ints]:
     """Return the first and last part of each half-edge or corner, -1 where it has no rows."""
     result = np.full((2, count), -1)
     rows = np.flatnonzero(owner[opening] >= 0)
