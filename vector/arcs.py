@@ -9,6 +9,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import NamedTuple
 
+import numpy as np
+
+from voronoi_tiles.vector.contour import Complexes
 from voronoi_tiles.wallpaper import Operation
 
 
@@ -45,3 +48,20 @@ class ParabolaArc:
 
 
 Arc = LineArc | ParabolaArc
+
+
+def parabola_controls(start: Complexes, end: Complexes, focus: Complexes, directrix: Complexes) -> Complexes:
+    """Return the control points of parabolic arcs as quadratic Bezier curves.
+
+    In the frame of its directrix a parabola is h(s) = ((s - p)^2 + q^2) / 2q, and the control point between s0 and
+    s1 is at their mean, at the height of the polar form h(s0, s1).
+
+    Args:
+        start, end, focus: (n,); directrix: (n, 2) two points of it.
+    """
+    axis = directrix[:, 1] - directrix[:, 0]
+    axis = axis / np.abs(axis)
+    q = ((focus - directrix[:, 0]) * axis.conj()).imag
+    s0, s1 = ((start - focus) * axis.conj()).real, ((end - focus) * axis.conj()).real
+    above = (s0 * s1 / q - q) / 2.0
+    return np.asarray(focus + axis * ((s0 + s1) / 2 + 1j * above))

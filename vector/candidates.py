@@ -135,12 +135,16 @@ class Bounds:
     champion: Complexes
 
 
+class TooManyPairsError(Exception):
+    """So many rows at once would take too much memory."""
+
+
 def find_candidates(
-    rows: Rows, targets: list[Hierarchy], covering_radius: float, most: int | None
-) -> tuple[list[Candidates], Bounds] | None:
+    rows: Rows, targets: list[Hierarchy], covering_radius: float, most: float
+) -> tuple[list[Candidates], Bounds]:
     """Return, for each target, a superset of the pairs in which the element shapes the row's cell.
 
-    None where more than `most` pairs would be held at once.
+    Raises TooManyPairsError where more than `most` pairs would be held at once.
 
     An element matters only if, for some point of the row's cell, it meets the disc about that point that just reaches
     the row's element. The row's bisector with a point z, its champion, bounds the cell. The discs about the points of
@@ -158,14 +162,16 @@ def find_candidates(
     pairs: list[tuple[Ints, Ints, Ints]] = []
     for hierarchy in targets:
         count = len(hierarchy.levels[0].start)
+        if len(rows) * count > most:
+            raise TooManyPairsError
         row = np.repeat(np.arange(len(rows)), count)
         pairs.append((row, np.tile(np.arange(count), len(rows)), np.zeros(len(row), np.intp)))
     for depth in range(max(len(hierarchy.levels) for hierarchy in targets)):
         for t, hierarchy in enumerate(targets):
             if depth < len(hierarchy.levels):
                 level = hierarchy.levels[depth]
-                if most is not None and depth and len(pairs[t][0]) * _BRANCH > 4 * most:
-                    return None
+                if depth and len(pairs[t][0]) * _BRANCH > 4 * most:
+                    raise TooManyPairsError
                 row, copy, place = pairs[t] if depth == 0 else _children(*pairs[t], len(level.radius))
                 pairs[t] = _narrow(rows, row, copy, place, level, bounds)
     found = [

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import inf
 
 import numpy as np
 
 from voronoi_tiles.tolerance import EPSILON
-from voronoi_tiles.vector.bisectors import Pieces, Surroundings, bisector_pieces
-from voronoi_tiles.vector.candidates import Hierarchy, find_candidates
+from voronoi_tiles.vector.bisectors import Pieces, bisector_pieces
+from voronoi_tiles.vector.candidates import Hierarchy, TooManyPairsError, find_candidates
 from voronoi_tiles.vector.contour import Complexes, Contour, Floats, Ints
 from voronoi_tiles.vector.envelope import lower_envelope
 from voronoi_tiles.vector.rows import Rows
+from voronoi_tiles.vector.surroundings import Surroundings
 
 # Rows that are worked on at once: enough for numpy's overhead to vanish, few enough for some 100 MB.
 _CHUNK = 1024
-# Pairs of rows and elements that are held at once; where there are more, the rows are halved. Each takes some 500 bytes.
+# Pairs of rows and elements held at once; where there are more, the rows are halved. A pair takes some 500 bytes.
 _PAIRS = 1_000_000
 
 
@@ -59,19 +61,17 @@ def bound_cells(
     """
     found = []
     hierarchies = [hierarchy for _, hierarchy in targets]
-    count = sum(len(hierarchy.levels[0].start) for hierarchy in hierarchies)
     waiting = [(start, min(start + _CHUNK, len(rows))) for start in range(0, len(rows), _CHUNK)][::-1]
     while waiting:
         start, stop = waiting.pop()
         chunk = rows.slice(start, stop)
-        pairs = (
-            None if (stop - start) * count > _PAIRS else find_candidates(chunk, hierarchies, covering_radius, _PAIRS)
-        )
-        if pairs is None and stop - start > 1:
+        most = _PAIRS if stop - start > 1 else inf
+        try:
+            candidates, bounds = find_candidates(chunk, hierarchies, covering_radius, most)
+        except TooManyPairsError:
             middle = (start + stop) // 2
             waiting += [(middle, stop), (start, middle)]
             continue
-        candidates, bounds = pairs or find_candidates(chunk, hierarchies, covering_radius, None)
         around = [(copies, pairs) for (copies, _), pairs in zip(targets, candidates, strict=True)]
         pieces = bisector_pieces(chunk, contour, around, bounds)
         parts = _locate(chunk, pieces, *lower_envelope(pieces, chunk.low, chunk.high))

@@ -128,8 +128,8 @@ _AREA = 1e-9
 def enclosed(contour: Contour, strangers: Complexes, siblings: Complexes) -> Bools:
     """Tell which half-edges look into a region that the site encloses, and in which no other copy lies.
 
-    Such a region belongs to the site, whatever its elements share of it. A copy of a connected site cannot lie in one of
-    its regions without touching it: it would have to be smaller.
+    Such a region belongs to the site, whatever its elements share of it. A copy of a connected site cannot lie in one
+    of its regions without touching it: it would have to be smaller.
 
     Args:
         contour: of the site.

@@ -80,9 +80,9 @@ def make_rows(contour: Contour, covering_radius: float, without: Bools) -> Rows:
     )
     low, high = contour.length[edge] * (part / parts), contour.length[edge] * ((part + 1) / parts)
     normal = 1j * along
-    convex = contour.convex
-    convex[: len(without)] &= ~without
-    convex = np.flatnonzero(convex)
+    kept = contour.convex
+    kept[: len(without)] &= ~without
+    convex = np.flatnonzero(kept)
     corner, part, parts_of_corner = _divide(contour.turn[convex] / _WIDEST_FAN)
     corner = convex[corner]
     turn, point = contour.turn[corner], contour.nodes[contour.corner_node[corner]]

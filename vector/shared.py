@@ -1,4 +1,4 @@
-"""Outlines of which every point is the image of one representative.
+"""Outlines whose edges are shared: each edge is computed once, and mapped to all its places.
 
 A point is held as a representative and an exact motion. From whichever tile it is reached, the same representative is
 moved by the same motion, and comes out as the same bits; so tiles share their edges exactly.
@@ -6,76 +6,19 @@ moved by the same motion, and comes out as the same bits; so tiles share their e
 
 from __future__ import annotations
 
-from collections import defaultdict
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 
-from voronoi_tiles.vector.contour import Bools, Complexes, Ints
-from voronoi_tiles.vector.copies import IDENTITY, Action, Motion, compose, inverse
-from voronoi_tiles.vector.edges import PAIRING, Corner, Edge, Traced
+from voronoi_tiles.vector.arcs import parabola_controls
+from voronoi_tiles.vector.contour import Complexes, Ints
+from voronoi_tiles.vector.copies import IDENTITY, Action, Motion, compose
+from voronoi_tiles.vector.corners import Corners, find_corners
+from voronoi_tiles.vector.edges import PAIRING, Edge, Traced
+from voronoi_tiles.vector.representatives import Builder, Points, Representatives
 
 # How near to a vertex the image of its counterpart must be, relative to the cell's size, where some have none.
 _COUNTERPART = 1e-6
-
-
-@dataclass(frozen=True, slots=True)
-class Points:
-    """Images of representatives.
-
-    Attributes:
-        index: (n,) into the representatives.
-        motion: (n,) into `motions`.
-        motions: the motions that occur.
-    """
-
-    index: Ints
-    motion: Ints
-    motions: tuple[Motion, ...]
-
-    def moved(self, outer: Motion) -> Points:
-        """Return the images under one more motion."""
-        return Points(self.index, self.motion, tuple(compose(outer, motion) for motion in self.motions))
-
-    def take(self, places: Ints) -> Points:
-        """Return the points at these places."""
-        return Points(self.index[places], self.motion[places], self.motions)
-
-
-@dataclass(frozen=True)
-class Representatives:
-    """The points that all others are images of.
-
-    Attributes:
-        action: the group.
-        position: (m,).
-        stabilizer: for those that motions of the group fix, these motions.
-    """
-
-    action: Action
-    position: Complexes
-    stabilizer: dict[int, tuple[Motion, ...]]
-
-    @cached_property
-    def _special(self) -> Bools:
-        """(m,) whether a representative has a stabilizer."""
-        special = np.zeros(len(self.position), bool)
-        special[list(self.stabilizer)] = True
-        return special
-
-    def locate(self, points: Points) -> Complexes:
-        """Return the positions of images of representatives."""
-        result = np.empty(len(points.index), complex)
-        for number, motion in enumerate(points.motions):
-            chosen = points.motion == number
-            result[chosen] = self.action.apply(motion, self.position[points.index[chosen]])
-        for k in np.flatnonzero(self._special[points.index]).tolist():
-            point = int(points.index[k])
-            # Several motions lead to this point: the first in a fixed order stands for all.
-            motion = min(compose(points.motions[points.motion[k]], s) for s in self.stabilizer[point])
-            result[k] = self.action.apply_to_point(motion, complex(self.position[point]))
-        return result
 
 
 @dataclass(frozen=True)
@@ -99,10 +42,6 @@ class SharedOutline:
     ring_offsets: Ints
     beyond: Ints
     neighbours: tuple[tuple[int, Motion], ...]
-
-
-Corners = dict[Corner, tuple[int, Motion]]
-"""For each corner its representative and the motion from there."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,49 +69,6 @@ class _Arcs:
         return _Arcs(**arrays, motions=self.motions)
 
 
-class _Builder:
-    """Collects representatives."""
-
-    def __init__(self, action: Action) -> None:
-        self.action = action
-        self._positions: list[Complexes] = []
-        self._count = 0
-        self._stabilizer: dict[int, tuple[Motion, ...]] = {}
-
-    def add(self, positions: Complexes) -> Ints:
-        """Add representatives; return their indices."""
-        self._positions.append(positions)
-        self._count += len(positions)
-        return np.arange(self._count - len(positions), self._count)
-
-    def add_fixed(self, position: complex, stabilizer: tuple[Motion, ...], tangent: complex | None = None) -> int:
-        """Add a representative that these motions fix, put exactly where they do; return its index.
-
-        Onto a mirror it is moved along `tangent`, if one is given.
-        """
-        images = [self.action.apply_to_point(motion, position) for motion in stabilizer]
-        place = sum(images) / len(images)
-        if tangent is not None and len(stabilizer) == 2:
-            # A vertex on a mirror from which the site keeps little distance is known badly across the mirror, but is
-            # exactly on the other edge that ends there.
-            off = place - position
-            square = (tangent.conjugate() * off).real
-            if square != 0.0:
-                along = tangent * (abs(off) ** 2 / square)
-                if abs(along) <= 1e3 * abs(off):
-                    target = position + along
-                    mirrored = self.action.apply_to_point(stabilizer[1], target)
-                    place = (target + mirrored) / 2
-        number = int(self.add(np.array([place]))[0])
-        if len(stabilizer) > 1:
-            self._stabilizer[number] = stabilizer
-        return number
-
-    def finish(self) -> Representatives:
-        """Return all representatives."""
-        return Representatives(self.action, np.concatenate(self._positions), self._stabilizer)
-
-
 def share_edges(action: Action, traced: list[Traced], edges: list[Edge]) -> list[SharedOutline]:
     """Return the outlines of all tiles, their edges and corners shared.
 
@@ -180,8 +76,8 @@ def share_edges(action: Action, traced: list[Traced], edges: list[Edge]) -> list
         traced: for each site its tile's boundary.
         edges: of these boundaries, paired, ring after ring.
     """
-    builder = _Builder(action)
-    corners = _find_corners(builder, traced, edges)
+    builder = Builder(action)
+    corners = find_corners(builder, traced, edges)
     positions = builder.finish()
     sources: dict[int, tuple[Motion, bool, _Arcs]] = {}
     for edge in edges:
@@ -197,117 +93,7 @@ def share_edges(action: Action, traced: list[Traced], edges: list[Edge]) -> list
     return outlines
 
 
-def _find_corners(builder: _Builder, traced: list[Traced], edges: list[Edge]) -> Corners:
-    """Return all corners as images of representatives, and put those on rotation centres and mirrors there."""
-    related: defaultdict[Corner, list[tuple[Corner, Motion]]] = defaultdict(list)
-    ends: defaultdict[Corner, list[tuple[Edge, int]]] = defaultdict(list)
-    images: set[int] = set()
-    for edge in edges:
-        ends[edge.start].append((edge, 0))
-        ends[edge.end].append((edge, -1))
-        for motion, image, flips in edge.images:
-            if image is not edge and id(edge) not in images:
-                images.add(id(image))
-            there = (image.end, image.start) if flips else (image.start, image.end)
-            for corner, other in zip((edge.start, edge.end), there, strict=True):
-                related[corner].append((other, motion))
-                related[other].append((corner, inverse(motion)))
-    found: Corners = {}
-    for edge in edges:
-        first = edge.start
-        if first in found:
-            continue
-        reached = {first: IDENTITY}
-        stack = [first]
-        fixing: set[Motion] = set()
-        while stack:
-            corner = stack.pop()
-            for other, motion in related[corner]:
-                there_by = compose(motion, reached[corner])
-                if other not in reached:
-                    reached[other] = there_by
-                    stack.append(other)
-                elif reached[other] != there_by:
-                    fixing.add(compose(inverse(reached[other]), there_by))
-        where = complex(edge.vertex[0])
-        for corner, motion in reached.items():
-            sources = [(e, place) for e, place in ends[corner] if id(e) not in images]
-            where = _sharpened(builder.action, traced[corner[0]], where, motion, sources, ends[corner])
-        stabilizer = _generated(fixing)
-        number = builder.add_fixed(where, stabilizer, _across(traced, ends[first]))
-        found.update({corner: (number, motion) for corner, motion in reached.items()})
-    return found
-
-
-# Nodes this near to each other, relative to a vertex's distance, determine it badly across their bisector.
-_NEAR = 1e-4
-
-
-def _sharpened(
-    action: Action,
-    boundary: Traced,
-    where: complex,
-    motion: Motion,
-    sources: list[tuple[Edge, int]],
-    ends: list[tuple[Edge, int]],
-) -> complex:
-    """Return a corner's representative, moved onto the bisector of two nodes that are near to each other.
-
-    Copies that nearly touch leave a corner uncertain across the bisector between them: by eps R^2 / d at a distance R
-    from nodes a distance d apart. Where the edge passes between these nodes this matters; along the other edge that
-    ends there the corner may be moved freely.
-    """
-    for edge, place in sources:
-        one, two = boundary.nodes[edge.arcs[place]].tolist()
-        here = action.apply_to_point(motion, where)
-        gap = abs(two - one)
-        if not gap < _NEAR * abs(here - one):
-            continue
-        normal = (two - one) / gap
-        off = gap / 2 - (normal.conjugate() * (here - one)).real
-        tangents = [_tangent(boundary, e, p) for e, p in ends if e is not edge]
-        best = max(tangents, key=lambda t: abs((normal.conjugate() * t).real) / abs(t), default=0j)
-        across = (normal.conjugate() * best).real
-        if abs(across) > 1e-3 * abs(best):
-            where = action.apply_to_point(inverse(motion), here + best * (off / across))
-    return where
-
-
-def _across(traced: list[Traced], ends: list[tuple[Edge, int]]) -> complex | None:
-    """Return the direction of an edge at a corner, of one that does not lie on a mirror."""
-    for edge, place in ends:
-        if not any(image is edge and motion != IDENTITY and not flips for motion, image, flips in edge.images):
-            return _tangent(traced[edge.tile], edge, place)
-    return None
-
-
-def _tangent(boundary: Traced, edge: Edge, place: int) -> complex:
-    """Return the direction of an edge at its start (place 0) or end (place -1)."""
-    arc, (start, end) = edge.arcs[place], edge.vertex[[place, place + 1] if place == 0 else [-2, -1]]
-    if not boundary.curved[arc]:
-        return complex(end - start)
-    this = edge.arcs[[place]]
-    control = parabola_controls(np.array([start]), np.array([end]), boundary.focus[this], boundary.directrix[this])[0]
-    return complex(control - start if place == 0 else end - control)
-
-
-def _generated(motions: set[Motion]) -> tuple[Motion, ...]:
-    """Return the finite group that motions with a common fixed point generate, in a fixed order."""
-    group = {IDENTITY}
-    stack = [IDENTITY]
-    while stack:
-        element = stack.pop()
-        for motion in motions:
-            product = compose(motion, element)
-            if product not in group:
-                group.add(product)
-                stack.append(product)
-                # A point of a plane pattern has a symmetry of order 12 at most.
-                assert len(group) <= 12, "motions without a common fixed point"
-    return tuple(sorted(group))
-
-
-def _represent(builder: _Builder, positions: Representatives, boundary: Traced, edge: Edge, corners: Corners) -> _Arcs:
+def _represent(builder: Builder, positions: Representatives, boundary: Traced, edge: Edge, corners: Corners) -> _Arcs:
     """Return the arcs of an edge that stands for its orbit, symmetric under the motions that map it onto itself."""
     action = builder.action
     selfmaps = [(motion, flips) for motion, image, flips in edge.images if image is edge and motion != IDENTITY]
@@ -372,24 +158,7 @@ def _symmetric(action: Action, mirror: Motion, vertex: Complexes, arcs: Ints) ->
     return vertex[bounds], arcs[longest]
 
 
-def parabola_controls(start: Complexes, end: Complexes, focus: Complexes, directrix: Complexes) -> Complexes:
-    """Return the control points of parabolic arcs as quadratic Bezier curves.
-
-    In the frame of its directrix a parabola is h(s) = ((s - p)^2 + q^2) / 2q, and the control point between s0 and
-    s1 is at their mean, at the height of the polar form h(s0, s1).
-
-    Args:
-        start, end, focus: (n,); directrix: (n, 2) two points of it.
-    """
-    axis = directrix[:, 1] - directrix[:, 0]
-    axis = axis / np.abs(axis)
-    q = ((focus - directrix[:, 0]) * axis.conj()).imag
-    s0, s1 = ((start - focus) * axis.conj()).real, ((end - focus) * axis.conj()).real
-    above = (s0 * s1 / q - q) / 2.0
-    return np.asarray(focus + axis * ((s0 + s1) / 2 + 1j * above))
-
-
-def _controls(builder: _Builder, boundary: Traced, arcs: Ints, vertex: Complexes) -> Ints:
+def _controls(builder: Builder, boundary: Traced, arcs: Ints, vertex: Complexes) -> Ints:
     """Add the control points of arcs between consecutive vertices; return their indices, -1 for lines."""
     control = np.full(len(arcs), -1)
     curved = np.flatnonzero(boundary.curved[arcs])

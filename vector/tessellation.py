@@ -11,8 +11,8 @@ import numpy as np
 from voronoi_tiles.errors import ProofError
 from voronoi_tiles.site import Site
 from voronoi_tiles.tolerance import SAME_POINT
-from voronoi_tiles.vector.arcs import Neighbour
-from voronoi_tiles.vector.bisectors import TouchingElementsError, surround
+from voronoi_tiles.vector.arcs import Neighbour, parabola_controls
+from voronoi_tiles.vector.bisectors import TouchingElementsError
 from voronoi_tiles.vector.candidates import build_hierarchy
 from voronoi_tiles.vector.cells import Parts, UnboundedCellError, bound_cells
 from voronoi_tiles.vector.contour import Complexes, Contour, Ints, enclosed, trace_contour
@@ -35,7 +35,8 @@ from voronoi_tiles.vector.copies import (
 from voronoi_tiles.vector.edges import Edge, Traced, UnpairedEdgeError, long_edges, pair_edges
 from voronoi_tiles.vector.outline import Outline
 from voronoi_tiles.vector.rows import Rows, make_rows
-from voronoi_tiles.vector.shared import SharedOutline, parabola_controls, share_edges
+from voronoi_tiles.vector.shared import SharedOutline, share_edges
+from voronoi_tiles.vector.surroundings import surround
 from voronoi_tiles.vector.touching import refuse_touching
 from voronoi_tiles.vector.trace import Boundary, OpenBoundaryError, trace_boundary
 from voronoi_tiles.wallpaper import Lattice, Operation, WallpaperGroup
