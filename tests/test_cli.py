@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -164,7 +165,7 @@ def test_a_failed_proof_is_exit_code_1_and_no_file(tmp_path: Path) -> None:
         "run()\n"
     )
     result = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=False, cwd=tmp_path)
-    assert complaint(result, code=1) == "Error: a.toml: the area is wrong"
+    assert complaint(result, code=1) == "Error: a.toml: the area is wrong."
     assert (tmp_path / "a.svg").read_text() == "old"
 
 
@@ -173,7 +174,9 @@ def test_a_failed_proof_is_exit_code_1_and_no_file(tmp_path: Path) -> None:
     [
         ([], "Missing argument"),
         (["bird.toml"], "Missing option '-o'"),
-        (["bird.toml", "-o", "out.dxf9"], ".svg or .json"),
+        (["bird.toml", "-o", "out.dxf9"], ".svg or .json, or --format."),
+        (["bird.toml", "-o", "out.svg", "--format", "json"], "contradict each other"),
+        (["", "-o", "out.svg"], "the name of the design is empty"),
         (["bird.toml", "-o", "out"], ".svg or .json"),
         (["bird.toml", "-o", "out.svg", "--format", "png"], "png"),
         (["bird.toml", "bird.toml", "-o", "out"], "Two designs would be written to bird.svg"),
@@ -240,6 +243,162 @@ def test_bad_designs(case: str, voronoi_tiles: CommandLine, tmp_path: Path) -> N
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bird.toml", "out.svg"]
 
 
+def script(body: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
+    """Run the command line after a preparation that stands for a hostile world."""
+    code = f"import sys\n{body}\nfrom voronoi_tiles.cli import run\nsys.argv[1:] = {list(arguments)!r}\nrun()\n"
+    return subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, cwd=cwd)
+
+
+BATCH = ("a.toml", "bad.toml", "z.toml")
+
+
+@pytest.mark.parametrize(
+    ("failure", "code", "message"),
+    [
+        ("MemoryError()", 2, "Error: bad.toml: there is not enough memory for this design. Allow larger tolerances"),
+        ("RuntimeError('odd')", 70, "Error: bad.toml: RuntimeError: odd. This is a bug"),
+    ],
+)
+def test_no_failure_loses_the_batch(failure: str, code: int, message: str, tmp_path: Path) -> None:
+    """Neither a lack of memory nor a bug in one design costs the others; it is named."""
+    for name in BATCH:
+        (tmp_path / name).write_text(SEGMENT)
+    body = (
+        "import voronoi_tiles.tiling as tiling\nreal = tiling.tessellate\n"
+        f"def fail(design):\n    if design.name == 'bad':\n        raise {failure}\n    return real(design)\n"
+        "tiling.tessellate = fail\n"
+    )
+    result = script(body, "export", *BATCH, "-o", "out", "-q", cwd=tmp_path)
+    assert result.returncode == code
+    (line,) = result.stderr.splitlines()
+    assert line.startswith(message)
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["a.svg", "z.svg"]
+    assert complaint(script(body, "info", "bad.toml", cwd=tmp_path), code).startswith(message)
+
+
+def test_an_unreadable_file_does_not_lose_the_batch(tmp_path: Path) -> None:
+    """Nor does a folder that may be written and not read: nothing is tested before the program runs."""
+    for name in BATCH:
+        (tmp_path / name).write_text(SEGMENT)
+    (tmp_path / "out").mkdir()
+    body = (
+        "import os, pathlib\nos.access = lambda *_, **__: False\nreal = pathlib.Path.open\n"
+        "def refuse(path, *a, **k):\n"
+        "    if path.name == 'bad.toml':\n        raise PermissionError(13, 'Permission denied')\n"
+        "    return real(path, *a, **k)\n"
+        "pathlib.Path.open = refuse\n"
+    )
+    result = script(body, "export", *BATCH, "-o", "out", "-q", cwd=tmp_path)
+    assert result.returncode == 2
+    (line,) = result.stderr.splitlines()
+    assert line.startswith("Error: bad.toml: cannot read the design: Permission denied. Check")
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["a.svg", "z.svg"]
+
+
+@pytest.mark.parametrize("name", ["a", "t", "bird", "copies"])
+def test_the_file_is_named_once(name: str, voronoi_tiles: CommandLine, tmp_path: Path) -> None:
+    """Also where its name is a word of the message."""
+    (tmp_path / name).write_text(TOUCHING)
+    message = complaint(voronoi_tiles("export", name, "-o", "out.svg", cwd=tmp_path))
+    assert message.startswith(f'Error: {name}: site "bird" touches')
+    (tmp_path / name).write_text("schema = 2")
+    assert complaint(voronoi_tiles("info", name, cwd=tmp_path)).startswith(f"Error: {name}, schema: ")
+    (tmp_path / name).write_text(SEGMENT)
+    message = complaint(voronoi_tiles("export", name, "-o", "none/out.svg", cwd=tmp_path))
+    assert message.startswith(f"Error: {name}: cannot write none/out.svg: No such file or directory. Make its folder")
+
+
+def test_names_that_are_no_text(voronoi_tiles: CommandLine, command: str, tmp_path: Path) -> None:
+    """Control characters and bytes that are not UTF-8 are escaped, in messages and in tables."""
+    odd = "a\n\x1b[31m.toml"
+    (tmp_path / odd).write_text("schema = 2")
+    assert complaint(voronoi_tiles("info", odd, cwd=tmp_path)).startswith(r"Error: a\n\x1b[31m.toml, schema: ")
+    name = b"\xffb\n.toml"
+    Path(os.fsdecode(os.fsencode(tmp_path) + b"/" + name)).write_text(SEGMENT)
+    for arguments, stream in (((b"info", name), "stdout"), ((b"export", name, b"-o", b"."), "stderr")):
+        result = subprocess.run(
+            [os.fsencode(command), *arguments], capture_output=True, text=True, check=False, cwd=tmp_path
+        )
+        assert result.returncode == 0, result.stderr
+        assert r"\xffb\n" in getattr(result, stream)
+    result = subprocess.run(
+        [os.fsencode(command), b"info", b"--json", name], capture_output=True, check=True, cwd=tmp_path
+    )
+    assert json.loads(result.stdout)["group"] == "p4"
+
+
+def test_messages_end_with_a_full_stop(voronoi_tiles: CommandLine, design: Path, tmp_path: Path) -> None:
+    """Ours and click's alike, with what to do."""
+    for arguments in (
+        ("export", design),
+        ("export", design, "--colour"),
+        ("export", design, "-o", "none/a.svg"),
+        ("export", design, "-o", "a.png"),
+        ("info", "none.toml"),
+        ("new", "p4", "-o", design),
+        ("new", "p4", "-o", ""),
+        ("completion",),
+        ("completion", "tcsh"),
+        ("infos",),
+    ):
+        assert complaint(voronoi_tiles(*arguments, cwd=tmp_path)).endswith((".", "--help'."))
+    assert "cannot write '': the name is empty" in complaint(voronoi_tiles("new", "p4", "-o", ""))
+
+
+POSIX = pytest.mark.skipif(sys.platform == "win32", reason="a POSIX shell")
+
+
+def shell(line: str, command: str, cwd: Path, interpreter: str = "sh") -> subprocess.CompletedProcess[str]:
+    """Run a line of shell in which $0 is the command."""
+    return subprocess.run(
+        [interpreter, "-c", line, command], capture_output=True, text=True, check=False, cwd=cwd, timeout=60
+    )
+
+
+@POSIX
+@pytest.mark.parametrize(
+    "line",
+    ["export bird.toml -o -", "info bird.toml", "info --json bird.toml", "--help", "--version", "new p4", "new --help"],
+)
+def test_a_closed_standard_output(line: str, command: str, design: Path) -> None:
+    """One message, exit code 2; what goes to a file is not concerned."""
+    message = complaint(shell(f'"$0" {line} >&-', command, design.parent))
+    assert "cannot write standard output: it is closed. " in message
+    assert shell('"$0" export bird.toml -o a.svg >&-', command, design.parent).returncode == 0
+    assert shell('"$0" export bird.toml -o b.svg <&- >&- 2>&-', command, design.parent).returncode == 0
+    assert (design.parent / "a.svg").read_bytes() == (design.parent / "b.svg").read_bytes()
+
+
+@POSIX
+def test_a_closed_standard_input(command: str, tmp_path: Path) -> None:
+    """One message, exit code 2."""
+    message = complaint(shell('"$0" export - -o o.svg <&-', command, tmp_path))
+    assert message.startswith("Error: standard input: cannot read the design: it is closed. ")
+
+
+@POSIX
+def test_a_closed_standard_error(command: str, tmp_path: Path) -> None:
+    """The exit code is all that is left."""
+    assert shell('"$0" info none.toml 2>&-', command, tmp_path).returncode == 2
+
+
+@pytest.mark.skipif(not Path("/dev/fd").exists(), reason="open descriptors have no names")
+def test_pipes_by_their_names(command: str, design: Path) -> None:
+    """/dev/stdout and >(command) are written as they are; so is a file that standard output is appended to."""
+    folder = design.parent
+    expected = shell('"$0" export bird.toml -o -', command, folder).stdout
+    line = '"$0" export bird.toml -o /dev/stdout --format svg'
+    result = shell(f"{line} | cat", command, folder)
+    assert (result.stdout, result.stderr) == (expected, "wrote /dev/stdout\n")
+    shell(f"echo first >log; {line} >>log", command, folder)
+    assert (folder / "log").read_text() == f"first\n{expected}"
+    if shutil.which("bash"):
+        line = '"$0" export bird.toml -q --format svg -o >(cat)'
+        result = shell(f"{line} | cat", command, folder, "bash")
+        assert (result.stdout, result.stderr) == (expected, "")
+    assert shell('"$0" new p4 -o /dev/stdout | cat', command, folder).stdout == starter_text("p4")
+
+
 def test_standard_input_is_named_in_messages(voronoi_tiles: CommandLine) -> None:
     """Where there is no file, the message says so."""
     assert "standard input" in complaint(voronoi_tiles("export", "-", "-o", "-", stdin="schema = 3"))
@@ -287,6 +446,8 @@ def test_new_and_export(group: str, voronoi_tiles: CommandLine, tmp_path: Path) 
     """A starter design exports as it is, by the command that its first lines show."""
     result = voronoi_tiles("new", group, "-o", f"{group}.toml", cwd=tmp_path)
     assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
+    assert voronoi_tiles("new", "p4", "-o", "bird.toml", cwd=tmp_path).returncode == 0
+    assert "export bird.toml -o bird.svg" in (tmp_path / "bird.toml").read_text()
     assert voronoi_tiles("new", group).stdout == (tmp_path / f"{group}.toml").read_text() == starter_text(group)
     shown = starter_text(group).splitlines()[1].split("voronoi-tiles ")[1].split()
     assert voronoi_tiles(*shown, cwd=tmp_path).returncode == 0

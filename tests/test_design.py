@@ -306,7 +306,13 @@ LINE = "site[0].strokes[0]"
         (LINE, {"catmull_rom": [[0, 0], [1, 1], [1, 1]]}, f"{LINE}.catmull_rom[2]", "zero length"),
         (LINE, {"bspline": [[0, 0], [1, 1], [2, 0]]}, f"{LINE}.bspline", "at least 4 points, not 3"),
         (LINE, {"bspline": [[1, 1]] * 4}, f"{LINE}.bspline", "zero length"),
-        (LINE, {"bspline": []}, f"{LINE}.bspline", "at least 1 points"),
+        (LINE, {"bspline": []}, f"{LINE}.bspline", "at least 4 points, not 0"),
+        (LINE, {"bspline": [], "closed": True}, f"{LINE}.bspline", "at least 3 points, not 0"),
+        (LINE, {"bezier": []}, f"{LINE}.bezier", "4, 7, 10, ... points, not 0"),
+        ("cell.a", 1e-308, "cell.a", "number below 1e-100. Write a larger number, or use smaller units."),
+        ("site[0].tolerance", 1e-300, "site[0].tolerance", "Write a larger number"),
+        (LINE, {"point": [1, 1e-300]}, f"{LINE}.point[1]", "Write 0, or use smaller units."),
+        (LINE, {"point": [1, 1], "scale": 1e-300}, f"{LINE}.scale", "Write a factor such as 0.5."),
         (LINE, {"circle": [1, 1]}, f"{LINE}.radius", "missing"),
         (LINE, {"circle": [1, 1], "radius": 0}, f"{LINE}.radius", "greater than 0"),
         (LINE, {"circle": [1, 1], "radius": 1e12}, LINE, "1,000,000 segments"),
@@ -324,7 +330,7 @@ LINE = "site[0].strokes[0]"
             LINE,
             "zero length where it is placed",
         ),
-        (LINE, {"segment": [[0, 0], [1e9, 0]]}, "site[0]", "10,000 times larger than the cell"),
+        (LINE, {"segment": [[0, 0], [1e9, 0]]}, "site[0]", "100 times larger than the cell"),
         (LINE, {"bezier": [[0, 0], [0, 1e12], [1e12, 1e12], [1e12, 0]]}, "site[0]", "1,000,000 segments"),
     ],
 )
@@ -378,7 +384,9 @@ def test_duplicate_names() -> None:
         ('schema = 1\ngroup = p4"', 2, "not TOML: invalid value (column 9)"),
         ("schema = 1\nschema = 1\n", 2, "not TOML"),
         ("schema = 1\n[cell", 2, "not TOML"),
-        ("schema = " + "1" * 5000, None, "not TOML"),
+        ("schema = " + "1" * 5000, None, "schema: schema 1000"),
+        (BIRD.replace("60.0", "6" * 6000), None, "cell.a: number beyond 1e+12"),
+        (BIRD.replace("60.0", "-1_" + "0" * 6000), None, "cell.a: number beyond 1e+12"),
         ("schema = " + "[" * 100_000, None, "nested too deeply"),
         ("\x00\x01\x02", 1, "not TOML"),
         ("%PDF-1.4", 1, "not TOML"),
@@ -401,7 +409,8 @@ def test_broken_toml(text: str, line: int | None, message: str) -> None:
         ('{"schema": 1,\n "group" "p4"}', 2, "not JSON"),
         ('{"schema": 1, "schema": 1}', None, "'schema' occurs twice"),
         ("[" * 100_000, None, "nested too deeply"),
-        ('{"schema": ' + "1" * 5000 + "}", None, "not JSON"),
+        ('{"schema": ' + "1" * 5000 + "}", None, "schema: schema 1000"),
+        ('{"schema": 1, "group": "p4", "cell": {"a": ' + "6" * 6000 + "}}", None, "cell.a: number beyond 1e+12"),
         ("[]", None, "must be a table, not []"),
         ("null", None, "must be a table, not nothing"),
         ("", 1, "not JSON"),
@@ -442,6 +451,28 @@ def test_unreadable_files(tmp_path: Path) -> None:
     with pytest.raises(DesignError) as caught:
         Design.load(binary)
     assert caught.value.line == 2
+
+
+def test_the_largest_site() -> None:
+    """A hundred times the cell is read, more is refused."""
+    assert Design.from_dict(changed(LINE, {"segment": [[0, 0], [5990, 0]]})).sites
+    assert refusal(changed(LINE, {"segment": [[0, 0], [6010, 0]]})).key == "site[0]"
+
+
+def test_nothing_to_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    """No name, and a standard input that was closed."""
+    with pytest.raises(DesignError, match=r"^'': the name of the design is empty\. Name a TOML or JSON file"):
+        Design.load("")
+    monkeypatch.setattr(sys, "stdin", None)
+    with pytest.raises(DesignError, match=r"^standard input: cannot read the design: it is closed\. "):
+        Design.load("-")
+
+
+def test_a_design_shows_itself_in_a_line() -> None:
+    """No arrays: the name, the group, the first sites."""
+    base = design()
+    base["site"] = [{"strokes": [{"point": [k, 1]}]} for k in range(5)]
+    assert repr(Design.from_dict(base, name="bird")) == "<Design 'bird': p4, 5 sites (site1, site2, site3, ...)>"
 
 
 def test_values_that_cannot_be_shown() -> None:

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from voronoi_tiles.errors import OutputError
-from voronoi_tiles.files import write_whole
+from voronoi_tiles.files import is_special, write_whole
 
 AS_ROOT = hasattr(os, "geteuid") and os.geteuid() == 0
 
@@ -142,6 +142,73 @@ def test_devices_are_written_and_not_replaced() -> None:
         write_whole("/dev/full", b"new")
     assert Path("/dev/null").is_char_device()
     assert Path("/dev/full").is_char_device()
+
+
+def test_a_pipe_by_its_name(tmp_path: Path) -> None:
+    """A fifo takes the bytes, and stays a fifo."""
+    fifo = tmp_path / "a.svg"
+    os.mkfifo(fifo)
+    reader = os.open(fifo, os.O_RDONLY | os.O_NONBLOCK)
+    try:
+        write_whole(fifo, b"content")
+        assert os.read(reader, 100) == b"content"
+    finally:
+        os.close(reader)
+    assert fifo.is_fifo()
+    assert is_special(str(fifo))
+    assert names(tmp_path) == ["a.svg"]
+
+
+def test_open_descriptors_by_their_names(tmp_path: Path) -> None:
+    """/dev/fd/N is what >(command) gives; a file behind it is continued, not replaced."""
+    reader, writer = os.pipe()
+    try:
+        write_whole(f"/dev/fd/{writer}", b"content")
+        assert os.read(reader, 100) == b"content"
+        assert is_special(f"/dev/fd/{writer}")
+    finally:
+        os.close(reader)
+        os.close(writer)
+    with pytest.raises(OutputError, match=r"cannot write /dev/fd/\d+: Bad file descriptor\. "):
+        write_whole(f"/dev/fd/{writer}", b"content")
+    path = tmp_path / "log"
+    path.write_bytes(b"old ")
+    with path.open("ab") as log:
+        write_whole(f"/dev/fd/{log.fileno()}", b"new")
+    assert path.read_bytes() == b"old new"
+    assert not is_special(str(path))
+    assert not is_special(str(tmp_path))
+    assert not is_special("a\0b")
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("missing/a.svg", "No such file or directory. Make its folder first"),
+        ("file/a.svg", "Not a directory. A part of its path is a file"),
+        ("n" * 300, "File name too long. Choose a shorter name."),
+        ("a\0b", "null byte. Choose another name or place."),
+    ],
+)
+def test_messages_have_a_remedy(name: str, message: str, tmp_path: Path) -> None:
+    """What is wrong, and what to do."""
+    (tmp_path / "file").write_bytes(b"")
+    with pytest.raises(OutputError, match="cannot write") as caught:
+        write_whole(tmp_path / name, b"new")
+    assert message in str(caught.value)
+
+
+def test_an_empty_name() -> None:
+    """It shows as two quotes."""
+    with pytest.raises(OutputError, match=r"^cannot write '': the name is empty\. Choose another name"):
+        write_whole("", b"new")
+
+
+def test_a_standard_output_that_was_closed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Python has None for it."""
+    monkeypatch.setattr(sys, "stdout", None)
+    with pytest.raises(OutputError, match=r"^cannot write standard output: it is closed\. "):
+        write_whole("-", b"new")
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="resource limits are POSIX")

@@ -67,6 +67,30 @@ def test_a_tile_has_the_interfaces_of_scripts(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == []
 
 
+def test_tiles_show_themselves_in_a_line() -> None:
+    """No arrays: repr() is for a terminal."""
+    tiling = Design.loads(starter_text("p4"), name="p4").tessellate()
+    (tile,) = tiling.tiles
+    assert repr(tile) == f"<Tile 'bird': {len(tile.outline)} edges, 4 copies per cell>"
+    assert repr(tiling) == "<Tiling 'p4': p4, 1 tiles>"
+
+
+@pytest.mark.parametrize(
+    ("file", "command"),
+    [
+        (None, "export p4.toml -o p4.svg"),
+        ("designs/bird.toml", "export bird.toml -o bird.svg"),
+        ("my bird.toml", "export 'my bird.toml' -o 'my bird.svg'"),
+        ("a\nb.toml", "export p4.toml -o p4.svg"),
+    ],
+)
+def test_a_starter_names_its_own_file(file: str | None, command: str) -> None:
+    """The command in its head works where the file lies."""
+    text = starter_text("p4", file)
+    assert text.splitlines()[1] == f"# Export it:  voronoi-tiles {command}"
+    assert tomllib.loads(text)["group"] == "p4"
+
+
 def test_the_public_names_are_loaded_on_first_use() -> None:
     """Each of them exists, and no other."""
     for name in vt.__all__:

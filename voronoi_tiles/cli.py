@@ -7,6 +7,8 @@ check; 2 bad input or usage; 130 interrupted; 70 a bug of ours. Whatever happens
 
 from __future__ import annotations
 
+import errno
+import io
 import os
 import signal
 import sys
@@ -32,7 +34,8 @@ EXIT_INTERRUPTED = 130  # as shells report SIGINT
 
 DEBUG_VARIABLE = "VORONOI_TILES_DEBUG"
 
-_DESIGN = click.Path(allow_dash=True)
+# Whether a file can be read shows when it is read: click's own check would lose a whole batch for one of them.
+_PATH = click.Path(allow_dash=True, readable=False)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -42,13 +45,13 @@ def cli() -> None:
 
 
 @cli.command()
-@click.argument("designs", metavar="DESIGN...", nargs=-1, required=True, type=_DESIGN)
+@click.argument("designs", metavar="DESIGN...", nargs=-1, required=True, type=_PATH)
 @click.option(
     "-o",
     "--output",
     required=True,
     metavar="OUT",
-    type=click.Path(allow_dash=True),
+    type=_PATH,
     help="The file to write, its format by its suffix (.svg, .json); a folder for several designs; "
     "- for standard output.",
 )
@@ -74,9 +77,8 @@ def export(designs: tuple[str, ...], output: str, file_format: str | None, quiet
             text = _tessellate(design).text(target_format)
             _make_folder(target, output)
             write_whole(target, text.encode())
-        except VoronoiTilesError as error:
-            _say(_message(design, error))
-            worst = max(worst, error.exit_code)
+        except Exception as error:  # noqa: BLE001 - whatever one design does, the others are still to be written
+            worst = max(worst, _report(design, error))
         else:
             if not quiet and target != STDOUT:
                 _say(f"wrote {target}")
@@ -85,7 +87,7 @@ def export(designs: tuple[str, ...], output: str, file_format: str | None, quiet
 
 
 @cli.command()
-@click.argument("design", type=_DESIGN)
+@click.argument("design", type=_PATH)
 @click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
 def info(design: str, as_json: bool) -> None:
     """Print what a design gives: its cell, its tiles with their edges and neighbours, and the proof's figures."""
@@ -95,9 +97,8 @@ def info(design: str, as_json: bool) -> None:
 
     try:
         figures = _tessellate(design).figures()
-    except VoronoiTilesError as error:
-        _say(_message(design, error))
-        raise click.exceptions.Exit(error.exit_code) from error
+    except Exception as error:
+        raise click.exceptions.Exit(_report(design, error)) from error
     text = json.dumps(figures, indent=2) + "\n" if as_json else _table_text(figures)
     write_whole(STDOUT, text.encode())
 
@@ -116,19 +117,20 @@ def _complete_group(_context: click.Context, _parameter: click.Parameter, incomp
     "--output",
     default="-",
     metavar="FILE",
-    type=click.Path(allow_dash=True),
+    type=_PATH,
     help="The file to write; default: standard output. An existing file is not overwritten.",
 )
 def new(group: str, output: str) -> None:
     """Write a commented starter design for a wallpaper GROUP (p1 p2 pm pg cm pmm ...)."""
-    from voronoi_tiles.files import STDOUT, write_whole
+    from voronoi_tiles.files import STDOUT, is_special, write_whole
     from voronoi_tiles.starters import GROUP_NAMES, starter_text
 
     if group not in GROUP_NAMES:
         raise click.BadParameter(f"unknown group {group!r}. Use one of {' '.join(GROUP_NAMES)}.", param_hint="GROUP")
-    if output != STDOUT and os.path.lexists(output):
-        raise OutputError(f"{output} exists already: choose another name, or remove it first", path=output)
-    write_whole(output, starter_text(group).encode())
+    stream = output == STDOUT or is_special(output)
+    if not stream and os.path.lexists(output):
+        raise OutputError(f"{output} exists already", path=output, remedy="Choose another name, or remove it first.")
+    write_whole(output, starter_text(group, None if stream else output).encode())
 
 
 @cli.command()
@@ -150,10 +152,19 @@ def run() -> Never:
     if hasattr(signal, "SIGPIPE"):
         # A reader that has seen enough ends us silently, as it ends other commands in a pipe.
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    if sys.stdout is None:
+        sys.stdout = _ClosedStdout()
     code = _run()
     if code:
         _drop_stdout()
     sys.exit(code)
+
+
+class _ClosedStdout(io.StringIO):
+    """What stands for a standard output that was closed before we began: it refuses what is written."""
+
+    def write(self, _text: str, /) -> int:
+        raise OSError(errno.EBADF, "it is closed")
 
 
 def _run() -> int:
@@ -164,32 +175,40 @@ def _run() -> int:
     except (Exception, KeyboardInterrupt) as error:
         if os.environ.get(DEBUG_VARIABLE):
             raise
+        if isinstance(error, click.exceptions.NoArgsIsHelpError):
+            _say(error.format_message(), lines=True)
+            return EXIT_USAGE
         code, message = _explain(error)
         _say(message)
         return code
     return result if isinstance(result, int) else 0
 
 
-def _explain(error: BaseException) -> tuple[int, str]:
-    """Give the exit code and the message for an error."""
+def _explain(error: BaseException, design: str | None = None) -> tuple[int, str]:
+    """Give the exit code and the message for an error, which begins with the name of the design if there is one."""
+    start = f"Error: {design}: " if design is not None else "Error: "
     match error:
         case VoronoiTilesError():
-            code, message = error.exit_code, f"Error: {error}"
-        case click.exceptions.NoArgsIsHelpError():
-            code, message = EXIT_USAGE, error.format_message()
+            code, message = error.exit_code, f"{'Error: ' if error.file is not None else start}{error}"
         case click.UsageError():
+            text = error.format_message().rstrip()
+            if isinstance(error, click.MissingParameter):
+                text = " ".join(text.split())  # click lists choices one to a line
+            stop = "" if text.endswith((".", "?", "!")) else "."
             hint = f" See '{error.ctx.command_path} --help'." if error.ctx else ""
-            code, message = EXIT_USAGE, f"Error: {error.format_message()}{hint}"
+            code, message = EXIT_USAGE, f"Error: {text}{stop}{hint}"
         case click.Abort() | KeyboardInterrupt():
             code, message = EXIT_INTERRUPTED, "Interrupted."
         case MemoryError():
             remedy = "Allow larger tolerances, or use fewer strokes."
-            code, message = EXIT_USAGE, f"Error: there is not enough memory for this design. {remedy}"
+            code, message = EXIT_USAGE, f"{start}there is not enough memory for this design. {remedy}"
         case OSError():
-            code, message = EXIT_USAGE, f"Error: {error.filename or 'standard output'}: {error.strerror or error}."
+            from voronoi_tiles.files import output_error
+
+            code, message = EXIT_USAGE, f"{start}{output_error(error.filename or 'standard output', error)}"
         case _:
             remedy = f"please report it, with the design. {DEBUG_VARIABLE}=1 shows where it is."
-            code, message = EXIT_BUG, f"Error: {type(error).__name__}: {error}. This is a bug in {PROGRAM}: {remedy}"
+            code, message = EXIT_BUG, f"{start}{type(error).__name__}: {error}. This is a bug in {PROGRAM}: {remedy}"
     return code, message
 
 
@@ -200,10 +219,13 @@ def _tessellate(design: str) -> Tiling:
     return Design.load(design).tessellate()
 
 
-def _message(design: str, error: VoronoiTilesError) -> str:
-    """Say what is wrong with one of the designs, by its name."""
-    text, name = str(error), "standard input" if design == "-" else design
-    return f"Error: {text}" if name in text else f"Error: {name}: {text}"
+def _report(design: str, error: Exception) -> int:
+    """Say what is wrong with one of the designs, by its name; give the exit code."""
+    code, message = _explain(error, "standard input" if design == "-" else design)
+    if code == EXIT_BUG and os.environ.get(DEBUG_VARIABLE):
+        raise error
+    _say(message)
+    return code
 
 
 def _targets(designs: Sequence[str], output: str, file_format: str | None) -> list[tuple[str, str]]:
@@ -211,7 +233,7 @@ def _targets(designs: Sequence[str], output: str, file_format: str | None) -> li
 
     That is: one place for several results, or a result that would overwrite a design.
     """
-    from voronoi_tiles.tiling import FORMATS, format_of
+    from voronoi_tiles.tiling import FORMATS
 
     if not output:
         raise click.UsageError("The name of the file to write is empty: -o FILE.")
@@ -223,9 +245,16 @@ def _targets(designs: Sequence[str], output: str, file_format: str | None) -> li
         if several:
             raise click.UsageError("Several designs need a folder: -o DIR.")
         return [("-", file_format or FORMATS[0])]
-    if not several and not output.endswith("/") and not path.is_dir():
-        targets = [(output, file_format or format_of(output))]
-    elif not path.is_dir() and (path.exists() or path.suffix.lower().removeprefix(".") in FORMATS):
+    folder = os.path.isdir(output)  # noqa: PTH112 - a name that the system refuses is no folder, and no error here
+    suffix = path.suffix.lower().removeprefix(".")
+    if not several and not output.endswith("/") and not folder:
+        if suffix not in FORMATS and not file_format:
+            suffixes = " or ".join(f".{name}" for name in FORMATS)
+            raise click.UsageError(f"The format of {output} is not clear: give it the suffix {suffixes}, or --format.")
+        if suffix in FORMATS and file_format not in {None, suffix}:
+            raise click.UsageError(f"{output} and --format {file_format} contradict each other: leave out --format.")
+        targets = [(output, file_format or suffix)]
+    elif not folder and (os.path.exists(output) or suffix in FORMATS):  # noqa: PTH110 - same
         raise click.UsageError(f"Several designs need a folder: -o DIR, and {output} is a file.")
     else:
         suffix = file_format or FORMATS[0]
@@ -253,10 +282,20 @@ def _make_folder(target: str, output: str) -> None:
         raise output_error(output, error) from error
 
 
-def _say(message: str) -> None:
-    """Print a message to standard error; that nobody can read it is no reason to fail."""
+def _say(message: str, *, lines: bool = False) -> None:
+    """Print a message (one line, unless `lines`) to standard error; that nobody can read it is no reason to fail."""
     with suppress(OSError):
-        click.echo(message, err=True)
+        click.echo(message if lines else _printable(message), err=True)
+
+
+def _printable(text: str) -> str:
+    """Escape control characters, and bytes that are not UTF-8, as names of files may hold them."""
+
+    def escaped(sign: str) -> str:
+        # Python keeps the byte b of such a name as U+DC00 + b.
+        return f"\\x{ord(sign) - 0xDC00:02x}" if "\udc80" <= sign <= "\udcff" else repr(sign)[1:-1]
+
+    return "".join(sign if sign.isprintable() else escaped(sign) for sign in text)
 
 
 def _drop_stdout() -> None:
@@ -292,7 +331,7 @@ def _table_text(figures: dict[str, Any]) -> str:
 
     cell = figures["cell"]
     head = {
-        "design": figures["design"],
+        "design": _printable(figures["design"]),
         "group": f"{figures['group']}, {figures['order']} copies per cell",
         "cell": f"a = {_vector(cell['a'])}, b = {_vector(cell['b'])} {units}, area {_cell(cell['area'])} {units}²",
     }

@@ -64,6 +64,10 @@ class Design:
     source: str
     name: str = "design"
 
+    def __repr__(self) -> str:
+        sites = ", ".join(site.name for site in self.sites[:3]) + (", ..." if len(self.sites) > 3 else "")
+        return f"<Design {self.name!r}: {self.group.name}, {len(self.sites)} sites ({sites})>"
+
     @property
     def unit_mm(self) -> float:
         """One unit of the design in millimetres."""
@@ -76,7 +80,7 @@ class Design:
         Raises DesignError where the file cannot be read or used.
         """
         file = os.fspath(path)
-        shown = "standard input" if file == "-" else file
+        shown = "standard input" if file == "-" else file or repr(file)
         text = _read_text(file, shown)
         suffix = Path(file).suffix.lower()
         if suffix not in (".toml", ".json"):
@@ -117,6 +121,14 @@ class Design:
 
 
 def _read_text(file: str, shown: str) -> str:
+    if not file:
+        raise DesignError(
+            "the name of the design is empty", file=shown, remedy="Name a TOML or JSON file, or - for standard input."
+        )
+    if file == "-" and sys.stdin is None:
+        raise DesignError(
+            "cannot read the design: it is closed", file=shown, remedy="Send a design to it, or name a file."
+        )
     try:
         if file == "-":
             data = sys.stdin.buffer.read(FILE_BYTES_MAX + 1)
@@ -147,9 +159,14 @@ def _parse(text: str, form: str, file: str | None) -> Mapping[str, Any]:
     if form not in ("toml", "json"):
         raise DesignError(f"unknown format {reading.shown(form)}", file=file, remedy='Use "toml" or "json".')
     try:
-        if form == "toml":
-            return _parse_toml(text)
-        return cast("Mapping[str, Any]", json.loads(text, object_pairs_hook=_without_repeats))
+        try:
+            return _parse_as(form, text)
+        except (DesignError, json.JSONDecodeError):
+            raise
+        except ValueError:
+            # Python refuses integers of thousands of digits without a place. No key takes one, so a shorter one that
+            # is still too large for all gives the message with the key.
+            return _parse_as(form, _shorter(text))
     except DesignError as error:
         raise error.with_file(file) from None
     except json.JSONDecodeError as error:
@@ -157,9 +174,21 @@ def _parse(text: str, form: str, file: str | None) -> Mapping[str, Any]:
             f"not JSON: {error.msg} (column {error.colno})", file=file, line=error.lineno, remedy="Correct the line."
         ) from None
     except (ValueError, RecursionError) as error:
-        # Integers of thousands of digits, and nesting beyond the parser's stack.
         why = "nested too deeply" if isinstance(error, RecursionError) else str(error).partition(";")[0]
         raise DesignError(f"not {form.upper()}: {why}", file=file, remedy=_STARTER) from None
+
+
+def _parse_as(form: str, text: str) -> Mapping[str, Any]:
+    if form == "toml":
+        return _parse_toml(text)
+    return cast("Mapping[str, Any]", json.loads(text, object_pairs_hook=_without_repeats))
+
+
+def _shorter(text: str) -> str:
+    """The text with integers of thousands of digits cut to 401, which Python always takes."""
+    import re
+
+    return re.sub(rf"\d(?:_?\d){{{sys.get_int_max_str_digits()},}}", "1" + "0" * 400, text)
 
 
 def _parse_toml(text: str) -> Mapping[str, Any]:

@@ -14,9 +14,13 @@ if TYPE_CHECKING:
 
 
 class VoronoiTilesError(Exception):
-    """Root of all errors that voronoi_tiles raises on purpose; `str()` is one message for the user."""
+    """Root of all errors that voronoi_tiles raises on purpose; `str()` is one message for the user.
+
+    `file` is the design's file where `str()` begins with it, else None.
+    """
 
     exit_code: ClassVar[int] = 2
+    file: str | None = None
 
 
 class DesignError(VoronoiTilesError, ValueError):
@@ -93,22 +97,30 @@ class TouchingCopiesError(VoronoiTilesError, ValueError):
 
 
 class ProofError(VoronoiTilesError, ArithmeticError):
-    """A result that failed its proof; `report` is the ProofReport with all figures."""
+    """A result that failed its proof: `message`, without a full stop; `report` is the ProofReport with all figures."""
 
     exit_code: ClassVar[int] = 1
 
     def __init__(self, message: str, report: Any = None) -> None:
         super().__init__(message)
+        self.message = message
         self.report = report
+
+    def __str__(self) -> str:
+        return f"{self.message}."
 
 
 class OutputError(VoronoiTilesError, OSError):
-    """A file that could not be written; `path` is the file, which is as it was before."""
+    """A file that could not be written; `path` is the file, which is as it was before.
 
-    def __init__(self, message: str, path: str | os.PathLike[str] | None = None) -> None:
+    `message` and `remedy` are those of DesignError.
+    """
+
+    def __init__(self, message: str, path: str | os.PathLike[str] | None = None, *, remedy: str | None = None) -> None:
         super().__init__(message)
         self.message = message
         self.path = path
+        self.remedy = remedy
 
     def __str__(self) -> str:
-        return self.message
+        return f"{self.message}. {self.remedy}" if self.remedy else f"{self.message}."

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import errno
 import os
+import re
 import secrets
 import stat
 import sys
@@ -13,6 +15,27 @@ from voronoi_tiles.errors import OutputError
 
 STDOUT = "-"
 
+# What the system and the shell, by >(command), call a descriptor that is open already.
+_DESCRIPTOR = re.compile(r"/(?:dev|proc/self)/fd/(\d{1,6})")
+_DESCRIPTORS = {"/dev/stderr": 2}
+
+_ROOM = "Make room, or write to another disk."
+_PERMISSIONS = "Choose another place, or change its permissions."
+_REMEDIES = {
+    errno.ENOENT: "Make its folder first, or choose another.",
+    errno.ENOTDIR: "A part of its path is a file: choose another folder.",
+    errno.EISDIR: "Name a file, not a folder.",
+    errno.EEXIST: "Choose another name.",
+    errno.EACCES: _PERMISSIONS,
+    errno.EPERM: _PERMISSIONS,
+    errno.EROFS: _PERMISSIONS,
+    errno.ENOSPC: _ROOM,
+    errno.EDQUOT: _ROOM,
+    errno.EFBIG: _ROOM,
+    errno.ENAMETOOLONG: "Choose a shorter name.",
+    errno.EBADF: "Send it to a file or a pipe that is open.",
+}
+
 
 def write_whole(path: str | os.PathLike[str], data: bytes) -> None:
     """Write a file whole or not at all: into a temporary file beside it, synced, then renamed over it.
@@ -21,32 +44,64 @@ def write_whole(path: str | os.PathLike[str], data: bytes) -> None:
     `-` is standard output; devices and pipes are written directly. Raises OutputError.
     """
     name = os.fspath(path)
-    if name == STDOUT:
+    if name in {STDOUT, "/dev/stdout"}:
         _write_stdout(data)
         return
     try:
-        target = Path(os.path.realpath(name))
-        old = _status(target)
-        if old is None or stat.S_ISREG(old.st_mode):
-            _replace(target, data, old)
+        descriptor = _descriptor(name)
+        old = _status(name)
+        if descriptor is not None:
+            _write_all(descriptor, data)
+        elif old is None or stat.S_ISREG(old.st_mode):
+            _replace(_target(name), data, old)
         else:
-            _write_special(target, data)
+            _write_special(name, data)
     except (OSError, ValueError) as error:  # ValueError: a null byte in the name
         raise output_error(name, error) from error
 
 
 def output_error(path: str, error: Exception) -> OutputError:
-    """Say in one sentence why a file could not be written."""
-    reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-    return OutputError(f"cannot write {path}: {reason}", path=path)
+    """Say why a file could not be written, and what to do."""
+    reason, remedy = str(error), None
+    if isinstance(error, OSError) and error.errno is not None:
+        reason, remedy = error.strerror or reason, _REMEDIES.get(error.errno)
+    return OutputError(
+        f"cannot write {path or repr(path)}: {reason}", path=path, remedy=remedy or "Choose another name or place."
+    )
 
 
-def _status(target: Path) -> os.stat_result | None:
-    """Give the target's status, None when there is no such file."""
+def is_special(name: str) -> bool:
+    """Tell whether a file is a device, a pipe or an open descriptor, which writing does not replace."""
     try:
-        return target.stat()
+        old = _status(name)
+    except (OSError, ValueError):
+        return False
+    return old is not None and (
+        name == "/dev/stdout"
+        or _descriptor(name) is not None
+        or not (stat.S_ISREG(old.st_mode) or stat.S_ISDIR(old.st_mode))
+    )
+
+
+def _descriptor(name: str) -> int | None:
+    """Give the open descriptor that a name stands for, None for other files."""
+    numbered = _DESCRIPTOR.fullmatch(name)
+    return int(numbered[1]) if numbered else _DESCRIPTORS.get(name)
+
+
+def _status(name: str) -> os.stat_result | None:
+    """Give the status of a file, None when there is none."""
+    try:
+        return os.stat(name)  # noqa: PTH116 - Path takes an empty name for the folder
     except FileNotFoundError:
         return None
+
+
+def _target(name: str) -> Path:
+    """Give the file that a name leads to through symbolic links."""
+    if not name:
+        raise ValueError("the name is empty")
+    return Path(os.path.realpath(name))
 
 
 def _replace(target: Path, data: bytes, old: os.stat_result | None) -> None:
@@ -82,9 +137,9 @@ def _sync_folder(folder: Path) -> None:
             os.close(descriptor)
 
 
-def _write_special(target: Path, data: bytes) -> None:
+def _write_special(name: str, data: bytes) -> None:
     """Write to a device or a pipe, which a rename would replace; a folder is an error of the system's."""
-    descriptor = os.open(target, os.O_WRONLY)
+    descriptor = os.open(name, os.O_WRONLY)
     try:
         _write_all(descriptor, data)
     finally:
@@ -94,6 +149,8 @@ def _write_special(target: Path, data: bytes) -> None:
 def _write_stdout(data: bytes) -> None:
     """Write to standard output without its buffer, so that a full disk shows here and not at exit."""
     try:
+        if sys.stdout is None:
+            raise OSError(errno.EBADF, "it is closed")  # noqa: TRY301 - one handler says it all
         sys.stdout.flush()
         try:
             descriptor = sys.stdout.fileno()

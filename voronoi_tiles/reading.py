@@ -24,6 +24,8 @@ from voronoi_tiles.tolerance import COORDINATE_MAX, NUMBER_MIN
 Complexes = NDArray[np.complex128]
 Table = Mapping[str, Any]
 
+_LARGER = "Write a larger number, or use smaller units."  # where 0 is refused too
+
 
 @contextmanager
 def within(key: str) -> Iterator[None]:
@@ -78,8 +80,10 @@ def required(of: Table, name: str, remedy: str) -> Any:
     return of[name]
 
 
-def number(value: Any, remedy: str = "Write a number, such as 60.0.") -> float:
-    """Read a finite number of sane size; true and false are none."""
+def number(
+    value: Any, remedy: str = "Write a number, such as 60.0.", tiny: str = "Write 0, or use smaller units."
+) -> float:
+    """Read a finite number of sane size; true and false are none. `tiny` is the remedy for one too near to 0."""
     if not isinstance(value, int | float | np.integer | np.floating) or isinstance(value, bool):
         raise DesignError(f"must be a number, not {shown(value)}", remedy=remedy)
     size: Any = abs(value)
@@ -89,13 +93,13 @@ def number(value: Any, remedy: str = "Write a number, such as 60.0.") -> float:
         raise DesignError(f"must be a finite number, not {float(value)}", remedy=remedy)
     result = float(value)
     if result != 0.0 and abs(result) < NUMBER_MIN:
-        raise DesignError(f"number below {NUMBER_MIN:g}", remedy="Write 0, or use smaller units.")
+        raise DesignError(f"number below {NUMBER_MIN:g}", remedy=tiny)
     return result
 
 
 def positive(value: object) -> float:
     """Read a number greater than 0."""
-    result = number(value)
+    result = number(value, tiny=_LARGER)
     if result <= 0.0:
         raise DesignError(f"must be greater than 0, not {result:g}", remedy="Write a positive number.")
     return result
@@ -187,7 +191,7 @@ def _polyline(stroke: _Stroke) -> Complexes:
 
 
 def _bezier(stroke: _Stroke) -> Complexes:
-    return stroke.placement(curves.bezier_pieces(stroke.points("bezier", 1)))
+    return stroke.placement(curves.bezier_pieces(stroke.points("bezier", 0)))
 
 
 def _hermite(stroke: _Stroke) -> Complexes:
@@ -209,7 +213,7 @@ def _catmull_rom(stroke: _Stroke) -> Complexes:
 
 
 def _bspline(stroke: _Stroke) -> Complexes:
-    return stroke.placement(curves.bspline_pieces(stroke.points("bspline", 1), stroke.closed))
+    return stroke.placement(curves.bspline_pieces(stroke.points("bspline", 0), stroke.closed))
 
 
 def _circle(stroke: _Stroke) -> Complexes:
@@ -283,7 +287,7 @@ def _placement(of: Table) -> curves.Placement:
     scale, rotate, translate = 1.0, 0.0, 0j
     if "scale" in of:
         with within("scale"):
-            scale = number(of["scale"])
+            scale = number(of["scale"], tiny="Write a factor such as 0.5.")
             if scale == 0.0:
                 raise DesignError("must not be 0", remedy="Write a factor such as 0.5.")
     if "rotate" in of:

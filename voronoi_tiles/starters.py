@@ -6,7 +6,9 @@ p4m, p3m1, p6m) a lone site's tile would be that polygon whatever the strokes: t
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping
+from pathlib import PurePath
 from typing import NamedTuple
 
 
@@ -146,7 +148,7 @@ _CELL_COMMENTS = (
 
 _HEAD = """\
 # A tile design in the wallpaper group {group}: {symmetry}.
-# Export it:  voronoi-tiles export {group}.toml -o {group}.svg
+# Export it:  voronoi-tiles export {file} -o {result}
 
 schema = 1
 group = "{group}"
@@ -180,10 +182,24 @@ _MIRRORED = ("pm", "cm", "pmm", "pmg", "cmm", "p4m", "p4g", "p3m1", "p31m", "p6m
 _TURNED = ("p2", "pmm", "pmg", "pgg", "cmm", "p4", "p4m", "p4g", "p3", "p3m1", "p31m", "p6", "p6m")
 
 
-def starter_text(group: str) -> str:
-    """Write the starter design of a group as TOML. Raises KeyError for an unknown group."""
+def starter_text(group: str, file: str | None = None) -> str:
+    """Write the starter design of a group as TOML, with the command that exports it from `file` (default: GROUP.toml).
+
+    Raises KeyError for an unknown group.
+    """
     starter = _TABLE[group]
-    parts = [_HEAD.format(group=group, symmetry=starter.symmetry), _CELL_HEAD]
+    path = PurePath(file or "")
+    if not (path.name and path.name.isprintable()):  # a comment cannot show it
+        path = PurePath(f"{group}.toml")
+    parts = [
+        _HEAD.format(
+            group=group,
+            symmetry=starter.symmetry,
+            file=shlex.quote(path.name),
+            result=shlex.quote(f"{path.stem}.svg"),
+        ),
+        _CELL_HEAD,
+    ]
     parts += [
         f"{f'{key} = {value}':<22}# {comment}\n"
         for value, (key, comment) in zip(starter.cell, _CELL_COMMENTS, strict=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,7 +38,10 @@ class Tile:
     outline: Outline
     copies_per_cell: int
     symmetry: tuple[Operation, ...]
-    _record: TileRecord = field(repr=False)
+    _record: TileRecord
+
+    def __repr__(self) -> str:
+        return f"<Tile {self.site.name!r}: {len(self.outline)} edges, {self.copies_per_cell} copies per cell>"
 
     @property
     def area(self) -> float:
@@ -81,6 +84,9 @@ class Tiling:
     design: Design
     tiles: tuple[Tile, ...]
     proof: ProofReport
+
+    def __repr__(self) -> str:
+        return f"<Tiling {self.design.name!r}: {self.design.group.name}, {len(self.tiles)} tiles>"
 
     def figures(self) -> dict[str, Any]:
         """Give what there is to know about the tiles in numbers, as `voronoi-tiles info --json` prints it."""

@@ -43,8 +43,9 @@ CELL_ASPECT_MAX: Final = 1e4
 """Longest over shortest vector of the reduced lattice basis; no unit. The number of copies that can shape a
 tile grows with it."""
 
-SITE_EXTENT_MAX: Final = 1e4
-"""Largest extent of a site; relative to the square root of the cell's area. Beyond it copies overlap by the million."""
+SITE_EXTENT_MAX: Final = 100.0
+"""Largest extent of a site; relative to the square root of the cell's area. Beyond it copies overlap by the thousand,
+and the time grows with the square."""
 
 ANGLE_MIN: Final = 1e-6
 """Smallest distance of a cell's angle from 0 and 180; degrees."""
@@ -68,5 +69,5 @@ the cell or the site, whichever is larger. Hundreds of ulps, as flattened curves
 rounding."""
 
 TOUCHING: Final = 1e-11
-"""Copies that are nearer than this touch; relative to the cell's longer side. Ten times PROOF_LIMIT: at less, the width of
-the neck between them would be lost in the accuracy that is promised."""
+"""Copies that are nearer than this touch; relative to the cell's longer side. Ten times PROOF_LIMIT: at less, the
+width of the neck between them would be lost in the accuracy that is promised."""
