@@ -144,7 +144,8 @@ def find_candidates(
 ) -> tuple[list[Candidates], Bounds]:
     """Return, for each target, a superset of the pairs in which the element shapes the row's cell.
 
-    Raises TooManyPairsError where more than `most` pairs would be held at once.
+    Raises TooManyPairsError where more than `most` pairs, or four times as many before they are narrowed, would be held
+    at once.
 
     An element matters only if, for some point of the row's cell, it meets the disc about that point that just reaches
     the row's element. The row's bisector with a point z, its champion, bounds the cell. The discs about the points of

@@ -53,7 +53,7 @@ def bound_cells(
 
     Args:
         rows, contour: of the base site.
-        targets: for each site its copies, and the same in nested discs.
+        targets: for each site its copies, and the same in nested capsules.
         covering_radius: of the lattice.
 
     Raises:

@@ -54,11 +54,12 @@ class Contour:
         label = [-1] * len(following)
         number = 0
         for first in range(len(following)):
-            k = first
-            while label[k] < 0:
-                label[k] = number
-                k = following[k]
-            number += k == first and label[first] == number
+            if label[first] < 0:
+                k = first
+                while label[k] < 0:
+                    label[k] = number
+                    k = following[k]
+                number += 1
         return np.array(label, np.intp)
 
     @property

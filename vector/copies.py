@@ -75,18 +75,9 @@ class Action:
 
     @cached_property
     def reduced(self) -> tuple[tuple[int, int], tuple[int, int]]:
-        """The Gauss-reduced basis of the lattice, in integer coordinates over (a, b)."""
-        (p, q), (u, v) = ((1, 0), self.lattice.a), ((0, 1), self.lattice.b)
-        while True:
-            if abs(v) < abs(q):
-                p, q, u, v = u, v, p, q
-            n = round((v * q.conjugate()).real / abs(q) ** 2)
-            if n == 0:
-                return p, u
-            reduced = v - n * q
-            if abs(reduced) >= abs(v):  # a tie, decided differently by rounding
-                return p, u
-            u, v = (u[0] - n * p[0], u[1] - n * p[1]), reduced
+        """The shortest basis of the lattice, in integer coordinates over (a, b)."""
+        (m, n), (i, j) = (self.fractional(vector) for vector in self.lattice.reduced_basis)
+        return (round(m), round(n)), (round(i), round(j))
 
     def cartesian(self, x: npt.ArrayLike, y: npt.ArrayLike) -> Complexes:
         """Return fractional coordinates as points."""
@@ -178,8 +169,9 @@ class Placed:
         """Return the motion that names the copy onto which `motion` takes the site."""
         if len(self.stabilizer) == 1:
             return motion
-        cosets = {modulo_lattice(m) for m in self.representatives}
-        return next(m for m in (compose(motion, s) for s in self.stabilizer) if modulo_lattice(m) in cosets)
+        return next(
+            m for m in (compose(motion, s) for s in self.stabilizer) if modulo_lattice(m) in self.representatives
+        )
 
 
 def modulo_lattice(motion: Motion) -> Motion:
@@ -201,7 +193,7 @@ def place(action: Action, nodes: Complexes, segments: Ints) -> Placed:
     representatives: list[Motion] = []
     covered: set[Motion] = set()
     for motion in action.motions:
-        if modulo_lattice(motion) not in covered:
+        if motion not in covered:
             representatives.append(motion)
             covered |= {modulo_lattice(compose(motion, element)) for element in stabilizer}
     return Placed(

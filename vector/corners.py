@@ -19,13 +19,13 @@ def find_corners(builder: Builder, traced: list[Traced], edges: list[Edge]) -> C
     """Return all corners as images of representatives, and put those on rotation centres and mirrors there."""
     related: defaultdict[Corner, list[tuple[Corner, Motion]]] = defaultdict(list)
     ends: defaultdict[Corner, list[tuple[Edge, int]]] = defaultdict(list)
-    images: set[int] = set()
+    images: set[Edge] = set()
     for edge in edges:
         ends[edge.start].append((edge, 0))
         ends[edge.end].append((edge, -1))
         for motion, image, flips in edge.images:
-            if image is not edge and id(edge) not in images:
-                images.add(id(image))
+            if image is not edge and edge not in images:
+                images.add(image)
             there = (image.end, image.start) if flips else (image.start, image.end)
             for corner, other in zip((edge.start, edge.end), there, strict=True):
                 related[corner].append((other, motion))
@@ -49,7 +49,7 @@ def find_corners(builder: Builder, traced: list[Traced], edges: list[Edge]) -> C
                     fixing.add(compose(inverse(reached[other]), there_by))
         where = complex(edge.vertex[0])
         for corner, motion in reached.items():
-            sources = [(e, place) for e, place in ends[corner] if id(e) not in images]
+            sources = [(e, place) for e, place in ends[corner] if e not in images]
             where = _sharpened(builder.action, traced[corner[0]], where, motion, sources, ends[corner])
         stabilizer = _generated(fixing)
         number = builder.add_fixed(where, stabilizer, _across(traced, ends[first]))

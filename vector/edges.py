@@ -13,8 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from voronoi_tiles.vector.contour import Bools, Complexes, Ints
-from voronoi_tiles.vector.copies import IDENTITY, Action, Copies, Motion, Placed, compose, inverse
-from voronoi_tiles.vector.copies import reverses_orientation as reverses
+from voronoi_tiles.vector.copies import IDENTITY, Action, Copies, Motion, Placed, compose, inverse, reverses_orientation
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +123,7 @@ def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pi
     for edge in edges:
         for motion, tile, target, beyond, flips in _images(placed, edge.tile, edge.target, edge.motion):
             if motion == IDENTITY and not flips:
-                edge.images.insert(0, (motion, edge, False))
+                edge.images.append((motion, edge, False))
                 continue
             image = action.apply(motion, edge.vertex)
             candidates = faces.get((tile, target, beyond), [])
@@ -189,11 +188,11 @@ def _images(
     """Yield every way to move an edge onto a base tile: (motion, tile, target, copy beyond, whether it reverses)."""
     for element in placed[tile].stabilizer:
         motion = compose(element, beyond)
-        yield element, tile, target, placed[target].canonical(motion), reverses(element)
+        yield element, tile, target, placed[target].canonical(motion), reverses_orientation(element)
     back = inverse(beyond)
     for element in placed[target].stabilizer:
         motion = compose(element, back)
-        yield motion, target, tile, placed[tile].canonical(motion), not reverses(motion)
+        yield motion, target, tile, placed[tile].canonical(motion), not reverses_orientation(motion)
 
 
 def _cut_further(
@@ -217,9 +216,8 @@ def _cut_further(
             continue
         done.add((tile, arc))
         boundary = traced[tile]
-        ring = next(r for r in boundary.rings() if r[0] <= arc <= r[-1])
+        number, ring = next((n, r) for n, r in enumerate(boundary.rings()) if r[0] <= arc <= r[-1])
         before = arc - 1 if arc > ring[0] else int(ring[-1])
-        number = int(boundary.ring[arc])
         place = arc - int(ring[0])
         if place not in cuts[tile][number]:
             cuts[tile][number] = sorted([*cuts[tile][number], place])

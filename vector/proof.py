@@ -1,9 +1,10 @@
 """The proof that a result is right: figures computed from the finished outlines, not from the engine's steps.
 
 Equidistance and emptiness show that every edge lies on the boundary of the true tile. So each connected part of the
-true tile is either inside its outline or outside, and as it holds a stroke of the site, and all strokes are inside, it
-is inside; the outline can only be too large, and the area identity says that it is not. Closure, crossings and the
-bit-for-bit agreement of shared edges show that what is cut is that outline. Distances come from shapely.
+true tile is either inside its outline or outside, and as it holds a stroke of the site, and all strokes are inside,
+it is inside; the outline can only be too large, and the area identity says that it is not. Closure, crossings and the
+bit-for-bit agreement of shared edges show that what is cut is that outline. Which element is nearest is asked of
+shapely.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ class ProofReport:
         emptiness: by how much any other copy is nearer to such a point, on the same scale; 0 where none is.
         open_joints: arcs whose end is not, bit for bit, the start of the next.
         crossings: places where an outline crosses itself.
-        strayed: connected parts of sites that are not inside the outlines of their tiles.
+        strayed: connected parts of sites (of one with few nodes, the nodes) that are not inside their tiles' outlines.
         unshared: arcs that the tile beyond does not have, bit for bit, as its own.
     """
 
@@ -99,7 +100,7 @@ def prove(group: WallpaperGroup, lattice: Lattice, records: Sequence[TileRecord]
 
 
 class _Site:
-    """A site as shapely sees it: distances of points from it."""
+    """A site and shapely's tree of its elements: distances of points from it."""
 
     def __init__(self, tile: LocalTile) -> None:
         import shapely
@@ -175,14 +176,8 @@ def _nearest_translate(
 
 def _sample(outline: Outline) -> tuple[Complexes, Ints]:
     """Return points of every arc, and the index of each point's arc."""
-    points = []
-    for t in _PARAMETERS:
-        point = (1 - t) * outline.start + t * outline.end
-        bent = outline.curved
-        control = outline.control[bent]
-        point[bent] = (1 - t) ** 2 * outline.start[bent] + 2 * t * (1 - t) * control + t * t * outline.end[bent]
-        points.append(point)
-    return np.concatenate(points), np.tile(np.arange(len(outline)), len(_PARAMETERS))
+    arc = np.tile(np.arange(len(outline)), len(_PARAMETERS))
+    return _at(outline, arc, np.repeat(_PARAMETERS, len(outline))), arc
 
 
 def _open_joints(outline: Outline) -> int:
@@ -218,7 +213,7 @@ def _crossings(outline: Outline, size: float) -> int:
             return straight + len(bent)
         first, second = _divide(first, second)
     # Many pairs of tiny pieces may be left of one crossing.
-    return len(np.unique(np.stack((first[0], second[0])), axis=1).T)
+    return int(np.unique(np.stack((first[0], second[0])), axis=1).shape[1])
 
 
 # Halvings of crossing pieces: after so many a piece's sagitta is below its end points' rounding.

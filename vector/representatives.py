@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from voronoi_tiles.vector.contour import Bools, Complexes, Ints
-from voronoi_tiles.vector.copies import Action, Motion, compose
+from voronoi_tiles.vector.copies import Action, Motion, compose, reverses_orientation
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,9 +89,8 @@ class Builder:
 
         Onto a mirror it is moved along `tangent`, if one is given.
         """
-        images = [self.action.apply_to_point(motion, position) for motion in stabilizer]
-        place = sum(images) / len(images)
-        if tangent is not None and len(stabilizer) == 2:
+        place = self._centred(position, stabilizer)
+        if tangent is not None and any(map(reverses_orientation, stabilizer)) and len(stabilizer) == 2:
             # A vertex on a mirror from which the site keeps little distance is known badly across the mirror, but is
             # exactly on the other edge that ends there.
             off = place - position
@@ -99,14 +98,20 @@ class Builder:
             if square != 0.0:
                 along = tangent * (abs(off) ** 2 / square)
                 if abs(along) <= 1e3 * abs(off):
-                    target = position + along
-                    mirrored = self.action.apply_to_point(stabilizer[1], target)
-                    place = (target + mirrored) / 2
+                    place = self._centred(position + along, stabilizer)
         number = int(self.add(np.array([place]))[0])
         if len(stabilizer) > 1:
             self._stabilizer[number] = stabilizer
         return number
 
-    def finish(self) -> Representatives:
-        """Return all representatives."""
+    def _centred(self, position: complex, stabilizer: tuple[Motion, ...]) -> complex:
+        """Return the mean of a point's images, which all the motions fix."""
+        return sum(self.action.apply_to_point(motion, position) for motion in stabilizer) / len(stabilizer)
+
+    def last(self) -> complex:
+        """Return the position of the representative added last."""
+        return complex(self._positions[-1][-1])
+
+    def snapshot(self) -> Representatives:
+        """Return the representatives so far."""
         return Representatives(self.action, np.concatenate(self._positions), self._stabilizer)

@@ -29,7 +29,7 @@ class Rows:
         origin, axis, low, high: (rows,) as above.
         base0, ray0, base1, ray1: the first and last ray's origin and unit direction.
         base, ray: those of a ray between them.
-        spread, fan: at height H the rays' points are within spread + fan H of that ray's.
+        spread: how far along the half-edge the rays' origins are from that ray's; 0 in a corner.
     """
 
     half_edge: Ints
@@ -45,7 +45,6 @@ class Rows:
     base: Complexes
     ray: Complexes
     spread: Floats
-    fan: Floats
 
     def __len__(self) -> int:
         return len(self.half_edge)
@@ -107,7 +106,6 @@ def make_rows(contour: Contour, covering_radius: float, without: Bools) -> Rows:
         base=np.concatenate((start + (low + high) / 2 * along, point)),
         ray=np.concatenate((normal, middle)),
         spread=np.concatenate(((high - low) / 2, np.zeros(len(corner)))),
-        fan=np.concatenate((np.zeros(count), np.maximum(np.abs(ray0 - middle), np.abs(ray1 - middle)))),
     )
 
 

@@ -78,14 +78,14 @@ def share_edges(action: Action, traced: list[Traced], edges: list[Edge]) -> list
     """
     builder = Builder(action)
     corners = find_corners(builder, traced, edges)
-    positions = builder.finish()
-    sources: dict[int, tuple[Motion, bool, _Arcs]] = {}
+    positions = builder.snapshot()
+    sources: dict[Edge, tuple[Motion, bool, _Arcs]] = {}
     for edge in edges:
-        if id(edge) not in sources:
+        if edge not in sources:
             arcs = _represent(builder, positions, traced[edge.tile], edge, corners)
             for motion, image, flips in edge.images:
-                sources.setdefault(id(image), (motion, flips, arcs))
-    representatives = builder.finish()
+                sources.setdefault(image, (motion, flips, arcs))
+    representatives = builder.snapshot()
     outlines = []
     for tile, boundary in enumerate(traced):
         own = [edge for edge in edges if edge.tile == tile]
@@ -120,12 +120,11 @@ def _represent(builder: Builder, positions: Representatives, boundary: Traced, e
         core = arcs[: half + 1]
         control = _controls(builder, boundary, core, vertex[: half + 2])
         if control[half] >= 0:
-            middle = builder.finish().position[control[half]]
-            control[half] = builder.add_fixed(middle, pair)
+            control[half] = builder.add_fixed(builder.last(), pair)
         order = np.concatenate((inner, inner[::-1]))
     else:
-        centre = builder.add_fixed(vertex[half], pair)
-        vertex[half] = builder.finish().position[centre]
+        centre = builder.add_fixed(complex(vertex[half]), pair)
+        vertex[half] = builder.last()
         core = arcs[:half]
         control = _controls(builder, boundary, core, vertex[: half + 1])
         order = np.concatenate((inner, [centre], inner[::-1]))
@@ -173,7 +172,7 @@ def _assemble(
     representatives: Representatives,
     boundary: Traced,
     edges: list[Edge],
-    sources: dict[int, tuple[Motion, bool, _Arcs]],
+    sources: dict[Edge, tuple[Motion, bool, _Arcs]],
     corners: Corners,
 ) -> SharedOutline:
     """Return a tile's outline from its edges, ring after ring."""
@@ -183,7 +182,7 @@ def _assemble(
     rings = [int(boundary.ring[edge.arcs[0]]) for edge in edges]
     faces: dict[tuple[int, Motion], int] = {}
     for place, edge in enumerate(edges):
-        outer, flips, arcs = sources[id(edge)]
+        outer, flips, arcs = sources[edge]
         if flips:
             arcs = arcs.reversed()
         by = np.array([numbers.setdefault(compose(outer, motion), len(numbers)) for motion in arcs.motions])

@@ -70,9 +70,9 @@ class TileRecord:
         has no such operation.
         """
         motion = to_motion(operation)
-        group = self._tessellation.action
-        if modulo_lattice(motion) not in {modulo_lattice(known) for known in group.motions}:
-            raise ValueError(f"{operation} is no operation of the group {group.group.name}")
+        action = self._tessellation.action
+        if modulo_lattice(motion) not in action.motions:
+            raise ValueError(f"{operation} is no operation of the group {action.group.name}")
         return self._tessellation.outline(self._index, motion)
 
     def refuse_touching(self) -> None:
@@ -131,8 +131,8 @@ class Tessellation:
         # The copy, not the motion that names it, decides on the bits.
         here = self.placed[tile].canonical(motion)
         neighbours = [
-            Neighbour(self.names[t], to_operation(self.placed[t].canonical(compose(here, motion))))
-            for t, motion in shared.neighbours
+            Neighbour(self.names[t], to_operation(self.placed[t].canonical(compose(here, beyond))))
+            for t, beyond in shared.neighbours
         ]
         return _outline(self.action, shared, here, neighbours)
 

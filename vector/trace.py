@@ -22,13 +22,11 @@ class Boundary:
         part: (n,) the part that each arc is, ring after ring.
         vertex: (n,) where each arc starts; it ends where the next of its ring starts.
         ring: (n,) index of the ring.
-        snapped: the largest distance between two computations of one vertex.
     """
 
     part: Ints
     vertex: Complexes
     ring: Ints
-    snapped: float
 
 
 class OpenBoundaryError(ArithmeticError):
@@ -58,7 +56,6 @@ def trace_boundary(rows: Rows, contour: Contour, parts: Parts, inner: Bools, nul
     entered[following[outer][following[outer] >= 0]] = True
     entries = outer[~entered[outer]]
     following[loose] = entries[_match(end[loose], start[entries])]
-    snapped = float(np.abs(end[outer] - start[following[outer]]).max())
     # A walk along a permutation is a loop of look-ups: a list is quicker at it than any array trick.
     successor = following.tolist()
     seen = inner.tolist()
@@ -75,7 +72,7 @@ def trace_boundary(rows: Rows, contour: Contour, parts: Parts, inner: Bools, nul
             ring.append(number)
             k = successor[k]
         number += 1
-    return _without_null(np.array(order), start[order], np.array(ring), snapped, null)
+    return _without_null(np.array(order), start[order], np.array(ring), null)
 
 
 def _links(rows: Rows, contour: Contour, parts: Parts, inner: Bools, straight: Bools) -> Ints:
@@ -146,7 +143,7 @@ def _nearest(points: Complexes, among: Complexes) -> Ints:
     return np.asarray(tree.query(np.stack((points.real, points.imag), axis=1))[1])
 
 
-def _without_null(part: Ints, vertex: Complexes, ring: Ints, snapped: float, null: float) -> Boundary:
+def _without_null(part: Ints, vertex: Complexes, ring: Ints, null: float) -> Boundary:
     """Leave out arcs without length, and rings that have no other."""
     while len(part):
         opening = np.flatnonzero(np.append(True, ring[1:] != ring[:-1]))
@@ -158,4 +155,4 @@ def _without_null(part: Ints, vertex: Complexes, ring: Ints, snapped: float, nul
         part, vertex, ring = part[kept], vertex[kept], ring[kept]
     if not len(part):
         raise OpenBoundaryError
-    return Boundary(part, vertex, ring, snapped)
+    return Boundary(part, vertex, ring)
