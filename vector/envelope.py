@@ -8,6 +8,8 @@ from voronoi_tiles.vector.bisectors import Pieces
 from voronoi_tiles.vector.contour import Floats, Ints
 
 NOTHING = -1
+# A longer step, relative to the distance of the next root, is not a correction of rounding.
+_NEAR = 1e-3
 
 
 def lower_envelope(pieces: Pieces, low: Floats, high: Floats) -> tuple[Ints, Floats, Floats, Ints]:
@@ -134,8 +136,15 @@ def _contest(
     winner[index] = lower((low - half) / 2)
     two = np.flatnonzero(high > low)
     where = np.concatenate((index, index[two]))
-    # Rounding must not carry a cut over the interval's end: the order of starts is what the next merge relies on.
     at = np.concatenate((middle + low, (middle + high)[two]))
+    # About the middle of its interval a steep function is large, and its roots have that many digits fewer: one step of
+    # Newton's method from where the functions themselves are small gives them back.
+    one, other = np.concatenate((f, f[two])), np.concatenate((g, g[two]))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        step = (pieces.value(one, at) - pieces.value(other, at)) / (pieces.slope(one, at) - pieces.slope(other, at))
+    reach = _NEAR * np.where(high > low, np.minimum(high - low, half), half)
+    at = np.where(np.abs(step) <= np.concatenate((reach, reach[two])), at - step, at)
+    # Rounding must not carry a cut over the interval's end: the order of starts is what the next merge relies on.
     at = np.minimum(np.maximum(at, np.concatenate((x0, x0[two]))), np.concatenate((x1, x1[two])))
     after_low = np.where(high > low, lower((low + high) / 2), lower((low + half) / 2))
     who = np.concatenate((after_low, lower((high + half) / 2)[two]))
