@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from voronoi_tiles.boxes import z_order
 from voronoi_tiles.tolerance import EPSILON
 from voronoi_tiles.vector.contour import Bools, Complexes, Contour, Floats, Ints
 from voronoi_tiles.vector.copies import Copies, move
@@ -57,7 +58,8 @@ def build_hierarchy(contour: Contour, copies: Copies) -> Hierarchy:
     isolated = contour.nodes[contour.corner_node[len(contour.source) :: 4]]
     if len(isolated):
         start, end = np.concatenate((start, isolated)), np.concatenate((end, isolated))
-    order = _z_order((start + end) / 2)
+    middle = (start + end) / 2
+    order = z_order(middle) if len(middle) > _BRANCH else np.arange(len(middle))
     start, end = start[order], end[order]
     unit, shift, conj = copies.unit[:, None], copies.shift[:, None], copies.conj[:, None]
     starts, ends = move(start, unit, shift, conj), move(end, unit, shift, conj)
@@ -91,18 +93,6 @@ def _capsules(start: Complexes, end: Complexes, first: Ints) -> tuple[Complexes,
     across = 1j * (right + left) / 2
     radius = (left - right) / 2 * (1.0 + _SLACK) + _SLACK * (high - low)
     return middle + axis * (low + across), middle + axis * (high + across), radius
-
-
-def _z_order(points: Complexes) -> Ints:
-    """Return the order of points along the Z-order curve (Morton code of 2 x 16 bits)."""
-    if len(points) <= _BRANCH:
-        return np.arange(len(points))
-    grid = np.stack((points.real, points.imag))
-    grid -= grid.min(axis=1, keepdims=True)
-    bits = (grid * (65535 / (grid.max() or 1.0))).astype(np.int64)
-    for mask, step in ((0x00FF00FF, 8), (0x0F0F0F0F, 4), (0x33333333, 2), (0x55555555, 1)):
-        bits = (bits | (bits << step)) & mask
-    return np.argsort(bits[0] | bits[1] << 1, kind="stable")
 
 
 @dataclass(frozen=True, slots=True)

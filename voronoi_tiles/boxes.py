@@ -1,4 +1,4 @@
-"""Pairs of segments whose bounding boxes meet: a tree of boxes, joined with itself."""
+"""Segments in the order of their places, and the pairs whose bounding boxes meet, by a tree of boxes."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def overlapping_boxes(ends: Complexes, margin: float) -> tuple[Indices, Indices]
     boxes = np.stack([x.min(axis=1), y.min(axis=1), x.max(axis=1) + margin, y.max(axis=1) + margin])
     order = np.arange(n)
     if n > 64:
-        order = _z_order(boxes)
+        order = z_order(ends.mean(axis=1))
         boxes = boxes[:, order]
     levels = [boxes]
     while levels[-1].shape[1] > 8:
@@ -69,16 +69,17 @@ def _meeting(boxes: NDArray[np.float64], i: Indices, j: Indices) -> tuple[Indice
     return i[meet], j[meet]
 
 
-def _z_order(boxes: NDArray[np.float64]) -> Indices:
-    """The order of box centres along a Z-order curve over a grid of 1024 x 1024."""
-    centres = boxes[:2] + boxes[2:]
-    low = centres.min(axis=1, keepdims=True)
-    size = float((centres.max(axis=1, keepdims=True) - low).max())
-    grid = ((centres - low) * (1023.0 / size if size > 0.0 else 0.0)).astype(np.int64)
-    code = np.zeros(grid.shape[1], dtype=np.int64)
-    for bit in range(10):
-        code |= ((grid[0] >> bit & 1) << 2 * bit) | ((grid[1] >> bit & 1) << 2 * bit + 1)
-    return np.argsort(code, kind="stable")
+def z_order(points: Complexes) -> Indices:
+    """The order of points along the Z-order curve (Morton code of 2 x 16 bits): neighbours in the plane stay near.
+
+    `points` is complex128 of shape (n,), n > 0; returns intp of shape (n,).
+    """
+    grid = np.stack((points.real, points.imag))
+    grid -= grid.min(axis=1, keepdims=True)
+    bits = (grid * (65535 / (grid.max() or 1.0))).astype(np.int64)
+    for mask, step in ((0x00FF00FF, 8), (0x0F0F0F0F, 4), (0x33333333, 2), (0x55555555, 1)):
+        bits = (bits | (bits << step)) & mask
+    return np.argsort(bits[0] | bits[1] << 1, kind="stable")
 
 
 def _too_many() -> DesignError:
