@@ -1,17 +1,21 @@
-"""Writing files: whole or not at all, whatever happens."""
+"""Writing files, at once or as a stream: whole or not at all, whatever happens."""
 
 from __future__ import annotations
 
+import io
 import os
 import stat
 import subprocess
 import sys
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from voronoi_tiles.errors import OutputError
-from voronoi_tiles.files import is_special, write_whole
+from voronoi_tiles.files import is_special, write_whole, writing
 
 AS_ROOT = hasattr(os, "geteuid") and os.geteuid() == 0
 
@@ -243,3 +247,249 @@ def test_standard_output_in_memory(capsys: pytest.CaptureFixture[str]) -> None:
     """Notebooks and tests replace sys.stdout by an object without a descriptor."""
     write_whole("-", "é\n".encode())
     assert capsys.readouterr().out == "é\n"
+
+
+def test_standard_output_in_memory_takes_bytes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A picture is no text: where the object has a buffer for bytes, that takes them; where it has none, only text."""
+    inner = io.BytesIO()
+    monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(inner, encoding="ascii"))
+    print("first")  # noqa: T201 (the order of the two is what is tested)
+    write_whole("-", b"\x89PNG\r\n")
+    assert inner.getvalue() == b"first\n\x89PNG\r\n"
+    monkeypatch.setattr(sys, "stdout", text := io.StringIO())
+    with pytest.raises(OutputError, match="cannot write standard output: 'utf-8' codec can't decode"):
+        write_whole("-", b"\x89PNG")
+    write_whole("-", "é".encode())
+    assert text.getvalue() == "é"
+
+
+def write_in_portions(path: Path | str, error: BaseException | None = None) -> None:
+    """Write three portions as a stream, and raise an error then."""
+    with writing(path) as file:
+        for portion in (b"one ", b"two ", b"three"):
+            file.write(portion)
+        if error is not None:
+            raise error
+
+
+def test_a_stream_takes_its_place_at_the_end(tmp_path: Path) -> None:
+    """Until the block has ended the old file is what everyone sees; afterwards there is nothing beside the new one."""
+    path = tmp_path / "a.png"
+    path.write_bytes(b"old")
+    path.chmod(0o640)
+    with writing(path) as file:
+        assert file.write(b"one ") == 4
+        assert path.read_bytes() == b"old"
+        (temporary,) = set(names(tmp_path)) - {"a.png"}
+        assert (tmp_path / temporary).read_bytes() == b"one "
+        assert stat.S_IMODE((tmp_path / temporary).stat().st_mode) == 0o640
+        file.write(b"two")
+    assert path.read_bytes() == b"one two"
+    assert stat.S_IMODE(path.stat().st_mode) == 0o640
+    assert names(tmp_path) == ["a.png"]
+    with pytest.raises(ValueError, match="closed"):
+        file.write(b"more")
+
+
+def test_a_stream_makes_a_new_file_and_follows_links(tmp_path: Path) -> None:
+    """With the usual mode, and where the link leads; a stream without a write is an empty file."""
+    (tmp_path / "real").mkdir()
+    (tmp_path / "link.png").symlink_to("real/file.png")
+    write_in_portions(tmp_path / "link.png")
+    (tmp_path / "plain").write_bytes(b"")
+    with writing(tmp_path / "empty"):
+        pass
+    assert (tmp_path / "link.png").is_symlink()
+    assert (tmp_path / "real" / "file.png").read_bytes() == b"one two three"
+    assert (tmp_path / "real" / "file.png").stat().st_mode == (tmp_path / "plain").stat().st_mode
+    assert (tmp_path / "empty").read_bytes() == b""
+    assert names(tmp_path) == ["empty", "link.png", "plain", "real"]
+    assert names(tmp_path / "real") == ["file.png"]
+
+
+def test_a_stream_takes_whatever_holds_bytes(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Arrays and views, empty ones too, however few bytes the system takes at a time."""
+    real = os.write
+    monkeypatch.setattr(os, "write", lambda descriptor, data: real(descriptor, bytes(data)[:3]))
+    array = np.arange(12, dtype=np.uint8).reshape(3, 4)
+    with writing(tmp_path / "a") as file:
+        assert file.writable()
+        portions = (array.data, array[:0].data, b"", memoryview(array[1]), bytearray(b"x"))
+        assert [file.write(portion) for portion in portions] == [12, 0, 0, 4, 1]
+        with io.TextIOWrapper(io.BufferedWriter(file), "utf-8") as text:
+            text.write("é")
+    assert (tmp_path / "a").read_bytes() == bytes(range(12)) + bytes(range(4, 8)) + "xé".encode()
+
+
+@pytest.mark.parametrize(
+    "error", [KeyError("mine"), FileNotFoundError(2, "mine"), ValueError("mine"), SystemExit("mine")]
+)
+def test_an_exception_in_the_block_leaves_the_old_file(error: BaseException, tmp_path: Path) -> None:
+    """It comes out as it is: what a block does beside writing is none of the file's business."""
+    path = tmp_path / "a.png"
+    path.write_bytes(b"old")
+    for target in (path, tmp_path / "new.png"):
+        with pytest.raises(type(error), match="mine") as caught:
+            write_in_portions(target, error)
+        assert caught.value is error
+    assert path.read_bytes() == b"old"
+    assert names(tmp_path) == ["a.png"]
+
+
+@pytest.mark.parametrize("step", ["write", "fsync", "fchmod", "replace"])
+def test_a_failure_of_a_stream_leaves_the_old_file(step: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same steps may fail as for a file that is written at once, and the same message says so."""
+
+    def fail(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    path = tmp_path / "a.png"
+    path.write_bytes(b"old")
+    with monkeypatch.context() as patch:
+        patch.setattr(Path if step == "replace" else os, step, fail)
+        with pytest.raises(OutputError, match=r"cannot write .*a\.png: No space left on device\. Make room"):
+            write_in_portions(path)
+    assert path.read_bytes() == b"old"
+    assert names(tmp_path) == ["a.png"]
+
+
+def test_a_write_that_failed_is_not_forgotten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Who catches its error and goes on gets it again: a file with a hole in it is not whole."""
+
+    def fail(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    def write_on() -> None:
+        with writing(tmp_path / "a.png") as file:
+            file.write(b"one")
+            with monkeypatch.context() as patch:
+                patch.setattr(os, "write", fail)
+                with pytest.raises(OutputError, match="No space left"):
+                    file.write(b"two")
+            with pytest.raises(OutputError, match="No space left"):
+                file.write(b"three")
+
+    with pytest.raises(OutputError, match="No space left"):
+        write_on()
+    assert names(tmp_path) == []
+
+
+@pytest.mark.parametrize("name", ["missing/a.svg", "file/a.svg", ".", "a\0b", "n" * 300, ""])
+def test_places_where_no_stream_can_begin(name: str, tmp_path: Path) -> None:
+    """They are named before the block has done its work."""
+    (tmp_path / "file").write_bytes(b"")
+    with pytest.raises(OutputError, match="cannot write"), writing(f"{tmp_path}/{name}" if name else ""):
+        pytest.fail("the block has begun")
+    assert names(tmp_path) == ["file"]
+
+
+def test_a_read_only_file_is_no_place_for_a_stream(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """This too shows at the beginning."""
+    path = tmp_path / "a.png"
+    path.write_bytes(b"old")
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    with pytest.raises(OutputError, match="read-only"), writing(path):
+        pytest.fail("the block has begun")
+    assert names(tmp_path) == ["a.png"]
+
+
+@pytest.fixture
+def pipe() -> Iterator[tuple[int, int]]:
+    """Give both ends of a pipe, of which nothing blocks when it is empty."""
+    reader, writer = os.pipe()
+    os.set_blocking(reader, False)
+    yield reader, writer
+    os.close(reader)
+    os.close(writer)
+
+
+def test_a_stream_to_an_open_descriptor(pipe: tuple[int, int]) -> None:
+    """Nothing is sent before the end, and nothing at all after an exception."""
+    reader, writer = pipe
+    with writing(f"/dev/fd/{writer}") as file:
+        file.write(b"one ")
+        with pytest.raises(BlockingIOError):
+            os.read(reader, 100)
+        file.write(b"two")
+    assert os.read(reader, 100) == b"one two"
+    with pytest.raises(KeyError):
+        write_in_portions(f"/dev/fd/{writer}", KeyError())
+    with pytest.raises(BlockingIOError):
+        os.read(reader, 100)
+    closed = os.dup(writer)
+    os.close(closed)
+    with pytest.raises(OutputError, match="Bad file descriptor"), writing(f"/dev/fd/{closed}"):
+        pytest.fail("the block has begun")
+
+
+def test_a_stream_to_a_pipe_by_its_name(tmp_path: Path) -> None:
+    """A fifo takes the bytes at the end, more than one piece of them, and stays a fifo."""
+    fifo, content = tmp_path / "a.png", os.urandom(3_000_000)
+    os.mkfifo(fifo)
+    with (tmp_path / "copy").open("wb") as copy, subprocess.Popen(["cat", fifo], stdout=copy) as cat:  # noqa: S607
+        with writing(fifo) as file:
+            for portion in (content[:5], content[5:-5], content[-5:]):
+                file.write(portion)
+        assert cat.wait(60) == 0
+    assert (tmp_path / "copy").read_bytes() == content
+    assert fifo.is_fifo()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a Linux device")
+def test_a_stream_to_a_device() -> None:
+    """/dev/null takes everything, /dev/full nothing, which shows when it is sent."""
+    write_in_portions("/dev/null")
+    with pytest.raises(OutputError, match="cannot write /dev/full: No space left on device"):
+        write_in_portions("/dev/full")
+    assert Path("/dev/full").is_char_device()
+
+
+def test_a_stream_to_standard_output(capfdbinary: pytest.CaptureFixture[bytes]) -> None:
+    """The bytes as they are, after what was printed before and in the block; nothing after an exception."""
+    print("first")  # noqa: T201 (the order is what is tested)
+    with writing("-") as file:
+        file.write(b"\x89PNG")
+        print("second")  # noqa: T201
+        file.write(b"\r\n")
+    with pytest.raises(KeyError):
+        write_in_portions("/dev/stdout", KeyError())
+    assert capfdbinary.readouterr().out == b"first\nsecond\n\x89PNG\r\n"
+
+
+def test_a_stream_to_standard_output_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
+    """An object without a descriptor is given everything at once; closed, it is refused at the beginning."""
+    monkeypatch.setattr(sys, "stdout", text := io.StringIO())
+    with writing("-") as file:
+        file.write("é".encode()[:1])
+        file.write("é".encode()[1:])
+    assert text.getvalue() == "é"
+    monkeypatch.setattr(sys, "stdout", None)
+    with pytest.raises(OutputError, match="cannot write standard output: it is closed"), writing("-"):
+        pytest.fail("the block has begun")
+
+
+def test_no_room_for_a_temporary_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is kept for standard output fills another disk than the one that is written to: the message names it."""
+
+    def fail(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "write", fail)
+        with pytest.raises(OutputError) as caught:
+            write_in_portions("-")
+    assert str(caught.value).startswith(f"cannot write a temporary file in {tmp_path}: No space left on device. Make")
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "missing"))
+    with pytest.raises(OutputError, match="cannot write a temporary file: No such file"), writing("-"):
+        pytest.fail("the block has begun")
+    assert names(tmp_path) == []
+
+
+def test_what_is_in_memory_goes_straight_to_standard_output(
+    capfdbinary: pytest.CaptureFixture[bytes], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Only a stream needs a temporary file."""
+    monkeypatch.setattr(tempfile, "TemporaryFile", None)
+    write_whole("-", b"content")
+    assert capfdbinary.readouterr().out == b"content"
