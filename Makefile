@@ -19,7 +19,7 @@ PIP := -m pip install --quiet --disable-pip-version-check
 INSTALLED := $(VENV)/.installed
 INSTALLED_DEV := $(VENV)/.installed-dev
 INSTALLED_TYPES := $(TYPES_VENV)/.installed
-SOURCES := $(wildcard voronoi_tiles/*.py vector/*.py raster/*.py)
+SOURCES := $(wildcard voronoi_tiles/*.py voronoi_tiles/*/*.py vector/*.py raster/*.py raster/*.glsl)
 EXAMPLES := $(wildcard examples/*.toml)
 
 help:

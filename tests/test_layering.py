@@ -90,7 +90,12 @@ def test_the_vocabulary_is_all_there() -> None:
     """The rules are about modules that exist."""
     assert {"errors", "tolerance", "wallpaper", "strokes", "svgpath", "site", "design"} <= VOCABULARY
     assert {f"voronoi_tiles.{name}" for name in ABOVE_THE_STAGES | VOCABULARY} <= set(modules())
-    assert {"voronoi_tiles.vector.__init__", "voronoi_tiles.raster.__init__", PIPELINE} <= set(modules())
+    assert {
+        "voronoi_tiles.crosscheck.__init__",
+        "voronoi_tiles.vector.__init__",
+        "voronoi_tiles.raster.__init__",
+        PIPELINE,
+    } <= set(modules())
 
 
 @pytest.mark.parametrize(
@@ -110,6 +115,8 @@ def test_the_vocabulary_is_all_there() -> None:
         ("voronoi_tiles.vector.trace", "from importlib import import_module\nimport_module('voronoi_tiles.cli')"),
         ("voronoi_tiles.raster.image", "if TYPE_CHECKING:\n    from voronoi_tiles.vector.outline import Outline"),
         ("voronoi_tiles.raster.image", "from voronoi_tiles.files import write_whole"),
+        ("voronoi_tiles.raster.image", "from voronoi_tiles.crosscheck import Figure"),
+        ("voronoi_tiles.site", "from voronoi_tiles.crosscheck import Figure"),
         ("voronoi_tiles.cli", "import vector"),
         ("voronoi_tiles.cli", "from raster.image import render"),
     ],

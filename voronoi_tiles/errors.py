@@ -110,6 +110,20 @@ class ProofError(VoronoiTilesError, ArithmeticError):
         return f"{self.message}."
 
 
+class RenderError(VoronoiTilesError, RuntimeError):
+    """An image that could not be rendered; `message` and `remedy` are those of DesignError."""
+
+    exit_code: ClassVar[int] = 1
+
+    def __init__(self, message: str, *, remedy: str | None = None) -> None:
+        super().__init__(message)
+        self.message = message
+        self.remedy = remedy
+
+    def __str__(self) -> str:
+        return f"{self.message}. {self.remedy}" if self.remedy else f"{self.message}."
+
+
 class OutputError(VoronoiTilesError, OSError):
     """A file that could not be written; `path` is the file, which is as it was before.
 

@@ -1,0 +1,207 @@
+"""Rendering: by which renderer, on which device, with which method; falling back, spot-checked, window by window."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voronoi_tiles.errors import RenderError
+from voronoi_tiles.raster import cpu, hoff
+from voronoi_tiles.raster.candidates import Candidates, find_candidates
+from voronoi_tiles.raster.copies import Ints, Labels, Pattern, Scene, distances, gather, merge_copies
+from voronoi_tiles.raster.frame import BLOCK, WINDOW, Frame
+from voronoi_tiles.raster.gl import Device, GlError, float32_error, gl_errors
+
+Method = Literal["exact", "hoff"]
+Choice = Literal["auto", "gl", "cpu"]
+Floating = NDArray[np.floating[Any]]
+
+_SPOT_WORK = 10_000_000
+"""Distances that a spot check computes; a count."""
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Who made an image: renderer ("gl" or "cpu"), device, precision, method, and why it was not OpenGL ("" if it was).
+
+    `spots` is how many samples of OpenGL's image were compared with float64.
+    """
+
+    renderer: str
+    device: str
+    precision: str
+    method: str
+    fallback: str = ""
+    spots: int = 0
+
+    def __str__(self) -> str:
+        return f"{self.method} on {self.renderer} ({self.device}), {self.precision}"
+
+
+@dataclass(frozen=True, eq=False)
+class LabelImage:
+    """Who owns each sample of a frame.
+
+    `first` and `second` (int32, height x width) are labels: rows of `copies` (intp, n x 3), which are (placement, i, j)
+    as in Pattern; `d1` and `d2` their distances in units. `error` bounds what is wrong with a distance d.
+    """
+
+    pattern: Pattern
+    frame: Frame
+    first: Labels
+    second: Labels
+    d1: Floating
+    d2: Floating
+    copies: Ints
+    provenance: Provenance
+    error: Callable[[Any], Any]
+
+
+class Renderer:
+    """Renders frames of a pattern; what OpenGL has failed at once is rendered by the processor from then on.
+
+    `choice` "auto" takes OpenGL where there is any, "gl" insists, "cpu" does without; `device` is OpenGL's device
+    number. `notice` is called with one line when OpenGL is given up.
+    """
+
+    def __init__(
+        self,
+        choice: Choice = "auto",
+        *,
+        device: int | None = None,
+        method: Method = "exact",
+        compute: bool | None = None,
+        sides: int = hoff.SIDES,
+        notice: Callable[[str], None] | None = None,
+    ) -> None:
+        """Find the device. Raises RenderError where `choice` is "gl" and there is none."""
+        if choice not in {"auto", "gl", "cpu"} or method not in {"exact", "hoff"}:
+            raise ValueError(f"unknown renderer {choice!r} or method {method!r}")
+        self._choice, self._method, self._compute, self._sides = choice, method, compute, sides
+        self._notice = notice or (lambda _: None)
+        self._fallback = ""
+        self._device: Device | None = None
+        if choice != "cpu":
+            try:
+                self._device = Device(device)
+            except GlError as error:
+                self._give_up(error)
+
+    def render(self, pattern: Pattern, frame: Frame) -> LabelImage:
+        """Render a frame, however large, window by window. Raises RenderError."""
+        limit = WINDOW if self._device is None else min(WINDOW, self._device.largest_image // BLOCK * BLOCK)
+        height, width = frame.height, frame.width
+        corners = [(x, y) for y in range(0, height, limit) for x in range(0, width, limit)]
+        whole: list[NDArray[Any]] = []
+        parts: list[tuple[slice, slice, Ints]] = []
+        farthest, spots = 0.0, 0
+        for x, y in corners:
+            window = frame.window(x, y, min(limit, width - x), min(limit, height - y))
+            before = self._device
+            images, scene, far, checked = self._window(pattern, window)
+            if self._device is not before and whole:
+                return self.render(pattern, frame)  # one image, one renderer
+            if not whole:
+                whole = [np.empty((height, width), part.dtype) for part in images]
+            at = slice(y, y + window.height), slice(x, x + window.width)
+            for image, part in zip(whole, images, strict=True):
+                image[at] = part
+            parts.append((*at, scene.copies))
+            farthest, spots = max(farthest, far), spots + checked
+        table, relabel = merge_copies([part[2] for part in parts])
+        if len(parts) > 1:
+            for (rows, columns, _), names in zip(parts, relabel, strict=True):
+                for image in whole[:2]:
+                    image[rows, columns] = names[image[rows, columns]]
+        first, second, d1, d2 = whole
+        error = self._error(pattern, frame, farthest)
+        return LabelImage(pattern, frame, first, second, d1, d2, table, self.provenance(spots), error)
+
+    def provenance(self, spots: int = 0) -> Provenance:
+        """Who renders, as things stand."""
+        method = self._method if self._method == "exact" else f"hoff, cones of {self._sides} sides"
+        if self._device is None:
+            return Provenance("cpu", f"numpy, {os.cpu_count()} cores", "float64", method, self._fallback)
+        return Provenance("gl", self._device.name, "float32", method, spots=spots)
+
+    def _window(self, pattern: Pattern, frame: Frame) -> tuple[list[NDArray[Any]], Scene, float, int]:
+        """Render one window: the four images, the scene that the labels belong to, the farthest distance, spots."""
+        scene = gather(pattern, frame.origin, frame.middle, frame.radius)
+        looseness = hoff.cone_error(self._sides) if self._method == "hoff" else 0.0
+        candidates = find_candidates(scene, frame, looseness=looseness)
+        if self._device is not None:
+            try:
+                return self._by_device(self._device, pattern, candidates, frame)
+            except GlError as error:
+                self._give_up(error)
+        mesh = partial(hoff.heights, sides=self._sides) if self._method == "hoff" else None
+        return [*cpu.render(candidates, frame, heights=mesh)], scene, 0.0, 0
+
+    def _by_device(
+        self, device: Device, pattern: Pattern, candidates: Candidates, frame: Frame
+    ) -> tuple[list[NDArray[Any]], Scene, float, int]:
+        """Render one window with OpenGL, and compare some samples with float64."""
+        farthest = 0.0
+        if self._method == "exact":
+            first, second, d1, d2 = device.render_exact(candidates, frame, compute=self._compute)
+        else:
+            first, second, d1, d2, farthest = hoff.render_hoff(device, candidates, frame, sides=self._sides)
+        with gl_errors():
+            error = self._error(pattern, frame, farthest)
+            spots = spot_check(candidates.scene, frame, (first, second, d1, d2), error)
+        return [first, second, d1, d2], candidates.scene, farthest, spots
+
+    def _error(self, pattern: Pattern, frame: Frame, farthest: float) -> Callable[[Any], Any]:
+        """The bound for a distance's error."""
+        rounding = pattern.rounding
+        if self._method == "hoff" and self._device is None:
+            relative = hoff.cone_error(self._sides)
+            return lambda distance: relative * distance + rounding
+        if self._method == "hoff":
+            return lambda d: hoff.mesh_error(d, frame, farthest=farthest, sides=self._sides) + rounding
+        if self._device is None:
+            return lambda _: rounding
+        return lambda distance: float32_error(distance, frame) + rounding
+
+    def _give_up(self, error: GlError) -> None:
+        """Do without OpenGL from now on, and say why."""
+        self._device = None
+        if self._choice == "gl":
+            raise RenderError(f"OpenGL failed: {error}", remedy="Use --renderer cpu, or auto.") from error
+        self._fallback = str(error)
+        self._notice(
+            f"OpenGL not available ({error}). Using the CPU renderer. On Debian/Ubuntu: apt-get install libegl1 libgl1"
+        )
+
+
+def spot_check(
+    scene: Scene, frame: Frame, images: tuple[Labels, Labels, Floating, Floating], error: Callable[[Any], Any]
+) -> int:
+    """Compare random samples of an image with float64 over all elements; give how many.
+
+    Raises GlError where a distance is off by more than its bound, or a label is wrong that the bound decides.
+    """
+    count = int(np.clip(_SPOT_WORK // len(scene), 16, 1024))
+    chance = np.random.default_rng(frame.width * 1_000_003 + frame.height)
+    i, j = chance.integers(0, frame.width, count), chance.integers(0, frame.height, count)
+    start = np.flatnonzero(np.append(True, scene.label[1:] != scene.label[:-1]))
+    first, _, d1, d2 = (image[j, i] for image in images)
+    points = frame.offsets(i.astype(float), j.astype(float))
+    for k, point in enumerate(points.tolist()):
+        nearest = np.minimum.reduceat(distances(point, scene.middle, scene.half), start)
+        two = np.argpartition(nearest, 1)[:2]
+        two = two[np.argsort(nearest[two])]
+        true1, true2 = nearest[two].tolist()
+        allowed = float(error(true2))
+        where = f"sample ({i[k]}, {j[k]})"
+        if not (abs(d1[k] - true1) <= allowed and abs(d2[k] - true2) <= allowed):
+            raise GlError(f"the spot check found {where} off by more than {allowed:.3g} from float64")
+        if true2 - true1 > 2 * allowed and first[k] != two[0]:
+            raise GlError(f"the spot check found {where} with the wrong owner")
+    return count

@@ -1,0 +1,126 @@
+"""Owner by distance against owner by scan conversion, sample by sample."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voronoi_tiles.crosscheck.report import NO_MARKS, Figure, Marks
+from voronoi_tiles.crosscheck.subject import Codes, Floats, Ints, Subject
+from voronoi_tiles.raster.judge import encode
+from voronoi_tiles.vector.scan import QUANTUM, owners
+
+
+class Owners(NamedTuple):
+    """The copy that owns each sample by distance, settled in float64 where the image's precision does not decide it.
+
+    `identity` (height, width) indexes `codes`.
+    """
+
+    identity: NDArray[np.int32]
+    codes: Codes
+
+
+def compare_labels(subject: Subject) -> tuple[Owners, list[Figure]]:
+    """Give the owners by distance, and the figures "labels", "coverage" and "area"."""
+    image, pattern = subject.image, subject.pattern
+    placed = [(subject.outlines[row.site], row.isometry) for row in pattern.placements]
+    scanned = owners(placed, subject.grid)
+    table = scanned.labels.copy()
+    table[:, 1:] = scanned.labels[:, 1:] @ subject.basis
+
+    codes, inverse = np.unique(np.concatenate((encode(image.copies), encode(table))), return_inverse=True)
+    names: NDArray[np.int32] = inverse.reshape(-1).astype(np.int32)
+    raster: NDArray[np.int32] = names[: len(image.copies)][image.first]
+    # A sample that no outline, or more than one, covers has the label -1: the last entry.
+    vector: NDArray[np.int32] = np.append(names[len(image.copies) :], np.int32(-1))[scanned.label]
+
+    bound = 2 * image.error(image.d2)
+    gap = image.d2 - image.d1
+    open_question = gap <= bound
+    row, column = np.nonzero(open_question | (raster != vector))
+    undecided = open_question[row, column]
+    wrong = raster[row, column] != vector[row, column]
+    excess = np.where(wrong, gap[row, column], 0.0).astype(float)
+    where = np.flatnonzero(undecided)
+    settled, behind = _settle(subject, column[where], row[where], codes, vector[row[where], column[where]])
+    raster[row[where], column[where]] = settled
+    excess[where] = behind
+    limit = 2 * (subject.accuracy + pattern.rounding) + 2 * QUANTUM * (abs(subject.frame.u) + abs(subject.frame.v))
+    wrong[where] = behind > limit
+
+    labels = Figure(
+        "labels",
+        "samples whose owner by distance is not the owner by outline",
+        raster.size,
+        int(wrong.sum()),
+        float(excess[undecided | wrong].max(initial=0.0)),
+        limit,
+        subject.tiling.design.units,
+        f"{len(where):,} samples that the image leaves open (distances within {float(np.max(bound)):.2g}, twice its "
+        "error) are settled in float64: 2 (accuracy + rounding), and the scan's 2^-23 of a sample",
+        _marks(subject, column[wrong], row[wrong], excess[wrong]),
+    )
+    strays = np.flatnonzero((scanned.count != 1).ravel() | (scanned.label < 0).ravel())
+    y, x = np.divmod(strays, subject.frame.width)
+    coverage = Figure(
+        "coverage",
+        "samples that the copies' outlines do not cover exactly once",
+        raster.size,
+        len(strays),
+        None,
+        None,
+        "",
+        "winding numbers add up to 1",
+        _marks(subject, x, y, np.full(len(x), np.inf)),
+    )
+    return Owners(raster, codes), [labels, coverage, _area(subject, raster, codes)]
+
+
+def _settle(
+    subject: Subject, column: Ints, row: Ints, codes: Codes, claimed: NDArray[np.int32]
+) -> tuple[NDArray[np.int32], Floats]:
+    """Find the owner of samples in float64, and how much farther the copy is that the outlines claim."""
+    owner = np.full(len(column), -1, np.int32)
+    behind = np.full(len(column), np.inf)
+    for part, index in subject.split(column, row):
+        near = part.judge.near((column[index] - part.column).astype(float), (row[index] - part.row).astype(float))
+        start = np.flatnonzero(np.append(True, near.point[1:] != near.point[:-1]))
+        least = np.minimum.reduceat(near.distance, start)
+        first = np.flatnonzero(near.distance == least[near.point])
+        first = first[np.searchsorted(near.point[first], np.arange(len(index)))]
+        owner[index] = np.searchsorted(codes, near.copy[first])
+        claim = np.where(claimed[index] >= 0, codes[claimed[index]], -1)
+        theirs = near.copy == claim[near.point]
+        behind[index[near.point[theirs]]] = near.distance[theirs] - least[near.point[theirs]]
+    return owner, behind
+
+
+def _area(subject: Subject, owner: NDArray[np.int32], codes: Codes) -> Figure:
+    """The area of each tile by counting samples: too coarse to decide anything, and so it never does."""
+    pattern = subject.pattern
+    site_of = np.array([placement.site for placement in pattern.placements])
+    counts = np.bincount(owner.ravel(), minlength=len(codes))
+    by_site = np.bincount(site_of[codes >> 40], weights=counts, minlength=len(pattern.sites))
+    deviations = []
+    for tile, count in zip(subject.tiling.tiles, by_site.tolist(), strict=True):
+        true = tile.area * tile.copies_per_cell
+        deviations.append(abs(count * subject.frame.area_per_sample - true) / true)
+    return Figure(
+        "area",
+        "tiles whose area differs from the number of their samples (for information)",
+        len(deviations),
+        0,
+        max(deviations),
+        None,
+        "of the area",
+        "no limit: a border of p samples moves it by about sqrt(p) samples",
+    )
+
+
+def _marks(subject: Subject, column: Ints, row: Ints, excess: Floats) -> Marks:
+    if not len(column):
+        return NO_MARKS
+    return Marks(subject.frame.points(column.astype(float), row.astype(float)), excess)
