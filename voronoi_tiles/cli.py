@@ -13,10 +13,10 @@ import os
 import signal
 import sys
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Never
+from typing import TYPE_CHECKING, Never
 
 import click
 
@@ -94,12 +94,13 @@ def info(design: str, as_json: bool) -> None:
     import json
 
     from voronoi_tiles.files import STDOUT, write_whole
+    from voronoi_tiles.tables import info_text
 
     try:
         figures = _tessellate(design).figures()
     except Exception as error:
         raise click.exceptions.Exit(_report(design, error)) from error
-    text = json.dumps(figures, indent=2) + "\n" if as_json else _table_text(figures)
+    text = json.dumps(figures, indent=2) + "\n" if as_json else info_text(figures)
     write_whole(STDOUT, text.encode())
 
 
@@ -284,18 +285,10 @@ def _make_folder(target: str, output: str) -> None:
 
 def _say(message: str, *, lines: bool = False) -> None:
     """Print a message (one line, unless `lines`) to standard error; that nobody can read it is no reason to fail."""
+    from voronoi_tiles.tables import printable
+
     with suppress(OSError):
-        click.echo(message if lines else _printable(message), err=True)
-
-
-def _printable(text: str) -> str:
-    """Escape control characters, and bytes that are not UTF-8, as names of files may hold them."""
-
-    def escaped(sign: str) -> str:
-        # Python keeps the byte b of such a name as U+DC00 + b.
-        return f"\\x{ord(sign) - 0xDC00:02x}" if "\udc80" <= sign <= "\udcff" else repr(sign)[1:-1]
-
-    return "".join(sign if sign.isprintable() else escaped(sign) for sign in text)
+        click.echo(message if lines else printable(message), err=True)
 
 
 def _drop_stdout() -> None:
@@ -304,83 +297,3 @@ def _drop_stdout() -> None:
         sys.stdout.flush()
     except OSError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-
-
-def _table_text(figures: dict[str, Any]) -> str:
-    """Write the figures of a tiling as tables for people."""
-    import io
-
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    terminal = sys.stdout.isatty()
-    console = Console(
-        file=io.StringIO(), width=None if terminal else 110, force_terminal=terminal, legacy_windows=False
-    )
-    units = figures["units"]
-
-    def show(title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
-        table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, title_style="bold")
-        for column in columns:
-            table.add_column(column.lstrip(">"), justify="right" if column.startswith(">") else "left")
-        for row in rows:
-            table.add_row(*(Text(_cell(item)) for item in row))
-        console.print(table)
-
-    cell = figures["cell"]
-    head = {
-        "design": _printable(figures["design"]),
-        "group": f"{figures['group']}, {figures['order']} copies per cell",
-        "cell": f"a = {_vector(cell['a'])}, b = {_vector(cell['b'])} {units}, area {_cell(cell['area'])} {units}²",
-    }
-    for key, value in head.items():
-        console.print(Text(f"{key:<8}{value}"))
-    show(
-        "Tiles",
-        ["site", f">area {units}²", f">perimeter {units}", ">lines", ">parabolas", ">curved", ">copies", "symmetry"],
-        [
-            (
-                tile["site"],
-                tile["area"],
-                tile["perimeter"],
-                tile["edges"]["line"],
-                tile["edges"]["parabola"],
-                f"{tile['curved_share']:.1%}",
-                tile["copies_per_cell"],
-                "  ".join(tile["symmetry"]),
-            )
-            for tile in figures["tiles"]
-        ],
-    )
-    show(
-        "Neighbours",
-        ["tile", "neighbour", "operation", ">edges", f">length {units}"],
-        [
-            (tile["site"], other["site"], other["operation"], other["edges"], other["length"])
-            for tile in figures["tiles"]
-            for other in tile["neighbours"]
-        ],
-    )
-    show(
-        "Proof",
-        ["figure", ">value", ">limit", ""],
-        [
-            (row["name"], f"{row['value']:.3g}", f"{row['limit']:.3g}", "ok" if row["passed"] else "FAILED")
-            for row in figures["proof"]
-        ],
-    )
-    output = console.file
-    assert isinstance(output, io.StringIO)
-    return "\n".join(line.rstrip() for line in output.getvalue().splitlines()) + "\n"
-
-
-def _cell(item: object) -> str:
-    """Write one entry of a table: ten digits are enough to read."""
-    return f"{item:.10g}" if isinstance(item, float) else str(item)
-
-
-def _vector(vector: Sequence[float]) -> str:
-    """Write a vector."""
-    return f"({', '.join(_cell(float(part)) for part in vector)})"
