@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from voronoi_tiles.errors import RenderError
+from voronoi_tiles.errors import DesignError
 from voronoi_tiles.site import Site
 from voronoi_tiles.tolerance import EPSILON, SAME_POINT
 from voronoi_tiles.wallpaper import Isometry, Lattice, Operation, WallpaperGroup
@@ -148,7 +148,7 @@ def gather(pattern: Pattern, origin: complex, middle: complex, radius: float, *,
     """The copies of elements that may be nearest, or nearest of another copy, somewhere in a disc.
 
     The disc lies about `origin + middle`. With `most`, only so many elements of each site, evenly chosen, are taken;
-    distances to them are upper bounds. Raises RenderError where they are too many.
+    distances to them are upper bounds. Raises DesignError where they are too many.
 
     Every point has a copy of any given node within the lattice's covering radius, at most the half diagonal of the
     reduced cell, and another one within a shortest vector of that one.
@@ -211,7 +211,7 @@ def _images(
     count = count_s * count_t
     total = int(count.sum())
     if total * len(pattern.placements) > _ELEMENTS_MAX:
-        raise RenderError(
+        raise DesignError(
             f"about {total * len(pattern.placements):,} copies of elements lie about the image, more than "
             f"{_ELEMENTS_MAX:,}",
             remedy="Take a smaller region, a cell that is less elongated, or larger tolerances.",

@@ -94,7 +94,10 @@ class Renderer:
                 self._give_up(error)
 
     def render(self, pattern: Pattern, frame: Frame) -> LabelImage:
-        """Render a frame, however large, window by window. Raises RenderError."""
+        """Render a frame, however large, window by window.
+
+        Raises RenderError where OpenGL fails and `choice` is "gl", DesignError where too many copies lie about it.
+        """
         limit = WINDOW if self._device is None else min(WINDOW, self._device.largest_image // BLOCK * BLOCK)
         height, width = frame.height, frame.width
         corners = [(x, y) for y in range(0, height, limit) for x in range(0, width, limit)]

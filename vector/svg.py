@@ -6,9 +6,10 @@ shortest decimal that reads back as the same float, never with an exponent, whic
 
 from __future__ import annotations
 
+import json
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from decimal import ROUND_CEILING, Decimal
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -65,12 +66,20 @@ def decimal_text(value: float) -> str:
     return text.removesuffix(".0")
 
 
-def cut_file(tiles: Sequence[tuple[str, Outline]], *, unit_mm: float, version: str, design: str) -> str:
+def cut_file(
+    tiles: Sequence[tuple[str, Outline]],
+    *,
+    unit_mm: float,
+    version: str,
+    design: str,
+    evidence: Mapping[str, Any] | None = None,
+) -> str:
     """Write the SVG file of named tiles where they lie in the plane: millimetres, a layer "cut", one path per tile.
 
     One user unit is one millimetre; `unit_mm` is a design unit in millimetres. The page is the tiles' bounding box,
-    rounded up to six digits. `version` and `design` (its canonical text) are the recipe in the metadata; nothing else
-    goes into the file, so the same recipe gives the same bytes. Raises ValueError when there is no tile.
+    rounded up to six digits. `version` and `design` (its canonical text) are the recipe in the metadata, `evidence`, if
+    given, what was proved and checked; nothing else goes into the file, so the same recipe gives the same bytes.
+    Raises ValueError when there is no tile.
     """
     bounds = [outline.bounds for _, outline in tiles]
     left, bottom = min(box[0] for box in bounds), min(box[1] for box in bounds)
@@ -82,6 +91,8 @@ def cut_file(tiles: Sequence[tuple[str, Outline]], *, unit_mm: float, version: s
     recipe = ET.Element("vt:recipe", {"program": "voronoi-tiles", "version": version})
     recipe.text = _xml_text(design)
     drawing.set_metadata(recipe)
+    if evidence is not None:
+        drawing.set_metadata(_evidence(evidence))
     layer = drawing.add(drawing.g(id=CUT_LAYER, fill="none", stroke=CUT_COLOUR, stroke_width=HAIRLINE_MM))
     layer.attribs["inkscape:groupmode"] = "layer"
     layer.attribs["inkscape:label"] = CUT_LAYER
@@ -114,6 +125,31 @@ def page_length(length: float) -> str:
     steps = (Decimal(length) / step - Decimal("1e-6")).to_integral_value(ROUND_CEILING)
     text = format(steps * step, "f")
     return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def _evidence(evidence: Mapping[str, Any]) -> ET.Element:
+    """Write what was proved and checked (Tiling.evidence): an element for each, one below it for each figure."""
+    element = ET.Element("vt:evidence")
+    check = evidence["check"]
+    parts = {
+        "vt:proof": ({}, evidence["proof"]),
+        "vt:check": ({key: value for key, value in check.items() if key != "figures"}, check["figures"]),
+    }
+    for name, (facts, figures) in parts.items():
+        part = ET.SubElement(element, name, _attributes(facts))
+        for figure in figures:
+            ET.SubElement(part, "vt:figure", _attributes({k: v for k, v in figure.items() if k != "places"}))
+    return element
+
+
+def _attributes(facts: Mapping[str, Any]) -> dict[str, str]:
+    """Write facts as XML attributes; what is unknown is left out."""
+    texts = {
+        key: " ".join(map(str, value)) if isinstance(value, list) else json.dumps(value).strip('"')
+        for key, value in facts.items()
+        if value is not None
+    }
+    return {key: _xml_text(text) for key, text in texts.items()}
 
 
 def _strokes(elements: NDArray[np.float64], origin: complex, scale: float) -> Iterable[str]:

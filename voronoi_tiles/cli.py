@@ -12,11 +12,12 @@ import io
 import os
 import signal
 import sys
+import time
 from collections import Counter
-from collections.abc import Sequence
-from contextlib import suppress
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING, Never
+from typing import TYPE_CHECKING, Any, Never, TypeVar
 
 import click
 
@@ -24,9 +25,13 @@ from voronoi_tiles import __version__
 from voronoi_tiles.errors import OutputError, VoronoiTilesError
 
 if TYPE_CHECKING:
+    from voronoi_tiles.raster.render import Choice, Method
     from voronoi_tiles.tiling import Tiling
 
 PROGRAM = "voronoi-tiles"
+
+_PATIENCE = 1.0
+"""After how long a progress bar appears; seconds."""
 
 EXIT_USAGE = 2
 EXIT_BUG = 70  # EX_SOFTWARE of sysexits.h
@@ -36,6 +41,56 @@ DEBUG_VARIABLE = "VORONOI_TILES_DEBUG"
 
 # Whether a file can be read shows when it is read: click's own check would lose a whole batch for one of them.
 _PATH = click.Path(allow_dash=True, readable=False)
+
+
+_Command = TypeVar("_Command", bound=Callable[..., Any])
+
+
+def _with_renderer(command: _Command) -> _Command:
+    """Add the options that choose the renderer."""
+    command = click.option(
+        "--device", type=click.IntRange(min=0), metavar="N", help="The number of OpenGL's device [default: the first]."
+    )(command)
+    return click.option(
+        "--renderer",
+        type=click.Choice(("auto", "gl", "cpu")),
+        default="auto",
+        help="OpenGL or the processor; auto takes OpenGL where there is any [default: auto].",
+    )(command)
+
+
+def _with_method(command: _Command) -> _Command:
+    """Add the option that chooses the method."""
+    return click.option(
+        "--method",
+        type=click.Choice(("exact", "hoff")),
+        default="exact",
+        help="Exact distances, or the cones and tents of Hoff et al. with a depth test [default: exact].",
+    )(command)
+
+
+def _read_size(_context: click.Context, _parameter: click.Parameter, text: str | None) -> int | tuple[int, int] | None:
+    """Read the size of a picture: "1600" or "1920x1080"."""
+    if text is None:
+        return None
+    sides = text.lower().split("x")
+    if len(sides) > 2 or not all(side.isascii() and side.isdigit() and len(side) < 10 for side in sides):
+        raise click.BadParameter(f"{text!r} is no size. Write 1600, or 1920x1080.")
+    numbers = [int(side) for side in sides]
+    return numbers[0] if len(numbers) == 1 else (numbers[0], numbers[1])
+
+
+def _read_region(
+    _context: click.Context, _parameter: click.Parameter, text: str | None
+) -> tuple[float, float, float, float] | None:
+    """Read a rectangle: "0,0,120,60"."""
+    if text is None:
+        return None
+    try:
+        x0, y0, x1, y1 = (float(part) for part in text.split(","))
+    except ValueError:
+        raise click.BadParameter(f"{text!r} is no rectangle. Write X0,Y0,X1,Y1, such as 0,0,120,60.") from None
+    return x0, y0, x1, y1
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
@@ -62,19 +117,37 @@ def cli() -> None:
     help="The format where OUT names none: a folder or standard output.",
 )
 @click.option("-q", "--quiet", is_flag=True, help="Report only what fails.")
-def export(designs: tuple[str, ...], output: str, file_format: str | None, quiet: bool) -> None:
+@click.option("--check", is_flag=True, help="Cross-check the outlines first, and record it in the file's metadata.")
+@_with_renderer
+def export(
+    designs: tuple[str, ...],
+    output: str,
+    file_format: str | None,
+    quiet: bool,
+    check: bool,
+    renderer: Choice,
+    device: int | None,
+) -> None:
     """Write the tiles of designs as SVG (millimetres, ready to cut) or as a JSON outline document.
 
     DESIGN is a TOML or JSON file, or - for standard input. With several designs the good ones are written, the bad
     ones named, and the exit code is the worst.
     """
     from voronoi_tiles.files import STDOUT, write_whole
+    from voronoi_tiles.tiling import require
+
+    if not check and (renderer != "auto" or device is not None):
+        raise click.UsageError("--renderer and --device say how to check: add --check.")
 
     targets = _targets(designs, output, file_format)
     worst = 0
     for design, (target, target_format) in zip(designs, targets, strict=True):
         try:
-            text = _tessellate(design).text(target_format)
+            tiling = _tessellate(design)
+            report = tiling.check(renderer=renderer, device=device, notice=_say) if check else None
+            if report is not None:
+                require(report)
+            text = tiling.text(target_format, report)
             _make_folder(target, output)
             write_whole(target, text.encode())
         except Exception as error:  # noqa: BLE001 - whatever one design does, the others are still to be written
@@ -102,6 +175,125 @@ def info(design: str, as_json: bool) -> None:
         raise click.exceptions.Exit(_report(design, error)) from error
     text = json.dumps(figures, indent=2) + "\n" if as_json else info_text(figures)
     write_whole(STDOUT, text.encode())
+
+
+@cli.command()
+@click.argument("design", type=_PATH)
+@click.option(
+    "--size",
+    type=click.IntRange(16, 16384),
+    metavar="N",
+    help="Samples along the side of the cell [16 to 16384; default: 1024].",
+)
+@_with_method
+@_with_renderer
+@click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
+@click.option(
+    "-o", "--output", metavar="DIFF", type=_PATH, help="Write a picture (.png) of where, and by how much, they differ."
+)
+def check(
+    design: str,
+    size: int | None,
+    method: Method,
+    renderer: Choice,
+    device: int | None,
+    as_json: bool,
+    output: str | None,
+) -> None:
+    """Check the exact outlines of a design against an image that is rendered by another method.
+
+    Every figure is printed with its limit and what that follows from. The exit code is 1 where they differ.
+    """
+    import json
+
+    from voronoi_tiles.files import STDOUT, write_whole, writing
+    from voronoi_tiles.tables import check_text
+
+    _refuse_other_output(design, output)
+    if output == STDOUT:
+        raise click.UsageError("The report goes to standard output: give the picture a file, -o diff.png.")
+    try:
+        tiling = _tessellate(design)
+        report = tiling.check(samples=size, renderer=renderer, device=device, method=method, notice=_say)
+        if output is not None:
+            from voronoi_tiles.picture import write_diff
+
+            with writing(output) as file:
+                write_diff(tiling, report, file)
+    except Exception as error:
+        raise click.exceptions.Exit(_report(design, error)) from error
+    document = tiling.evidence(report)
+    text = json.dumps(document, indent=2) + "\n" if as_json else check_text(document)
+    write_whole(STDOUT, text.encode())
+    if not report.passed:
+        _say(f"Error: {_shown(design)}: the outlines failed the cross-check: {', '.join(report.failures)}.")
+        raise click.exceptions.Exit(1)
+
+
+@cli.command()
+@click.argument("design", type=_PATH)
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    metavar="PICTURE",
+    type=_PATH,
+    help="The file to write (.png); - for standard output.",
+)
+@click.option(
+    "--size", metavar="N|WxH", callback=_read_size, help="The longer side, or both sides, in pixels [default: 1600]."
+)
+@click.option(
+    "--region",
+    metavar="X0,Y0,X1,Y1",
+    callback=_read_region,
+    help="The rectangle to show, in the design's units [default: two cells each way, which repeat seamlessly].",
+)
+@click.option(
+    "--overlay",
+    multiple=True,
+    type=click.Choice(("symmetry", "cell", "outline")),
+    help="Draw on top: mirrors, glides and rotation centres; the cell; the exact outlines. May be repeated.",
+)
+@_with_method
+@_with_renderer
+@click.option("-q", "--quiet", is_flag=True, help="Report only what fails.")
+def render(
+    design: str,
+    output: str,
+    size: int | tuple[int, int] | None,
+    region: tuple[float, float, float, float] | None,
+    overlay: tuple[str, ...],
+    method: Method,
+    renderer: Choice,
+    device: int | None,
+    quiet: bool,
+) -> None:
+    """Write a picture (PNG) of the tessellation: coloured tiles, their borders, and the strokes that made them."""
+    from voronoi_tiles.design import Design
+    from voronoi_tiles.files import STDOUT
+    from voronoi_tiles.picture import DEFAULT_SIZE
+    from voronoi_tiles.picture import render as render_picture
+
+    _refuse_other_output(design, output)
+    try:
+        with _progress(quiet) as progress:
+            provenance = render_picture(
+                Design.load(design),
+                output,
+                size=DEFAULT_SIZE if size is None else size,
+                region=region,
+                overlay=overlay,
+                method=method,
+                renderer=renderer,
+                device=device,
+                notice=_say,
+                progress=progress,
+            )
+    except Exception as error:
+        raise click.exceptions.Exit(_report(design, error)) from error
+    if not quiet and output != STDOUT:
+        _say(f"wrote {output}: {provenance}")
 
 
 def _complete_group(_context: click.Context, _parameter: click.Parameter, incomplete: str) -> list[str]:
@@ -222,7 +414,7 @@ def _tessellate(design: str) -> Tiling:
 
 def _report(design: str, error: Exception) -> int:
     """Say what is wrong with one of the designs, by its name; give the exit code."""
-    code, message = _explain(error, "standard input" if design == "-" else design)
+    code, message = _explain(error, _shown(design))
     if code == EXIT_BUG and os.environ.get(DEBUG_VARIABLE):
         raise error
     _say(message)
@@ -281,6 +473,55 @@ def _make_folder(target: str, output: str) -> None:
         Path(output).mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
         raise output_error(output, error) from error
+
+
+def _refuse_other_output(design: str, output: str | None) -> None:
+    """Refuse a picture that is none by its name, or that would overwrite the design."""
+    if output is None or output == "-":
+        return
+    if not output:
+        raise click.UsageError("The name of the file to write is empty: -o FILE.")
+    if not output.lower().endswith(".png") and not _is_special(output):
+        raise click.UsageError(f"{output} is no name of a picture: give it the suffix .png.")
+    if design != "-" and os.path.realpath(output) == os.path.realpath(design):
+        raise click.UsageError(f"{output} is a design, and would be overwritten.")
+
+
+def _is_special(path: str) -> bool:
+    """Tell whether a path is a device or a pipe."""
+    from voronoi_tiles.files import is_special
+
+    return is_special(path)
+
+
+def _shown(design: str) -> str:
+    """Give what messages call a design."""
+    return "standard input" if design == "-" else design
+
+
+@contextmanager
+def _progress(quiet: bool) -> Iterator[Callable[[int, int], None]]:
+    """Show a bar on a terminal for what takes longer than a second."""
+    begun = time.monotonic()
+    bar: Any = None
+
+    def step(done: int, total: int) -> None:
+        nonlocal bar
+        if bar is None and not quiet and done < total and time.monotonic() - begun > _PATIENCE and sys.stderr.isatty():
+            from rich.console import Console
+            from rich.progress import Progress
+
+            bar = Progress(console=Console(stderr=True), transient=True)
+            bar.add_task("rendering", total=total)
+            bar.start()
+        if bar is not None:
+            bar.update(bar.task_ids[0], completed=done)
+
+    try:
+        yield step
+    finally:
+        if bar is not None:
+            bar.stop()
 
 
 def _say(message: str, *, lines: bool = False) -> None:

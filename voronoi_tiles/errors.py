@@ -110,6 +110,20 @@ class ProofError(VoronoiTilesError, ArithmeticError):
         return f"{self.message}."
 
 
+class CheckError(VoronoiTilesError, ArithmeticError):
+    """A result that failed its cross-check: `message`, without a full stop; `report` is the CheckReport."""
+
+    exit_code: ClassVar[int] = 1
+
+    def __init__(self, message: str, report: Any = None) -> None:
+        super().__init__(message)
+        self.message = message
+        self.report = report
+
+    def __str__(self) -> str:
+        return f"{self.message}."
+
+
 class RenderError(VoronoiTilesError, RuntimeError):
     """An image that could not be rendered; `message` and `remedy` are those of DesignError."""
 

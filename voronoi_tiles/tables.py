@@ -70,7 +70,7 @@ def check_text(document: dict[str, Any]) -> str:
         {
             "design": f"{printable(document['design'])}, {document['group']}",
             "image": f"{across} x {down} samples of {check['sample_size']:.4g} {check['units']} over one cell",
-            "by": f"{check['method']} on {check['renderer']} ({printable(check['device'])}), {check['precision']}{spots}",
+            "by": f"{check['method']} on {check['renderer']} ({check['device']}), {check['precision']}{spots}",
         }
     )
     _proof(page, document["proof"])

@@ -3,20 +3,22 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
 from voronoi_tiles import __version__
-from voronoi_tiles.errors import OutputError, ProofError
+from voronoi_tiles.errors import CheckError, OutputError, ProofError
 from voronoi_tiles.files import write_whole
 from voronoi_tiles.site import Site
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon, Polygon
 
+    from voronoi_tiles.crosscheck import CheckReport
     from voronoi_tiles.design import Design
     from voronoi_tiles.vector.outline import Outline
     from voronoi_tiles.vector.proof import ProofReport
@@ -102,17 +104,51 @@ class Tiling:
                 "area": lattice.det,
             },
             "tiles": [_tile_figures(tile) for tile in self.tiles],
-            "proof": [
-                {"name": name, "value": value, "limit": limit, "passed": passed}
-                for name, value, limit, passed in self.proof.rows()
-            ],
+            "proof": self._proof_rows(),
         }
 
-    def document(self) -> dict[str, Any]:
-        """Give the outline document (schema 1): coordinates in the design's units, y up."""
+    def check(
+        self,
+        *,
+        samples: int | None = None,
+        renderer: Literal["auto", "gl", "cpu"] = "auto",
+        device: int | None = None,
+        method: Literal["exact", "hoff"] = "exact",
+        notice: Callable[[str], None] | None = None,
+    ) -> CheckReport:
+        """Compare the outlines with an image that the raster stage renders of the same design.
+
+        See `voronoi_tiles.crosscheck.crosscheck`; `samples` None is its default. Raises RenderError.
+        """
+        from voronoi_tiles.crosscheck import DEFAULT_SAMPLES, crosscheck
+
+        count = DEFAULT_SAMPLES if samples is None else samples
+        return crosscheck(self, samples=count, renderer=renderer, device=device, method=method, notice=notice)
+
+    def _proof_rows(self) -> list[dict[str, Any]]:
+        """Give the figures of the proof in the types of JSON."""
+        return [
+            {"name": name, "value": value, "limit": limit, "passed": passed}
+            for name, value, limit, passed in self.proof.rows()
+        ]
+
+    def evidence(self, check: CheckReport) -> dict[str, Any]:
+        """Give what was proved and checked, in the types of JSON, as `voronoi-tiles check --json` prints it."""
+        return {
+            "design": self.design.name,
+            "group": self.design.group.name,
+            "proof": self._proof_rows(),
+            "check": check.document(),
+        }
+
+    def document(self, check: CheckReport | None = None) -> dict[str, Any]:
+        """Give the outline document (schema 1): coordinates in the design's units, y up.
+
+        With a cross-check's report a last key, "evidence", holds what was proved and checked.
+        """
         from voronoi_tiles.vector.document import outline_document, tile_record
 
-        return outline_document(
+        document = outline_document(
             self.design.units,
             self.design.group.name,
             self.design.lattice,
@@ -121,15 +157,19 @@ class Tiling:
                 for tile in self.tiles
             ),
         )
+        return document if check is None else {**document, "evidence": self.evidence(check)}
 
-    def json(self) -> str:
+    def json(self, check: CheckReport | None = None) -> str:
         """Write the outline document as JSON text, floats with 17 significant digits."""
         from voronoi_tiles.vector.document import document_text
 
-        return document_text(self.document())
+        return document_text(self.document(check))
 
-    def svg(self) -> str:
-        """Write the tiles, where they lie in the plane, as an SVG file in millimetres: one path per tile."""
+    def svg(self, check: CheckReport | None = None) -> str:
+        """Write the tiles, where they lie in the plane, as an SVG file in millimetres: one path per tile.
+
+        With a cross-check's report the metadata hold what was proved and checked.
+        """
         from voronoi_tiles.vector.svg import cut_file
 
         return cut_file(
@@ -137,24 +177,28 @@ class Tiling:
             unit_mm=self.design.unit_mm,
             version=__version__,
             design=self.design.source,
+            evidence=None if check is None else self.evidence(check),
         )
 
-    def text(self, file_format: str) -> str:
+    def text(self, file_format: str, check: CheckReport | None = None) -> str:
         """Write the file of one of `FORMATS`. Raises ValueError for another."""
         match file_format:
             case "svg":
-                return self.svg()
+                return self.svg(check)
             case "json":
-                return self.json()
+                return self.json(check)
             case _:
                 raise ValueError(f"unknown format {file_format!r}: use one of {', '.join(FORMATS)}")
 
-    def export(self, path: str | os.PathLike[str]) -> None:
+    def export(self, path: str | os.PathLike[str], *, check: CheckReport | None = None) -> None:
         """Write a file whole or not at all, its format by its suffix (.svg, .json).
 
-        Raises OutputError where the suffix is another, or the file cannot be written.
+        A cross-check's report goes into the file. Raises OutputError where the suffix is another, or the file cannot be
+        written, and CheckError, before anything is written, where the report has failures.
         """
-        write_whole(path, self.text(format_of(path)).encode())
+        if check is not None:
+            require(check)
+        write_whole(path, self.text(format_of(path), check).encode())
 
 
 def _tile_figures(tile: Tile) -> dict[str, Any]:
@@ -189,6 +233,12 @@ def format_of(path: str | os.PathLike[str]) -> str:
         suffixes = " or ".join(f".{name}" for name in FORMATS)
         raise OutputError(f"cannot tell the format of {os.fspath(path)!r}: give it the suffix {suffixes}", path=path)
     return suffix
+
+
+def require(check: CheckReport) -> None:
+    """Raise CheckError where a cross-check has failed."""
+    if not check.passed:
+        raise CheckError(f"the outlines failed the cross-check: {', '.join(check.failures)}", check)
 
 
 def tessellate(design: Design) -> Tiling:

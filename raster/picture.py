@@ -1,0 +1,153 @@
+"""The coloured tessellation as a picture, band by band: tiles in HSV colours, borders by Sobel, sites on top.
+
+Source of the look: Panchal, Akleman et al., "Curved Space-Filling Tiles Using Voronoi Decomposition with Line, and
+Curve Segments Closed Under Wallpaper Symmetries".
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from voronoi_tiles.raster.colouring import Colouring, colour, palette
+from voronoi_tiles.raster.copies import Pattern
+from voronoi_tiles.raster.frame import Complexes, Frame, rectangle_frame
+from voronoi_tiles.raster.lines import coverage
+from voronoi_tiles.raster.render import LabelImage, Provenance, Renderer
+
+Pixels = NDArray[np.uint8]
+Region = tuple[float, float, float, float]
+
+INK = (38, 34, 42)
+"""The colour of borders and sites: red, green, blue."""
+
+_BAND = 1 << 21
+"""Samples that are rendered at once, at most or in one row of pixels; a count. A band takes some 250 MB."""
+
+
+@dataclass(frozen=True, eq=False)
+class Overlay:
+    """Lines to draw on top: `segments` complex128 (n, 2), Cartesian; `width` in pixels; red, green, blue."""
+
+    segments: Complexes
+    width: float
+    colour: tuple[int, int, int]
+
+
+@dataclass(frozen=True)
+class Style:
+    """How a picture is drawn: widths in pixels.
+
+    `border` is the width of the tiles' borders, `site` that of the sites' strokes, 0 for none; every pixel is the mean
+    of `supersampling` x `supersampling` samples.
+    """
+
+    border: float
+    site: float
+    supersampling: int
+
+    @classmethod
+    def of_size(cls, width: int, height: int) -> Style:
+        """The widths that suit a picture of so many pixels; large ones are not supersampled."""
+        side = math.sqrt(width * height)
+        return cls(max(1.0, side / 600), max(2.0, side / 220), 2 if side <= 4096 else 1)
+
+
+class Picture:
+    """A picture of a rectangle of the plane, `width` x `height` pixels; `bands` renders it from top to bottom."""
+
+    def __init__(
+        self,
+        pattern: Pattern,
+        region: Region,
+        width: int,
+        height: int,
+        *,
+        renderer: Renderer,
+        overlays: Sequence[Overlay] = (),
+        style: Style | None = None,
+    ) -> None:
+        """Prepare a picture. Raises ValueError where the region or the picture is empty."""
+        self.pattern, self.renderer, self.overlays = pattern, renderer, tuple(overlays)
+        self.width, self.height = width, height
+        self.style = style or Style.of_size(width, height)
+        self.fine = self.style.supersampling
+        self.frame = rectangle_frame(region, width * self.fine, height * self.fine)
+        self.provenance: Provenance = renderer.provenance()
+        self.colouring: Colouring = colour(pattern)
+
+    def bands(self) -> Iterator[Pixels]:
+        """Render from the top: pixels (rows, width, 3), red, green, blue; `provenance` says by whom, in the end."""
+        rows = max(1, _BAND // (self.frame.width * self.fine))
+        for top in range(0, self.height, rows):
+            yield self._band(top, min(rows, self.height - top))
+
+    def _band(self, top: int, rows: int) -> Pixels:
+        """Render some rows of pixels."""
+        fine = self.fine
+        grow = max(0, round(self.style.border * fine / 2) - 1)  # Sobel's own border is two samples wide
+        halo = 1 + grow
+        frame = self.frame.window(-halo, top * fine - halo, self.width * fine + 2 * halo, rows * fine + 2 * halo)
+        image = self.renderer.render(self.pattern, frame)
+        self.provenance = image.provenance
+        colours = palette(self.colouring.count)
+        index = self.colouring.of(image.copies)[image.first]
+        flat = colours[index]
+        ink = _borders(flat, grow)
+        inner = (slice(halo, -halo), slice(halo, -halo))
+        cover = np.maximum(ink.astype(np.float32), self._sites(image))[inner]
+        pixels = flat[inner].astype(np.float32)
+        pixels += cover[..., None] * (np.array(INK, np.float32) - pixels)
+        pixels = _mean(pixels, fine)
+        shown = _pixel_frame(self.frame, fine, self.width, self.height).window(0, top, self.width, rows)
+        for overlay in self.overlays:
+            strength = coverage(overlay.segments, overlay.width, shown)[..., None]
+            pixels += strength * (np.array(overlay.colour, np.float32) - pixels)
+        return np.rint(pixels).astype(np.uint8)
+
+    def _sites(self, image: LabelImage) -> NDArray[np.float32]:
+        """How much of each sample the sites' strokes cover."""
+        if not self.style.site:
+            return np.zeros(image.d1.shape, np.float32)
+        beyond = image.d1 / self.frame.pixel - self.style.site * self.fine / 2
+        return np.asarray(np.clip(0.5 - beyond, 0.0, 1.0), np.float32)
+
+
+def default_region(pattern: Pattern) -> Region:
+    """Two cells each way from the origin, as a rectangle: edges match, unless the cell is oblique."""
+    a, b = pattern.lattice.a, pattern.lattice.b
+    side = 2 * abs(a)
+    # In the hexagonal cell b + a/2 is at right angles to a, and two such rows are a period.
+    return (0.0, 0.0, side, 2 * b.imag)
+
+
+def _borders(colours: Pixels, grow: int) -> NDArray[np.bool_]:
+    """Where the Sobel operator finds an edge of colours, grown by so many samples to every side."""
+    # As numbers of 24 bits different colours are different; of their brightness that would not be sure.
+    values = colours.astype(np.int32) @ np.array([1 << 16, 1 << 8, 1], np.int32)
+    edge = (ndimage.sobel(values, axis=0, mode="nearest") != 0) | (ndimage.sobel(values, axis=1, mode="nearest") != 0)
+    return edge if grow == 0 else np.asarray(ndimage.maximum_filter(edge, footprint=_disc(grow), mode="nearest"))
+
+
+def _disc(radius: int) -> NDArray[np.bool_]:
+    """The samples within a radius of the middle one."""
+    y, x = np.mgrid[-radius : radius + 1, -radius : radius + 1]
+    return np.asarray(x * x + y * y <= (radius + 0.5) ** 2)
+
+
+def _mean(pixels: NDArray[np.float32], fine: int) -> NDArray[np.float32]:
+    """The means of squares of fine x fine samples."""
+    if fine == 1:
+        return pixels
+    rows, columns = pixels.shape[0] // fine, pixels.shape[1] // fine
+    return np.asarray(pixels.reshape(rows, fine, columns, fine, 3).mean(axis=(1, 3), dtype=np.float32))
+
+
+def _pixel_frame(frame: Frame, fine: int, width: int, height: int) -> Frame:
+    """The grid of pixels over the grid of samples."""
+    return Frame(frame.origin, frame.u * fine, frame.v * fine, width, height, (0.5, 0.5))

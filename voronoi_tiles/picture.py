@@ -1,0 +1,196 @@
+"""Pictures of tessellations: the raster stage's image, with what the other stages know drawn on top."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voronoi_tiles import __version__
+from voronoi_tiles.crosscheck import CheckReport, diff
+from voronoi_tiles.errors import DesignError
+from voronoi_tiles.files import writing
+from voronoi_tiles.raster.copies import Pattern
+from voronoi_tiles.raster.lines import dashed
+from voronoi_tiles.raster.picture import Overlay, Picture, Region, default_region
+from voronoi_tiles.raster.png import PngStream, Sink
+from voronoi_tiles.raster.render import Choice, Method, Provenance, Renderer
+from voronoi_tiles.symmetry import placed, symmetry_elements
+
+if TYPE_CHECKING:
+    from voronoi_tiles.design import Design
+    from voronoi_tiles.tiling import Tiling
+
+Complexes = NDArray[np.complex128]
+
+OVERLAYS = ("symmetry", "cell", "outline")
+"""What can be drawn on top: mirrors, glides and rotation centres; the cell; the exact outlines."""
+
+DEFAULT_SIZE = 1600
+"""The longer side of a picture; pixels."""
+
+SIDE_MAX = 100_000
+"""The largest side of a picture; pixels. It has 300 MB a band, and takes hours."""
+
+_MIRROR = (178, 24, 43)
+_GLIDE = (33, 102, 172)
+_CENTRE = (120, 20, 110)
+_CELL = (255, 255, 255)
+_OUTLINE = (220, 0, 120)
+_PAPER = (255, 255, 255)
+
+
+def render(
+    design: Design,
+    path: str | os.PathLike[str],
+    *,
+    size: int | tuple[int, int] = DEFAULT_SIZE,
+    region: Region | None = None,
+    overlay: Sequence[str] = (),
+    method: Method = "exact",
+    renderer: Choice = "auto",
+    device: int | None = None,
+    notice: Callable[[str], None] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Provenance:
+    """Write the coloured tessellation of a design as a PNG file, whole or not at all; say who rendered it.
+
+    `size` is the longer side in pixels, or width and height; `region` the rectangle x0, y0, x1, y1 in the design's
+    units, grown where `size` has another shape (default: two cells each way). `overlay` names what is drawn on top, of
+    OVERLAYS; `renderer`, `device`, `method` and `notice` are those of Renderer; `progress` is told how many rows, of
+    how many, are done. Pictures of any size are rendered in bands.
+
+    Raises DesignError for a size or a region that cannot be, RenderError where OpenGL fails and is insisted on,
+    OutputError, and with the overlay "outline" what `tessellate` raises.
+    """
+    unknown = set(overlay) - set(OVERLAYS)
+    if unknown:
+        raise ValueError(f"unknown overlay {min(unknown)!r}: use {', '.join(OVERLAYS)}")
+    pattern = Pattern(design.sites, design.group, design.lattice)
+    region, width, height = _fit(default_region(pattern) if region is None else region, size)
+    picture = Picture(
+        pattern,
+        region,
+        width,
+        height,
+        renderer=Renderer(renderer, device=device, method=method, notice=notice),
+        overlays=_overlays(design, pattern, region, width, overlay),
+    )
+    text = {
+        "Software": f"voronoi-tiles {__version__}",
+        "Title": f"{design.name} ({design.group.name})",
+        "Source": design.source,
+        "Renderer": str(picture.provenance),
+    }
+    per_metre = width / ((region[2] - region[0]) * design.unit_mm / 1000)
+    with (
+        writing(path) as file,
+        PngStream(file, width, height, pixels_per_metre=min(max(per_metre, 1.0), 2.0**31 - 1), text=text) as png,
+    ):
+        for band in picture.bands():
+            png.write(band)
+            if progress is not None:
+                progress(png.rows, height)
+    return picture.provenance
+
+
+def write_diff(tiling: Tiling, report: CheckReport, file: Sink) -> None:
+    """Write the PNG of where a cross-check has found differences, and by how much: white where there is none."""
+    design = tiling.design
+    pattern = Pattern(design.sites, design.group, design.lattice)
+    around = diff.region(report, design.lattice)
+    outlines = np.zeros((0, 2), complex)
+    if not report.passed:
+        outlines = outline_segments(tiling, pattern, around, accuracy=(around[2] - around[0]) / 10_000)
+    diff.write_diff(report, design.lattice, outlines, file)
+
+
+def _fit(region: Region, size: int | tuple[int, int]) -> tuple[Region, int, int]:
+    """Give the region in the shape of the picture, and the picture's width and height."""
+    x0, y0, x1, y1 = region
+    if not (all(map(math.isfinite, region)) and x1 > x0 and y1 > y0):
+        raise DesignError(
+            f"the region {x0:g},{y0:g},{x1:g},{y1:g} is empty", remedy="Give x0,y0,x1,y1 with x0 < x1 and y0 < y1."
+        )
+    across, down = x1 - x0, y1 - y0
+    if isinstance(size, tuple):
+        width, height = size
+    else:
+        width, height = (max(1, round(size * side / max(across, down))) for side in (across, down))
+    if not (1 <= width <= SIDE_MAX and 1 <= height <= SIDE_MAX):
+        raise DesignError(
+            f"a picture of {width} x {height} pixels", remedy=f"Choose sides from 1 to {SIDE_MAX:,} pixels."
+        )
+    step = max(across / width, down / height)
+    middle = (x0 + x1) / 2, (y0 + y1) / 2
+    grown = (
+        middle[0] - step * width / 2,
+        middle[1] - step * height / 2,
+        middle[0] + step * width / 2,
+        middle[1] + step * height / 2,
+    )
+    return grown, width, height
+
+
+def _overlays(design: Design, pattern: Pattern, region: Region, width: int, wanted: Iterable[str]) -> list[Overlay]:
+    """Give the lines to be drawn on top: all lengths that are no widths in the design's units."""
+    wanted = set(wanted)
+    pixel = (region[2] - region[0]) / width
+    side = math.sqrt(width * (region[3] - region[1]) / pixel)
+    line = max(1.0, side / 500)
+    found = []
+    if "outline" in wanted:
+        segments = outline_segments(design.tessellate(), pattern, region, accuracy=pixel / 10)
+        found.append(Overlay(segments, line, _OUTLINE))
+    if "cell" in wanted:
+        a, b = design.lattice.a, design.lattice.b
+        middle = complex(region[0] + region[2], region[1] + region[3]) / 2
+        x, y = pattern.coordinates(np.array([middle - (a + b) / 2]))
+        corner = round(float(x[0])) * a + round(float(y[0])) * b
+        corners = corner + np.array([0, a, a + b, b, 0])
+        segments = np.stack((corners[:-1], corners[1:]), axis=1)
+        found += [Overlay(segments, 3.0 * line, (60, 60, 60)), Overlay(segments, 1.5 * line, _CELL)]
+    if "symmetry" in wanted:
+        elements = placed(symmetry_elements(design.group), design.lattice, region)
+        glides = dashed(elements.glides, 10 * line * pixel, 6 * line * pixel)
+        found += [Overlay(elements.mirrors, 1.4 * line, _MIRROR), Overlay(glides, 1.4 * line, _GLIDE)]
+        symbols = _symbols(elements.centres, elements.orders, 7 * line * pixel)
+        found += [Overlay(symbols, 5.0 * line, _PAPER), Overlay(symbols, 2.4 * line, _CENTRE)]
+    return found
+
+
+def _symbols(centres: Complexes, orders: NDArray[np.intp], radius: float) -> Complexes:
+    """Give the sides of the symbols of rotation centres: a lens for 2, else regular polygons; complex128 (n, 2)."""
+    sides = []
+    for order in (2, 3, 4, 6):
+        turn = np.exp(2j * np.pi * (np.arange(max(order, 4) + 1) / max(order, 4) + 0.25))
+        if order == 3:
+            turn = np.exp(2j * np.pi * (np.arange(4) / 3 + 0.25))
+        if order == 2:
+            turn = turn.real * 0.5 + 1j * turn.imag
+        corners = centres[orders == order, None] + radius * turn
+        sides.append(np.stack((corners[:, :-1], corners[:, 1:]), axis=-1).reshape(-1, 2))
+    return np.concatenate(sides)
+
+
+def outline_segments(tiling: Tiling, pattern: Pattern, region: Region, *, accuracy: float) -> Complexes:
+    """Give the outlines of all copies that may show in a region as chords, within `accuracy` (in units): (n, 2)."""
+    lattice = pattern.lattice
+    corners = np.array([complex(x, y) for x in region[::2] for y in region[1::2]])
+    found = []
+    for placement in pattern.placements:
+        rings = tiling.tiles[placement.site].outline.flatten(accuracy=accuracy)
+        sides = [np.stack((ring, np.roll(ring, -1)), axis=1) for ring in rings]
+        segments = placement.isometry(np.concatenate(sides))
+        # The translates whose box, in lattice coordinates, meets that of the region.
+        ranges = [
+            np.arange(math.ceil(shown.min() - own.max()), math.floor(shown.max() - own.min()) + 1)
+            for shown, own in zip(pattern.coordinates(corners), pattern.coordinates(segments.ravel()), strict=True)
+        ]
+        i, j = (part.ravel() for part in np.meshgrid(*ranges))
+        found.append((segments[None] + (i * lattice.a + j * lattice.b)[:, None, None]).reshape(-1, 2))
+    return np.concatenate(found)
