@@ -68,6 +68,7 @@ types: $(INSTALLED_TYPES)
 
 bench: $(INSTALLED_DEV)
 	$(VENV)/bin/python bench/engine.py
+	$(VENV)/bin/python bench/raster.py
 
 fuzz: $(INSTALLED_DEV)
 	$(VENV)/bin/python tests/fuzz.py $(N)

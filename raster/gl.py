@@ -44,11 +44,34 @@ def gl_errors() -> Iterator[None]:
         raise GlError(text if len(text) <= 200 else text[:197] + "...") from error
 
 
+_contexts = threading.local()
+_makers: set[int] = set()
+"""The processes that have made contexts: their number, and, after a fork, that of the parent."""
+
+
+def device(index: int | None = None) -> Device:
+    """The device with a given index (None: the first that answers), made once in every thread. Raises GlError."""
+    known: dict[tuple[int, int | None], Device] = _contexts.__dict__.setdefault("known", {})
+    key = os.getpid(), index
+    if key not in known:
+        known[key] = Device(index)
+    return known[key]
+
+
+def forget(lost: Device) -> None:
+    """Make a new context the next time: this one has failed."""
+    known: dict[tuple[int, int | None], Device] = _contexts.__dict__.get("known", {})
+    for key in [key for key, value in known.items() if value is lost]:
+        del known[key]
+
+
 class Device:
     """An OpenGL context without a window, on the device with a given index (None: the first that answers)."""
 
     def __init__(self, index: int | None = None) -> None:
         """Make the context. Raises GlError."""
+        if _makers - {os.getpid()}:
+            raise GlError("OpenGL was in use before this process was forked: start processes by spawn")
         with gl_errors():
             import moderngl
 
@@ -59,7 +82,8 @@ class Device:
             self.info: dict[str, Any] = self.context.info
             # What is bound between images: moderngl binds the last framebuffer again, and would find it deleted.
             self.idle: Any = self.context.simple_framebuffer((1, 1))
-            self.process, self.thread = os.getpid(), threading.get_ident()
+            self.home = os.getpid(), threading.get_ident()
+            _makers.add(os.getpid())
             self.check()
 
     @property
@@ -85,7 +109,9 @@ class Device:
         return min(int(self.info["GL_MAX_TEXTURE_SIZE"]), *map(int, self.info["GL_MAX_VIEWPORT_DIMS"]))
 
     def check(self) -> None:
-        """Raise GlError where OpenGL has raised a flag, which it does silently."""
+        """Raise GlError where OpenGL has raised a flag, which it does silently, or where this is no place to use it."""
+        if self.home != (os.getpid(), threading.get_ident()):
+            raise GlError("the context belongs to another thread or process")
         error = self.context.error
         if error != "GL_NO_ERROR":
             raise GlError(error)
@@ -102,6 +128,13 @@ class Device:
     def compute_program(self) -> Any:
         """The exact renderer as a compute shader."""
         return self.context.compute_shader(source("exact_compute.glsl", 430, {"BLOCK": BLOCK}))
+
+    @cached_property
+    def mesh_program(self) -> Any:
+        """The cones and tents of hoff.py."""
+        return self.context.program(
+            vertex_shader=source("hoff_vertex.glsl", 330), fragment_shader=source("hoff_fragment.glsl", 330)
+        )
 
     def table(self, rows: NDArray[Any], components: int, dtype: str) -> Any:
         """A texture that holds the rows (n, components) of a list, _TEXTURE_WIDTH to a line."""
@@ -144,7 +177,8 @@ class Prepared:
     """A frame whose lists lie on the device: `draw` renders it, `read` fetches it."""
 
     def __init__(self, device: Device, candidates: Candidates, frame: Frame, *, compute: bool) -> None:
-        """Upload the lists."""
+        """Upload the lists. Raises GlError."""
+        device.check()
         self.device, self.frame, self.compute = device, frame, compute
         self._held: list[Any] = []
         context = device.context

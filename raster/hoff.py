@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from voronoi_tiles.raster.candidates import Candidates
 from voronoi_tiles.raster.copies import Labels, distances
 from voronoi_tiles.raster.frame import WINDOW, Floats, Frame
-from voronoi_tiles.raster.gl import Device, Floats32, gl_errors, source
+from voronoi_tiles.raster.gl import Device, Floats32, gl_errors
 
 SIDES = 128
 """Sides of a cone; a multiple of 4."""
@@ -119,6 +119,7 @@ class _Meshes:
         farthest: float,
         sides: int,
     ) -> None:
+        device.check()
         self.device, self.frame = device, frame
         context, scene, pixel = device.context, candidates.scene, frame.pixel
         det = frame.u.real * frame.v.imag - frame.u.imag * frame.v.real
@@ -135,9 +136,7 @@ class _Meshes:
         )
         instances = np.zeros(len(used), [("element", "f4", 4), ("reach", "f4"), ("label", "i4")])
         instances["element"], instances["reach"], instances["label"] = grid[:, :4], grid[:, 4], scene.label[used]
-        self.program = context.program(
-            vertex_shader=source("hoff_vertex.glsl", 330), fragment_shader=source("hoff_fragment.glsl", 330)
-        )
+        self.program = device.mesh_program
         # Column by column, as OpenGL reads matrices.
         matrix = np.array([frame.v.imag, -frame.u.imag, -frame.v.real, frame.u.real]) * (pixel / det)
         self.program["to_grid"] = tuple(matrix.tolist())
@@ -155,7 +154,7 @@ class _Meshes:
         self.layers = [context.texture(shape, 2, dtype="i4") for _ in range(2)]
         self.depth = context.depth_renderbuffer(shape)
         self.targets = [context.framebuffer([layer], self.depth) for layer in self.layers]
-        self._held = [corners, rows, self.array, *self.targets, *self.layers, self.depth, self.program]
+        self._held = [corners, rows, self.array, *self.targets, *self.layers, self.depth]
         device.check()
 
     def layer(self, *, second: bool) -> tuple[Labels, Floats32]:

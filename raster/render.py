@@ -16,7 +16,8 @@ from voronoi_tiles.raster import cpu, hoff
 from voronoi_tiles.raster.candidates import Candidates, find_candidates
 from voronoi_tiles.raster.copies import Ints, Labels, Pattern, Scene, distances, gather, merge_copies
 from voronoi_tiles.raster.frame import BLOCK, WINDOW, Frame
-from voronoi_tiles.raster.gl import Device, GlError, float32_error, gl_errors
+from voronoi_tiles.raster.gl import Device, GlError, float32_error, forget, gl_errors
+from voronoi_tiles.raster.gl import device as find_device
 
 Method = Literal["exact", "hoff"]
 Choice = Literal["auto", "gl", "cpu"]
@@ -89,7 +90,7 @@ class Renderer:
         self._device: Device | None = None
         if choice != "cpu":
             try:
-                self._device = Device(device)
+                self._device = find_device(device)
             except GlError as error:
                 self._give_up(error)
 
@@ -174,13 +175,22 @@ class Renderer:
 
     def _give_up(self, error: GlError) -> None:
         """Do without OpenGL from now on, and say why."""
+        if self._device is not None:
+            forget(self._device)
         self._device = None
         if self._choice == "gl":
             raise RenderError(f"OpenGL failed: {error}", remedy="Use --renderer cpu, or auto.") from error
         self._fallback = str(error)
-        self._notice(
-            f"OpenGL not available ({error}). Using the CPU renderer. On Debian/Ubuntu: apt-get install libegl1 libgl1"
-        )
+        self._notice(f"OpenGL not available ({error}). Using the CPU renderer.{_remedy(str(error))}")
+
+
+def _remedy(reason: str) -> str:
+    """Say what to install, where something is missing."""
+    if "moderngl" in reason:
+        return " Install it with: pip install moderngl"
+    if any(word in reason for word in ("not loaded", "eglInitialize", "libGL", "libEGL")):
+        return " On Debian/Ubuntu: apt-get install libegl1 libgl1"
+    return ""
 
 
 def spot_check(
