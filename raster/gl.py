@@ -23,6 +23,9 @@ from voronoi_tiles.raster.copies import Labels
 from voronoi_tiles.raster.frame import BLOCK, Complexes, Floats, Frame
 
 _TEXTURE_WIDTH = 4096
+_LONGEST_LIST = 60_000
+"""Most elements of one block; a count. Mesa's software renderer ends every loop after 65,535 rounds, in silence."""
+
 _SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "software")
 
 Floats32 = NDArray[np.float32]
@@ -179,6 +182,9 @@ class Prepared:
     def __init__(self, device: Device, candidates: Candidates, frame: Frame, *, compute: bool) -> None:
         """Upload the lists. Raises GlError."""
         device.check()
+        longest = int(np.diff(candidates.element_start[candidates.run_start]).max())
+        if longest > _LONGEST_LIST:
+            raise GlError(f"{longest:,} elements lie about one block of samples, more than {_LONGEST_LIST:,}")
         self.device, self.frame, self.compute = device, frame, compute
         self._held: list[Any] = []
         context = device.context
