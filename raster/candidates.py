@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from voronoi_tiles.raster.copies import Ints, Scene, from_feet
+from voronoi_tiles.raster.copies import Ints, Scene, from_feet, lengths
 from voronoi_tiles.raster.frame import BLOCK, Complexes, Floats, Frame
 
 _SLACK = 1.0 + 1e-9
@@ -143,7 +143,7 @@ def _keep(label: NDArray[np.int32], away: Complexes, start: Ints, radius: float,
 
     `away` (n,) leads from each element's nearest point to the centre, `start` says where a block's list begins.
     """
-    distance = np.abs(away)
+    distance = lengths(away)
     fresh = np.empty(len(label), bool)
     fresh[0] = True
     np.not_equal(label[1:], label[:-1], out=fresh[1:])
@@ -158,7 +158,7 @@ def _keep(label: NDArray[np.int32], away: Complexes, start: Ints, radius: float,
     gradient = away / np.where(distance > 0.0, distance, 1.0)
     with np.errstate(divide="ignore"):
         bend = radius * radius / (2.0 * nearest)
-    turn = np.abs(gradient - np.repeat(gradient[winner], size)) * radius
+    turn = lengths(gradient - np.repeat(gradient[winner], size)) * radius
     excess = distance - np.repeat(nearest, size)
     slack = (loose - 1.0) * (distance + radius)
     return np.asarray(excess <= np.minimum(np.repeat(limit, size), turn + np.repeat(bend, size)) + slack)

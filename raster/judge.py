@@ -6,14 +6,15 @@ What the cross-check compares the exact outlines with: computed from the sites a
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from voronoi_tiles.raster.candidates import Candidates, find_candidates
-from voronoi_tiles.raster.copies import Ints, Pattern, from_feet, gather
+from voronoi_tiles.raster.candidates import Candidates
+from voronoi_tiles.raster.copies import Ints, Pattern, from_feet, lengths
 from voronoi_tiles.raster.frame import BLOCK, Complexes, Floats, Frame
 
 _CODE_BITS = 20
@@ -68,13 +69,11 @@ class Judge:
     pattern: Pattern
     frame: Frame
     candidates: Candidates
-    codes: NDArray[np.int64]
 
-    @classmethod
-    def of(cls, pattern: Pattern, frame: Frame) -> Judge:
-        """Make the lists of a window."""
-        scene = gather(pattern, frame.origin, frame.middle, frame.radius)
-        return cls(pattern, frame, find_candidates(scene, frame), encode(scene.copies))
+    @cached_property
+    def codes(self) -> NDArray[np.int64]:
+        """The codes of the scene's copies."""
+        return encode(self.candidates.scene.copies)
 
     def near(self, x: Floats, y: Floats) -> Near:
         """For each point all copies that may be nearest, or nearest of another copy, with their distances."""
@@ -89,7 +88,7 @@ class Judge:
             element, of_run = _ranges(lists.element_start[runs], lists.element_start[runs + 1])
             away = self._away(place[point[of_run]], lists.element[element])
             starts = np.flatnonzero(np.append(True, of_run[1:] != of_run[:-1]))
-            rows.append((point, self.codes[lists.run_label[runs]], np.minimum.reduceat(np.abs(away), starts)))
+            rows.append((point, self.codes[lists.run_label[runs]], np.minimum.reduceat(lengths(away), starts)))
         return Near(*(np.concatenate(column) for column in zip(*rows, strict=True))) if rows else _NOTHING
 
     def certify(
@@ -130,7 +129,7 @@ class Judge:
         # What can be nearest anywhere on the step: half a step from its middle, distances differ by a step at most.
         pair, step = _ranges(first, last)
         element = lists.element[pair]
-        distance = np.abs(self._away((start + stride / 2)[step], element))
+        distance = lengths(self._away((start + stride / 2)[step], element))
         segment = np.cumsum(last - first) - (last - first)
         limit = np.minimum.reduceat(distance, segment) + np.abs(stride) * (1 + 1e-9)
         kept = distance <= limit[step]
@@ -154,7 +153,7 @@ class Judge:
             )
             place = start[number] + t * stride[number]
             away = self._away(place[of], element[index])
-            distance = np.abs(away)
+            distance = lengths(away)
             nearest = _first_least(distance, of, len(number))
             mine = _first_least(np.where(owned_by_before, distance, np.inf), of, len(number))
             theirs = _first_least(np.where(owned_by_after, distance, np.inf), of, len(number))
@@ -193,7 +192,7 @@ class Judge:
             least = []
             for element, of in (mine, theirs):
                 index, point = _ranges(*_extent_of(of, active))
-                distance = np.abs(self._away(place[point], element[index]))
+                distance = lengths(self._away(place[point], element[index]))
                 least.append(np.minimum.reduceat(distance, np.flatnonzero(np.append(True, point[1:] != point[:-1]))))
             return np.asarray(least[0] - least[1])
 

@@ -6,7 +6,8 @@ import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import Any, Literal
+from itertools import product
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,12 +46,22 @@ class Provenance:
         return f"{self.method} on {self.renderer} ({self.device}), {self.precision}"
 
 
+class Window(NamedTuple):
+    """A part of an image that was rendered at once, the column and row where it begins, and its candidate lists."""
+
+    column: int
+    row: int
+    frame: Frame
+    candidates: Candidates
+
+
 @dataclass(frozen=True, eq=False)
 class LabelImage:
     """Who owns each sample of a frame.
 
     `first` and `second` (int32, height x width) are labels: rows of `copies` (intp, n x 3), which are (placement, i, j)
-    as in Pattern; `d1` and `d2` their distances in units. `error` bounds what is wrong with a distance d.
+    as in Pattern; `d1` and `d2` their distances in units. `error` bounds what is wrong with a distance d. `windows` are
+    the parts that it was rendered in.
     """
 
     pattern: Pattern
@@ -62,6 +73,7 @@ class LabelImage:
     copies: Ints
     provenance: Provenance
     error: Callable[[Any], Any]
+    windows: tuple[Window, ...]
 
 
 class Renderer:
@@ -101,31 +113,31 @@ class Renderer:
         """
         limit = WINDOW if self._device is None else min(WINDOW, self._device.largest_image // BLOCK * BLOCK)
         height, width = frame.height, frame.width
-        corners = [(x, y) for y in range(0, height, limit) for x in range(0, width, limit)]
         whole: list[NDArray[Any]] = []
-        parts: list[tuple[slice, slice, Ints]] = []
+        windows: list[Window] = []
         farthest, spots = 0.0, 0
-        for x, y in corners:
-            window = frame.window(x, y, min(limit, width - x), min(limit, height - y))
+        for y, x in product(range(0, height, limit), range(0, width, limit)):
+            window = self._window(pattern, frame, x, y, limit)
             before = self._device
-            images, scene, far, checked = self._window(pattern, window)
+            images, far, checked = self._images(pattern, window)
             if self._device is not before and whole:
                 return self.render(pattern, frame)  # one image, one renderer
             if not whole:
                 whole = [np.empty((height, width), part.dtype) for part in images]
-            at = slice(y, y + window.height), slice(x, x + window.width)
             for image, part in zip(whole, images, strict=True):
-                image[at] = part
-            parts.append((*at, scene.copies))
+                image[y : y + limit, x : x + limit] = part
+            windows.append(window)
             farthest, spots = max(farthest, far), spots + checked
-        table, relabel = merge_copies([part[2] for part in parts])
-        if len(parts) > 1:
-            for (rows, columns, _), names in zip(parts, relabel, strict=True):
+        copies, names = merge_copies([window.candidates.scene.copies for window in windows])
+        if len(windows) > 1:
+            for window, new in zip(windows, names, strict=True):
                 for image in whole[:2]:
-                    image[rows, columns] = names[image[rows, columns]]
+                    part = image[window.row : window.row + limit, window.column : window.column + limit]
+                    part[...] = new[part]
         first, second, d1, d2 = whole
         error = self._error(pattern, frame, farthest)
-        return LabelImage(pattern, frame, first, second, d1, d2, table, self.provenance(spots), error)
+        by = self.provenance(spots)
+        return LabelImage(pattern, frame, first, second, d1, d2, copies, by, error, tuple(windows))
 
     def provenance(self, spots: int = 0) -> Provenance:
         """Who renders, as things stand."""
@@ -134,23 +146,26 @@ class Renderer:
             return Provenance("cpu", f"numpy, {os.cpu_count()} cores", "float64", method, self._fallback)
         return Provenance("gl", self._device.name, "float32", method, spots=spots)
 
-    def _window(self, pattern: Pattern, frame: Frame) -> tuple[list[NDArray[Any]], Scene, float, int]:
-        """Render one window: the four images, the scene that the labels belong to, the farthest distance, spots."""
-        scene = gather(pattern, frame.origin, frame.middle, frame.radius)
+    def _window(self, pattern: Pattern, frame: Frame, x: int, y: int, limit: int) -> Window:
+        """A part of a frame, with its lists."""
+        part = frame.window(x, y, min(limit, frame.width - x), min(limit, frame.height - y))
+        scene = gather(pattern, part.origin, part.middle, part.radius)
         looseness = hoff.cone_error(self._sides) if self._method == "hoff" else 0.0
-        candidates = find_candidates(scene, frame, looseness=looseness)
+        return Window(x, y, part, find_candidates(scene, part, looseness=looseness))
+
+    def _images(self, pattern: Pattern, window: Window) -> tuple[list[NDArray[Any]], float, int]:
+        """Render one window: the four images, the farthest distance that was drawn, the samples that were checked."""
         if self._device is not None:
             try:
-                return self._by_device(self._device, pattern, candidates, frame)
+                return self._by_device(self._device, pattern, window)
             except GlError as error:
                 self._give_up(error)
         mesh = partial(hoff.heights, sides=self._sides) if self._method == "hoff" else None
-        return [*cpu.render(candidates, frame, heights=mesh)], scene, 0.0, 0
+        return [*cpu.render(window.candidates, window.frame, heights=mesh)], 0.0, 0
 
-    def _by_device(
-        self, device: Device, pattern: Pattern, candidates: Candidates, frame: Frame
-    ) -> tuple[list[NDArray[Any]], Scene, float, int]:
+    def _by_device(self, device: Device, pattern: Pattern, window: Window) -> tuple[list[NDArray[Any]], float, int]:
         """Render one window with OpenGL, and compare some samples with float64."""
+        candidates, frame = window.candidates, window.frame
         farthest = 0.0
         if self._method == "exact":
             first, second, d1, d2 = device.render_exact(candidates, frame, compute=self._compute)
@@ -159,7 +174,7 @@ class Renderer:
         with gl_errors():
             error = self._error(pattern, frame, farthest)
             spots = spot_check(candidates.scene, frame, (first, second, d1, d2), error)
-        return [first, second, d1, d2], candidates.scene, farthest, spots
+        return [first, second, d1, d2], farthest, spots
 
     def _error(self, pattern: Pattern, frame: Frame, farthest: float) -> Callable[[Any], Any]:
         """The bound for a distance's error."""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voronoi_tiles.raster.copies import Pattern
-from voronoi_tiles.raster.frame import WINDOW, Frame
+from voronoi_tiles.raster.frame import Frame
 from voronoi_tiles.raster.judge import Judge, decode, encode
 from voronoi_tiles.raster.render import LabelImage
 from voronoi_tiles.tolerance import PROOF_LIMIT
@@ -100,15 +100,9 @@ class Subject:
     @cached_property
     def parts(self) -> tuple[Part, ...]:
         """The windows of the image."""
-        frame = self.frame
-        corners = [(x, y) for y in range(0, frame.height, WINDOW) for x in range(0, frame.width, WINDOW)]
         return tuple(
-            Part(
-                Judge.of(self.pattern, frame.window(x, y, min(WINDOW, frame.width - x), min(WINDOW, frame.height - y))),
-                x,
-                y,
-            )
-            for x, y in corners
+            Part(Judge(self.pattern, window.frame, window.candidates), window.column, window.row)
+            for window in self.image.windows
         )
 
     def split(self, column: Floats | Ints, row: Floats | Ints) -> Iterator[tuple[Part, Ints]]:
