@@ -131,13 +131,28 @@ def _borders(colours: Pixels, grow: int) -> NDArray[np.bool_]:
     # As numbers of 24 bits different colours are different; of their brightness that would not be sure.
     values = colours.astype(np.int32) @ np.array([1 << 16, 1 << 8, 1], np.int32)
     edge = (ndimage.sobel(values, axis=0, mode="nearest") != 0) | (ndimage.sobel(values, axis=1, mode="nearest") != 0)
-    return edge if grow == 0 else np.asarray(ndimage.maximum_filter(edge, footprint=_disc(grow), mode="nearest"))
+    return _grown(edge, grow)
 
 
-def _disc(radius: int) -> NDArray[np.bool_]:
-    """The samples within a radius of the middle one."""
-    y, x = np.mgrid[-radius : radius + 1, -radius : radius + 1]
-    return np.asarray(x * x + y * y <= (radius + 0.5) ** 2)
+def _grown(mask: NDArray[np.bool_], radius: int) -> NDArray[np.bool_]:
+    """Grow what is True by a disc.
+
+    Row by row of the disc, from its ends to its middle, where it is wider: the mask is widened step by step, and each
+    width is moved up and down.
+    """
+    grown = np.zeros_like(mask)
+    wide = mask.copy()
+    reached = 0
+    for up in range(radius, -1, -1):
+        for _ in range(math.isqrt(radius * radius + radius - up * up) - reached):
+            wider = wide.copy()
+            wider[:, 1:] |= wide[:, :-1]
+            wider[:, :-1] |= wide[:, 1:]
+            wide = wider
+            reached += 1
+        grown[up:] |= wide[: len(wide) - up]
+        grown[: len(wide) - up] |= wide[up:]
+    return grown
 
 
 def _mean(pixels: NDArray[np.float32], fine: int) -> NDArray[np.float32]:

@@ -215,7 +215,7 @@ def spot_check(
 
     Raises GlError where a distance is off by more than its bound, or a label is wrong that the bound decides.
     """
-    count = int(np.clip(_SPOT_WORK // len(scene), 16, 1024))
+    count = int(np.clip(_SPOT_WORK // len(scene), 16, 256))
     chance = np.random.default_rng(frame.width * 1_000_003 + frame.height)
     i, j = chance.integers(0, frame.width, count), chance.integers(0, frame.height, count)
     start = np.flatnonzero(np.append(True, scene.label[1:] != scene.label[:-1]))

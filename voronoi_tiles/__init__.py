@@ -9,14 +9,18 @@ from importlib import import_module
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from voronoi_tiles.crosscheck import CheckReport
     from voronoi_tiles.design import Design
     from voronoi_tiles.errors import (
+        CheckError,
         DesignError,
         OutputError,
         ProofError,
+        RenderError,
         TouchingCopiesError,
         VoronoiTilesError,
     )
+    from voronoi_tiles.picture import render
     from voronoi_tiles.site import Site
     from voronoi_tiles.tiling import Tile, Tiling
     from voronoi_tiles.vector.arcs import Arc, LineArc, Neighbour, ParabolaArc
@@ -28,6 +32,8 @@ __version__ = "0.1.0"
 __all__ = [
     "GROUPS",
     "Arc",
+    "CheckError",
+    "CheckReport",
     "Design",
     "DesignError",
     "Isometry",
@@ -39,6 +45,7 @@ __all__ = [
     "OutputError",
     "ParabolaArc",
     "ProofError",
+    "RenderError",
     "Site",
     "Tile",
     "Tiling",
@@ -46,17 +53,22 @@ __all__ = [
     "VoronoiTilesError",
     "WallpaperGroup",
     "__version__",
+    "render",
 ]
 
 _HOMES = {
+    "voronoi_tiles.crosscheck": ("CheckReport",),
     "voronoi_tiles.design": ("Design",),
     "voronoi_tiles.errors": (
+        "CheckError",
         "DesignError",
         "OutputError",
         "ProofError",
+        "RenderError",
         "TouchingCopiesError",
         "VoronoiTilesError",
     ),
+    "voronoi_tiles.picture": ("render",),
     "voronoi_tiles.site": ("Site",),
     "voronoi_tiles.tiling": ("Tile", "Tiling"),
     "voronoi_tiles.vector.arcs": ("Arc", "LineArc", "Neighbour", "ParabolaArc"),

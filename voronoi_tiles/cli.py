@@ -1,7 +1,7 @@
 """The command line: parse, call the library, print.
 
 Results go to standard output or to files, messages to standard error. Exit codes: 0 done; 1 the result failed a
-check; 2 bad input or usage; 130 interrupted; 70 a bug of ours. Whatever happens, it is one message and no traceback
+check; 2 bad input or usage; 130 interrupted, 143 terminated; 70 a bug of ours. Whatever happens, it is one message and no traceback
 (but with VORONOI_TILES_DEBUG=1). What a command needs is imported by the command, when it runs.
 """
 
@@ -36,6 +36,7 @@ _PATIENCE = 1.0
 EXIT_USAGE = 2
 EXIT_BUG = 70  # EX_SOFTWARE of sysexits.h
 EXIT_INTERRUPTED = 130  # as shells report SIGINT
+EXIT_TERMINATED = 143  # as shells report SIGTERM
 
 DEBUG_VARIABLE = "VORONOI_TILES_DEBUG"
 
@@ -345,6 +346,8 @@ def run() -> Never:
     if hasattr(signal, "SIGPIPE"):
         # A reader that has seen enough ends us silently, as it ends other commands in a pipe.
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    # To be ended is no reason to leave half a file behind: what is begun is removed, as it is after Ctrl-C.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(EXIT_TERMINATED))
     if sys.stdout is None:
         sys.stdout = _ClosedStdout()
     code = _run()
