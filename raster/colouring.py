@@ -19,7 +19,7 @@ _PERIODS = tuple(sorted(((m, n) for m in range(1, 5) for n in range(1, 5)), key=
 _ENOUGH = 4
 """Colours that are worth a larger period; what four colours do not suffice for takes more."""
 
-_STEPS = 20_000
+_STEPS = 3_000
 """Most decisions of one search for a colouring; a count."""
 
 
@@ -46,20 +46,22 @@ def colour(pattern: Pattern) -> Colouring:
     Of the larger cells with up to 4 x 4 cells the smallest is taken in which four colours suffice, or else the one with
     the fewest.
     """
-    pairs = neighbours(pattern)
+    pairs, crowd = neighbours(pattern)
     best: Ints | None = None
     for period in _PERIODS:
-        found = _colour_quotient(pairs, len(pattern.placements), period)
+        found = _colour_quotient(pairs, len(pattern.placements), period, crowd)
         if found is not None and (best is None or found.max() < best.max()):
             best = found
-        if best is not None and best.max() < _ENOUGH:
+        if best is not None and best.max() < max(_ENOUGH, crowd):
             break
     assert best is not None  # 4 x 4 cells: a tile's neighbours are nearer than that, see `neighbours`
     return Colouring(best)
 
 
-def neighbours(pattern: Pattern) -> Ints:
-    """All pairs of copies that may share an edge, rows (p, q, i, j): placement p beside placement q moved by i a + j b.
+def neighbours(pattern: Pattern) -> tuple[Ints, int]:
+    """All pairs of copies that may share an edge, and how many copies meet, all with all, in one place at most.
+
+    Pairs are rows (p, q, i, j): placement p beside placement q moved by i a + j b.
 
     Two tiles meet in a point of some block of the image of a cell; at the block's centre both their distances are then
     within twice the block's radius of the smallest. So no pair is missed; a few pairs that almost meet are found as
@@ -75,6 +77,7 @@ def neighbours(pattern: Pattern) -> Ints:
     least = np.minimum.reduceat(nearest, lists.run_start[:-1])
     owning = np.flatnonzero(nearest <= least[of_block] + 2 * lists.radius)
     label, block = lists.run_label[owning], of_block[owning]
+    crowd = int(np.bincount(block).max())
     found = []
     for step in range(1, len(owning)):
         together = np.flatnonzero(block[step:] == block[:-step])
@@ -84,10 +87,10 @@ def neighbours(pattern: Pattern) -> Ints:
     pairs = np.unique(np.concatenate(found), axis=0) if found else np.zeros((0, 2), np.intp)
     first, second = scene.copies[pairs[:, 0]], scene.copies[pairs[:, 1]]
     rows = np.concatenate((first[:, :1], second[:, :1], second[:, 1:] - first[:, 1:]), axis=1)
-    return np.unique(rows, axis=0)
+    return np.unique(rows, axis=0), crowd
 
 
-def _colour_quotient(pairs: Ints, placements: int, period: tuple[int, int]) -> Ints | None:
+def _colour_quotient(pairs: Ints, placements: int, period: tuple[int, int], least: int) -> Ints | None:
     """Colour the copies in m x n cells that go on periodically; None where a tile meets its own translate."""
     m, n = period
     cells = np.stack(np.meshgrid(np.arange(m), np.arange(n), indexing="ij"), axis=-1).reshape(-1, 2)
@@ -99,7 +102,7 @@ def _colour_quotient(pairs: Ints, placements: int, period: tuple[int, int]) -> I
     count = placements * m * n
     beside = np.zeros((count, count), bool)
     beside[here, there] = beside[there, here] = True
-    for colours in range(1, count + 1):
+    for colours in range(min(least, count), count + 1):
         found = _colour_graph(beside, colours)
         if found is not None:
             return found.reshape(placements, m, n)

@@ -1,14 +1,16 @@
-"""Hand-made outlines that need no engine, and the command line's real entry point."""
+"""Hand-made outlines that need no engine, OpenGL where there is any, and the command line's real entry point."""
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
+from voronoi_tiles.raster import gl
 from voronoi_tiles.vector.arcs import Arc, LineArc, Neighbour, ParabolaArc
 from voronoi_tiles.vector.outline import Outline
 from voronoi_tiles.wallpaper import Operation
@@ -53,6 +55,26 @@ def mixed() -> Outline:
     bulge = ParabolaArc(10 + 0j, 14 + 5j, 10 + 10j, 8.875 + 5j, (15.125 + 0j, 15.125 + 10j), RIGHT)
     sides = polygon(10 + 10j, 10j, 0j, 10 + 0j, neighbour=ABOVE)[:3]
     return Outline.from_rings([[bulge, *sides]])
+
+
+@pytest.fixture(scope="session")
+def opengl() -> None:
+    """OpenGL, or the reason why a test is left out; VORONOI_TILES_REQUIRE_GL=1 makes that reason an error."""
+    try:
+        gl.device()
+    except gl.GlError as error:
+        if os.environ.get("VORONOI_TILES_REQUIRE_GL") == "1":
+            raise
+        pytest.skip(f"no OpenGL: {error}")
+
+
+@pytest.fixture
+def device(opengl: None) -> Iterator[gl.Device]:  # noqa: ARG001  (it only has to be there)
+    """The device that renderers take; no error flag is up before the test or after it."""
+    found = gl.device()
+    found.check()
+    yield found
+    found.check()
 
 
 @pytest.fixture(scope="session")

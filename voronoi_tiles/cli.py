@@ -1,8 +1,8 @@
 """The command line: parse, call the library, print.
 
 Results go to standard output or to files, messages to standard error. Exit codes: 0 done; 1 the result failed a
-check; 2 bad input or usage; 130 interrupted, 143 terminated; 70 a bug of ours. Whatever happens, it is one message and no traceback
-(but with VORONOI_TILES_DEBUG=1). What a command needs is imported by the command, when it runs.
+check; 2 bad input or usage; 130 interrupted, 143 terminated; 70 a bug of ours. Whatever happens, it is one message and
+no traceback (but with VORONOI_TILES_DEBUG=1). What a command needs is imported by the command, when it runs.
 """
 
 from __future__ import annotations

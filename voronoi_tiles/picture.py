@@ -119,8 +119,8 @@ def _fit(region: Region, size: int | tuple[int, int]) -> tuple[Region, int, int]
     across, down = x1 - x0, y1 - y0
     if isinstance(size, tuple):
         width, height = size
-    else:
-        width, height = (max(1, round(size * side / max(across, down))) for side in (across, down))
+    else:  # a strip is one pixel wide at least
+        width, height = (max(min(size, 1), round(size * side / max(across, down))) for side in (across, down))
     if not (1 <= width <= SIDE_MAX and 1 <= height <= SIDE_MAX):
         raise DesignError(
             f"a picture of {width} x {height} pixels", remedy=f"Choose sides from 1 to {SIDE_MAX:,} pixels."
