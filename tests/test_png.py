@@ -43,6 +43,9 @@ def decoded(data: bytes) -> Pixels:
     stream = zlib.decompress(b"".join(body for kind, body in chunks if kind == b"IDAT"))
     size = 3 * width
     assert len(stream) == height * (1 + size)
+    lines = np.frombuffer(stream, dtype=np.uint8).reshape(height, 1 + size)
+    if (lines[:, 0] == 2).all():  # each row is the difference from the one above
+        return np.add.accumulate(lines[:, 1:], axis=0, dtype=np.uint8).reshape(height, width, 3)
     above, rows = bytes(size), []
     for start in range(0, len(stream), 1 + size):
         row = bytearray(stream[start + 1 : start + 1 + size])
