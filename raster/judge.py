@@ -13,12 +13,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from voronoi_tiles.errors import DesignError
 from voronoi_tiles.raster.candidates import Candidates
 from voronoi_tiles.raster.copies import Ints, Pattern, from_feet, lengths
 from voronoi_tiles.raster.frame import BLOCK, Complexes, Floats, Frame
 
-_CODE_BITS = 20
-_CODE = 1 << _CODE_BITS
+_CELLS = 1 << 23
+_PLACEMENTS = 1 << 14
 _PORTION = 2_000_000
 """Pairs of points and elements that are handled at once; a count."""
 
@@ -27,16 +28,24 @@ _STEPS = 100
 
 
 def encode(copies: Ints) -> NDArray[np.int64]:
-    """One number for each copy, rows (placement, i, j): the same for the same copy, wherever it is met."""
+    """One number for each copy, rows (placement, i, j): the same for the same copy, wherever it is met.
+
+    Raises DesignError where copies are numbered beyond _CELLS, because a site lies so many cells from the origin.
+    """
     k, i, j = (copies[..., column].astype(np.int64) for column in range(3))
-    return np.asarray((k * _CODE + (i + _CODE // 2)) * _CODE + (j + _CODE // 2))
+    if max(np.abs(i).max(initial=0), np.abs(j).max(initial=0)) >= _CELLS or k.max(initial=0) >= _PLACEMENTS:
+        raise DesignError(
+            f"a site lies more than {_CELLS:,} cells from the origin, or a cell has more than {_PLACEMENTS:,} copies",
+            remedy="Draw it nearer to the origin.",
+        )
+    return np.asarray((k * 2 * _CELLS + (i + _CELLS)) * 2 * _CELLS + (j + _CELLS))
 
 
 def decode(codes: NDArray[np.int64]) -> Ints:
     """The rows (placement, i, j) of copies."""
-    rest, j = np.divmod(codes, _CODE)
-    k, i = np.divmod(rest, _CODE)
-    return np.stack((k, i - _CODE // 2, j - _CODE // 2), axis=-1).astype(np.intp)
+    rest, j = np.divmod(codes, 2 * _CELLS)
+    k, i = np.divmod(rest, 2 * _CELLS)
+    return np.stack((k, i - _CELLS, j - _CELLS), axis=-1).astype(np.intp)
 
 
 class Near(NamedTuple):

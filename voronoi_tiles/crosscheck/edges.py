@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from voronoi_tiles.crosscheck.labels import Owners
 from voronoi_tiles.crosscheck.report import NO_MARKS, Figure, Marks
 from voronoi_tiles.crosscheck.subject import STRANGER, Codes, Complexes, Floats, Ints, Subject
-from voronoi_tiles.raster.judge import Crossings, Judge, encode
+from voronoi_tiles.raster.judge import Crossings, Judge, decode, encode
 from voronoi_tiles.vector.nearest import distance_to_arcs
 from voronoi_tiles.vector.outline import Outline
 from voronoi_tiles.vector.scan import crossings
@@ -205,6 +205,7 @@ def _crossed(subject: Subject, copy: Codes, arc: Ints) -> Figure:
     ends, where rounding decides which of two arcs is crossed.
     """
     placements = subject.pattern.placements
+    which = decode(copy)[:, 0]
     checked, wrong, worst = 0, 0, 0
     missed: list[complex] = []
     for number, placement in enumerate(placements):
@@ -218,7 +219,7 @@ def _crossed(subject: Subject, copy: Codes, arc: Ints) -> Figure:
             expected += np.bincount(scanned.arc, minlength=len(outline))
             alone = size[inverse.reshape(-1)] == 1
             hidden += np.bincount(scanned.arc[~alone], minlength=len(outline))
-        found = np.bincount(arc[(copy >> 40) == number], minlength=len(outline))
+        found = np.bincount(arc[which == number], minlength=len(outline))
         off = np.abs(found - expected) - hidden
         checked += len(outline)
         worst = max(worst, int(off.max(initial=0)))

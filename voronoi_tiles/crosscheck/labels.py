@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from voronoi_tiles.crosscheck.report import NO_MARKS, Figure, Marks
 from voronoi_tiles.crosscheck.subject import Codes, Floats, Ints, Subject
-from voronoi_tiles.raster.judge import encode
+from voronoi_tiles.raster.judge import decode, encode
 from voronoi_tiles.vector.scan import QUANTUM, owners
 
 
@@ -103,7 +103,7 @@ def _area(subject: Subject, owner: NDArray[np.int32], codes: Codes) -> Figure:
     pattern = subject.pattern
     site_of = np.array([placement.site for placement in pattern.placements])
     counts = np.bincount(owner.ravel(), minlength=len(codes))
-    by_site = np.bincount(site_of[codes >> 40], weights=counts, minlength=len(pattern.sites))
+    by_site = np.bincount(site_of[decode(codes)[:, 0]], weights=counts, minlength=len(pattern.sites))
     deviations = []
     for tile, count in zip(subject.tiling.tiles, by_site.tolist(), strict=True):
         true = tile.area * tile.copies_per_cell
