@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from voronoi_tiles.errors import DesignError
+from voronoi_tiles.raster.frame import Frame
 from voronoi_tiles.site import Site
 from voronoi_tiles.tolerance import EPSILON, SAME_POINT
 from voronoi_tiles.wallpaper import Isometry, Lattice, Operation, WallpaperGroup
@@ -86,14 +87,13 @@ class Pattern:
         a, b = self.lattice.reduced_basis
         return max(abs(a), abs(b), *(float(np.abs(site.nodes).max()) for site in self.sites))
 
-    @cached_property
-    def rounding(self) -> float:
-        """A bound for the rounding of float64 distances, in units.
+    def rounding(self, frame: Frame) -> float:
+        """A bound for the rounding of float64 distances in a frame, in units.
 
-        A coordinate goes through a rotation, two translations and a difference, each rounded at the size of `scale`:
-        less than 16 ulps of it in all.
+        A coordinate goes through a rotation, two translations and a difference, each rounded at the size of `scale` or
+        of the frame's farthest coordinate: less than 16 ulps of it in all.
         """
-        return 16 * EPSILON * self.scale
+        return 16 * EPSILON * max(self.scale, abs(frame.origin + frame.middle) + frame.radius)
 
     def _symmetry(self, site: Site) -> tuple[Operation, ...]:
         """Find the operations that map a site onto itself: they map its nodes' centre to itself."""

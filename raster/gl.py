@@ -24,7 +24,8 @@ from voronoi_tiles.raster.frame import BLOCK, Complexes, Floats, Frame
 
 _TEXTURE_WIDTH = 4096
 _LONGEST_LIST = 60_000
-"""Most elements of one block; a count. Mesa's software renderer ends every loop after 65,535 rounds, in silence."""
+"""Most elements and runs of one block; a count. Mesa's software renderer ends a shader's loops after 65,535 rounds in
+all, in silence."""
 
 _SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "software")
 
@@ -111,6 +112,15 @@ class Device:
         """The largest side of an image; samples."""
         return min(int(self.info["GL_MAX_TEXTURE_SIZE"]), *map(int, self.info["GL_MAX_VIEWPORT_DIMS"]))
 
+    @contextmanager
+    def current(self) -> Iterator[None]:
+        """Make this the context that OpenGL's calls are for: a thread may have several. Raises GlError."""
+        if self.home != (os.getpid(), threading.get_ident()):
+            raise GlError("the context belongs to another thread or process")
+        with self.context:
+            self.check()
+            yield
+
     def check(self) -> None:
         """Raise GlError where OpenGL has raised a flag, which it does silently, or where this is no place to use it."""
         if self.home != (os.getpid(), threading.get_ident()):
@@ -158,7 +168,7 @@ class Device:
         """
         if compute is None:
             compute = self.has_compute and not self.is_software
-        with gl_errors(), Prepared(self, candidates, frame, compute=compute) as prepared:
+        with gl_errors(), self.current(), Prepared(self, candidates, frame, compute=compute) as prepared:
             prepared.draw()
             image = prepared.read()
         first, second = np.ascontiguousarray(image[..., 0]), np.ascontiguousarray(image[..., 1])
@@ -182,9 +192,12 @@ class Prepared:
     def __init__(self, device: Device, candidates: Candidates, frame: Frame, *, compute: bool) -> None:
         """Upload the lists. Raises GlError."""
         device.check()
-        longest = int(np.diff(candidates.element_start[candidates.run_start]).max())
+        rounds = np.diff(candidates.element_start[candidates.run_start]) + np.diff(candidates.run_start)
+        longest = int(rounds.max())
         if longest > _LONGEST_LIST:
-            raise GlError(f"{longest:,} elements lie about one block of samples, more than {_LONGEST_LIST:,}")
+            raise GlError(
+                f"{longest:,} elements and copies lie about one block of samples, more than {_LONGEST_LIST:,}"
+            )
         self.device, self.frame, self.compute = device, frame, compute
         self._held: list[Any] = []
         context = device.context

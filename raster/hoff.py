@@ -94,7 +94,7 @@ def render_hoff(
     Arrays (height, width); distances are wrong by at most `mesh_error`. The candidates must have been found with a
     looseness of cone_error(sides). Raises GlError.
     """
-    with gl_errors():
+    with gl_errors(), device.current():
         used, reach = reaches(candidates)
         farthest = 1.01 / math.cos(math.pi / sides) * float(reach.max())
         draw = _Meshes(device, candidates, frame, used, reach, farthest, sides)

@@ -84,6 +84,11 @@ class Judge:
         """The codes of the scene's copies."""
         return encode(self.candidates.scene.copies)
 
+    @cached_property
+    def rounding(self) -> float:
+        """A bound for the rounding of distances, in units."""
+        return self.pattern.rounding(self.frame)
+
     def near(self, x: Floats, y: Floats) -> Near:
         """For each point all copies that may be nearest, or nearest of another copy, with their distances."""
         block = self._block(x, y)
@@ -166,7 +171,7 @@ class Judge:
             nearest = _first_least(distance, of, len(number))
             mine = _first_least(np.where(owned_by_before, distance, np.inf), of, len(number))
             theirs = _first_least(np.where(owned_by_after, distance, np.inf), of, len(number))
-            third = distance[nearest] < np.minimum(distance[mine], distance[theirs]) - 4 * self.pattern.rounding
+            third = distance[nearest] < np.minimum(distance[mine], distance[theirs]) - 4 * self.rounding
             gradients = (
                 away[mine] / np.maximum(distance[mine], 1e-300),
                 away[theirs] / np.maximum(distance[theirs], 1e-300),
@@ -210,7 +215,7 @@ class Judge:
         at_low, at_high = difference(low, active), difference(high, active)
         best = np.where(np.abs(at_low) < np.abs(at_high), low, high)
         value = np.minimum(np.abs(at_low), np.abs(at_high))
-        enough = self.pattern.rounding / 16
+        enough = self.rounding / 16
         active = active[(at_low < 0) & (at_high > 0) & (value > 0)]
         for count in range(_STEPS):
             if not len(active):

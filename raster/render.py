@@ -178,7 +178,7 @@ class Renderer:
 
     def _error(self, pattern: Pattern, frame: Frame, farthest: float) -> Callable[[Any], Any]:
         """The bound for a distance's error."""
-        rounding = pattern.rounding
+        rounding = pattern.rounding(frame)
         if self._method == "hoff" and self._device is None:
             relative = hoff.cone_error(self._sides)
             return lambda distance: relative * distance + rounding

@@ -72,9 +72,9 @@ def opengl() -> None:
 def device(opengl: None) -> Iterator[gl.Device]:  # noqa: ARG001  (it only has to be there)
     """The device that renderers take; no error flag is up before the test or after it."""
     found = gl.device()
-    found.check()
-    yield found
-    found.check()
+    with found.current():
+        yield found
+        found.check()
 
 
 @pytest.fixture(scope="session")

@@ -38,7 +38,7 @@ def crosscheck(
     """Compare a tiling's outlines with an image of the same design over one cell, which stands for the whole plane.
 
     The image has about samples x samples samples. `renderer`, `device`, `method` and `notice` are those of Renderer.
-    Raises RenderError where there is no image to be had.
+    Raises RenderError where there is no image to be had, ValueError where an outline is open (which the proof refuses).
     """
     design = tiling.design
     pattern = Pattern(design.sites, design.group, design.lattice)

@@ -34,7 +34,7 @@ def compare_crossings(subject: Subject, owned: Owners) -> list[Figure]:
     place, slope = np.tile(found.place, 2), np.tile(found.slope, 2)
     site, beyond = subject.relative(own, other)
     home = subject.pull_back(place, own)
-    limit = (subject.accuracy + 4 * subject.pattern.rounding) / np.maximum(slope, 1e-9)
+    limit = (subject.accuracy + 4 * subject.rounding) / np.maximum(slope, 1e-9)
     named = np.full(len(own), np.inf)
     nearest = np.full(len(own), np.inf)
     arc = np.full(len(own), -1, np.intp)
@@ -81,18 +81,17 @@ def compare_crossings(subject: Subject, owned: Owners) -> list[Figure]:
 def compare_points(subject: Subject) -> Figure:
     """Give the figure "equidistance": points of every exact edge, by the raster stage's distances."""
     frame, pattern = subject.frame, subject.pattern
-    place, other = [], []
-    for outline, beyond in zip(subject.outlines, subject.beyond, strict=True):
+    place, codes, own = [], [], []
+    identity = pattern.group.operations[0]
+    for number, (outline, across) in enumerate(zip(subject.outlines, subject.beyond, strict=True)):
+        base = int(encode(np.array(pattern.locate(number, identity))))
         for t in _ALONG:
             bent = (1 - t) ** 2 * outline.start + 2 * t * (1 - t) * outline.control + t * t * outline.end
             straight = (1 - t) * outline.start + t * outline.end
             place.append(np.where(outline.curved, bent, straight))
-            other.append(beyond)
-    own = np.repeat(
-        [int(encode(np.array(pattern.locate(s, pattern.group.operations[0])))) for s in range(len(subject.outlines))],
-        [len(_ALONG) * len(outline) for outline in subject.outlines],
-    )
-    points, beyond = np.concatenate(place), np.concatenate(other)
+            codes.append(across)
+            own.append(np.full(len(across), base))
+    points, beyond, base_copy = np.concatenate(place), np.concatenate(codes), np.concatenate(own)
     x, y = subject.grid.to_grid(points)
     m, n = np.floor(x / frame.width), np.floor(y / frame.height)
     shift = m.astype(np.int64) * subject.period[0] + n.astype(np.int64) * subject.period[1]
@@ -101,13 +100,15 @@ def compare_points(subject: Subject) -> Figure:
     for part, index in subject.split(x, y):
         near = part.judge.near(x[index] - part.column, y[index] - part.row)
         np.minimum.at(least, index[near.point], near.distance)
-        for distances, copies in ((mine, own - shift), (theirs, beyond - shift)):
+        for distances, copies in ((mine, base_copy - shift), (theirs, beyond - shift)):
             hit = near.copy == copies[index[near.point]]
             distances[index[near.point[hit]]] = near.distance[hit]
-    known = np.isfinite(mine) & np.isfinite(theirs)
     error = np.full(len(points), np.inf)
-    error[known] = np.maximum(np.abs(mine - theirs), np.maximum(mine, theirs) - least)[known]
-    limit = subject.accuracy + 4 * pattern.rounding
+    known = np.isfinite(mine) & np.isfinite(theirs)
+    here, there = mine[known], theirs[known]
+    error[known] = np.maximum(np.abs(here - there), np.maximum(here, there) - least[known])
+    error = np.maximum(error, _from_definition(subject, points, mine))
+    limit = subject.accuracy + 4 * subject.rounding
     wrong = error > limit
     return Figure(
         "equidistance",
@@ -120,6 +121,29 @@ def compare_points(subject: Subject) -> Figure:
         "accuracy + 4 rounding",
         Marks(points[wrong], error[wrong]) if wrong.any() else NO_MARKS,
     )
+
+
+def _from_definition(subject: Subject, points: Complexes, distance: Floats) -> Floats:
+    """How far the points of parabolas are from being as far from focus and directrix as from the site; 0 for lines.
+
+    From a directrix that is given by two near points, distances are known the worse the farther the foot is away.
+    """
+    count = len(_ALONG)
+    curved, focus, start, end = (
+        np.concatenate([np.tile(values, count) for values in column])
+        for column in zip(
+            *((o.curved, o.focus, o.directrix[:, 0], o.directrix[:, 1]) for o in subject.outlines), strict=True
+        )
+    )
+    bent = np.flatnonzero(curved & np.isfinite(distance))
+    error = np.zeros(len(points))
+    chord, away, true = (end - start)[bent], (points - start)[bent], distance[bent]
+    length = np.abs(chord)
+    across = np.abs(away.imag * chord.real - away.real * chord.imag) / length
+    along = np.abs(away.real * chord.real + away.imag * chord.imag) / length
+    slack = 2 * subject.rounding * along / length
+    error[bent] = np.maximum(np.abs(np.abs((points - focus)[bent]) - true), np.abs(across - true) - slack)
+    return error
 
 
 def _certified(subject: Subject, owned: Owners) -> Crossings:

@@ -44,22 +44,23 @@ def compare_labels(subject: Subject) -> tuple[Owners, list[Figure]]:
     undecided = open_question[row, column]
     wrong = raster[row, column] != vector[row, column]
     excess = np.where(wrong, gap[row, column], 0.0).astype(float)
-    where = np.flatnonzero(undecided)
-    settled, behind = _settle(subject, column[where], row[where], codes, vector[row[where], column[where]])
-    raster[row[where], column[where]] = settled
-    excess[where] = behind
-    limit = 2 * (subject.accuracy + pattern.rounding) + 2 * QUANTUM * (abs(subject.frame.u) + abs(subject.frame.v))
-    wrong[where] = behind > limit
+    # The others are settled as well, for what follows: if the image is wrong, it is wrong here alone.
+    settled, behind = _settle(subject, column, row, codes, vector[row, column])
+    raster[row, column] = settled
+    excess[undecided] = behind[undecided]
+    limit = 2 * (subject.accuracy + subject.rounding) + 2 * QUANTUM * (abs(subject.frame.u) + abs(subject.frame.v))
+    wrong[undecided] = behind[undecided] > limit
 
     labels = Figure(
         "labels",
         "samples whose owner by distance is not the owner by outline",
         raster.size,
         int(wrong.sum()),
-        float(excess[undecided | wrong].max(initial=0.0)),
+        float(excess[np.isfinite(excess)].max(initial=0.0)),
         limit,
         subject.tiling.design.units,
-        f"{len(where):,} samples that the image leaves open (distances within {float(np.max(bound)):.2g}, twice its "
+        f"{int(undecided.sum()):,} samples that the image leaves open (distances within "
+        f"{float(np.max(bound)):.2g}, twice its "
         "error) are settled in float64: 2 (accuracy + rounding), and the scan's 2^-23 of a sample",
         _marks(subject, column[wrong], row[wrong], excess[wrong]),
     )

@@ -63,6 +63,11 @@ class Subject:
         return PROOF_LIMIT * max(abs(lattice.a), abs(lattice.b))
 
     @cached_property
+    def rounding(self) -> float:
+        """A bound for the rounding of the raster stage's float64 distances, in units."""
+        return self.pattern.rounding(self.frame)
+
+    @cached_property
     def grid(self) -> Grid:
         """The image's samples for the scan conversion."""
         a, b = self.pattern.lattice.reduced_basis
