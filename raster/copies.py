@@ -143,6 +143,19 @@ class Scene:
     def __len__(self) -> int:
         return len(self.middle)
 
+    @cached_property
+    def length(self) -> Floats:
+        """Half the length of each element."""
+        return np.abs(self.half)
+
+    @cached_property
+    def unit(self) -> Complexes:
+        """The direction of each element; 1 for points."""
+        point = self.length == 0.0
+        unit: Complexes = np.where(point, 1.0 + 0.0j, self.half)
+        unit /= np.where(point, 1.0, self.length)
+        return unit
+
 
 def gather(pattern: Pattern, origin: complex, middle: complex, radius: float, *, most: int | None = None) -> Scene:
     """The copies of elements that may be nearest, or nearest of another copy, somewhere in a disc.

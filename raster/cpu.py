@@ -71,14 +71,11 @@ def _run_squares(candidates: Candidates, part: slice, frame: Frame, heights: Hei
     # Everything that belongs to one element, for all elements of these runs at once.
     span = slice(int(candidates.element_start[runs[0]]), int(candidates.element_start[runs[-1] + 1]))
     element = candidates.element[span]
-    middle, half = scene.middle[element], scene.half[element]
+    unit, length = scene.unit[element], scene.length[element]
     home = np.repeat(candidates.centre[block], size[order])
-    length = np.abs(half)
-    unit: Complexes = np.where(length > 0.0, half, 1.0 + 0.0j)
-    unit /= np.where(length > 0.0, length, 1.0)
     place = np.empty(len(element), np.intp)
     place[np.repeat(start - span.start, size[order]) + _counting(size[order])] = np.arange(len(element))
-    away = home[place] - middle
+    away = home[place] - scene.middle[element]
     step = np.arange(BLOCK) - BLOCK / 2
     nearest = np.full((len(runs), BLOCK, BLOCK), np.inf)
     along = np.empty_like(nearest)

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from voronoi_tiles.raster.candidates import Candidates
 from voronoi_tiles.raster.copies import Labels
-from voronoi_tiles.raster.frame import BLOCK, Complexes, Floats, Frame
+from voronoi_tiles.raster.frame import BLOCK, Floats, Frame
 
 _TEXTURE_WIDTH = 4096
 _LONGEST_LIST = 60_000
@@ -274,14 +274,15 @@ def element_records(candidates: Candidates, frame: Frame) -> Floats32:
     size = np.diff(candidates.element_start)
     block = np.repeat(np.repeat(np.arange(len(candidates)), np.diff(candidates.run_start)), size)
     middle = scene.middle[candidates.element] - candidates.centre[block]
-    half = scene.half[candidates.element]
-    length = np.abs(half)
-    unit = half / np.where(length > 0.0, length, 1.0)
+    unit, length = scene.unit[candidates.element], scene.length[candidates.element]
     foot = np.clip(-(middle.real * unit.real + middle.imag * unit.imag), -length, length)
     room = 1.001 * candidates.radius
     low, high = np.maximum(foot - room, -length), np.minimum(foot + room, length)
-    records: Complexes = np.stack((middle + unit * ((low + high) / 2), unit * ((high - low) / 2)), axis=1) / frame.pixel
-    return np.ascontiguousarray(records).view(np.float64).astype(np.float32)
+    records = np.empty((len(middle), 4), np.float32)
+    for column, (along, from_middle) in enumerate((((low + high) / 2, 1.0), ((high - low) / 2, 0.0))):
+        records[:, 2 * column] = (from_middle * middle.real + along * unit.real) / frame.pixel
+        records[:, 2 * column + 1] = (from_middle * middle.imag + along * unit.imag) / frame.pixel
+    return records
 
 
 def source(name: str, version: int, defines: dict[str, int] | None = None) -> str:

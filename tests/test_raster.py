@@ -531,6 +531,21 @@ def test_candidate_lists_lose_nothing(group: str, looseness: float) -> None:
                 assert (labels == same).all()
 
 
+def test_lists_of_neighbouring_blocks_are_told_apart() -> None:
+    """One block's last copy is the next one's first: at the end of every row of blocks, and of the quadtree's."""
+    sites = [{"strokes": [{"point": [x, 0]}]} for x in (60, 30, 0)]
+    cell = {"a": 300.0, "b": 300.0, "angle": 90.0}
+    pattern = pattern_of({"schema": 1, "group": "p1", "cell": cell, "site": sites})
+    frame = rectangle_frame((8.0, -22.0, 52.0, 22.0), 128, 128)
+    lists = lists_of(pattern, frame)
+    last, first = lists.run_label[lists.run_start[1:-1] - 1], lists.run_label[lists.run_start[1:-1]]
+    assert (np.flatnonzero(last == first) + 1).tolist() == [8, 16, 24, 32, 40, 48, 56]
+    for block in range(len(lists)):
+        assert len(list_of(lists, block)) < 4
+    image = Renderer("cpu").render(pattern, frame)
+    Truth(pattern).assert_right(image, np.random.default_rng(17), 200)
+
+
 def test_candidate_lists_are_short() -> None:
     """Most elements of a fine curve are far from most blocks."""
     pattern = one("p4", {"circle": [16, 13], "radius": 10})
@@ -779,6 +794,15 @@ def test_codes_are_numbers_of_copies() -> None:
     assert (rows[np.argsort(codes)] == rows[np.lexsort(rows.T[::-1])]).all()
     assert (decode(encode(rows.reshape(5, 100, 3))) == rows.reshape(5, 100, 3)).all()
     assert int(encode(np.array((2, 0, -1)))) + 3 == int(encode(np.array((2, 0, 2))))
+
+
+@pytest.mark.parametrize("copy", [(0, 1 << 23, 0), (0, 0, -(1 << 23)), (1 << 14, 0, 0)])
+def test_copies_too_far_for_a_code_are_refused(copy: tuple[int, int, int]) -> None:
+    """Rather than taken for others; the last ones that are not too far have codes."""
+    edge = np.array([[k - (k > 0) + (k < 0) for k in copy]])
+    assert (decode(encode(edge)) == edge).all()
+    with pytest.raises(DesignError, match="nearer to the origin"):
+        encode(np.array([[0, 0, 0], copy]))
 
 
 @GROUP
