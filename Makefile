@@ -1,5 +1,5 @@
 # Everything sets itself up: python3, python3-venv and make are all it needs.
-#   make demo    export the example designs          make test    run the tests
+#   make demo    export and draw the examples        make test    run the tests
 #   make lint    lint and format check               make types   mypy --strict
 #   make bench   speed, beside Boost.Polygon         make fuzz N=10000
 #   make format  rewrite the sources' layout         make clean   remove all that was made here
@@ -37,7 +37,11 @@ $(INSTALLED_DEV): $(INSTALLED)
 
 demo: $(INSTALLED)
 	$(VENV)/bin/voronoi-tiles export $(EXAMPLES) -o $(DEMO) --format svg
+	for design in $(EXAMPLES); do \
+	    $(VENV)/bin/voronoi-tiles render $$design -o $(DEMO)/$$(basename $$design .toml).png --size 800 --quiet || exit 1; \
+	done
 	@echo "The tiles are in $(abspath $(DEMO)): open the .svg files in a browser, Inkscape or your cutter's software."
+	@echo "The .png files beside them show how their copies fill the plane."
 
 test: $(INSTALLED_DEV)
 	$(VENV)/bin/python -m pytest $(PYTEST)

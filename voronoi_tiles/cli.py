@@ -182,9 +182,9 @@ def info(design: str, as_json: bool) -> None:
 @click.argument("design", type=_PATH)
 @click.option(
     "--size",
-    type=click.IntRange(16, 16384),
+    type=click.IntRange(16, 8192),
     metavar="N",
-    help="Samples along the side of the cell [16 to 16384; default: 1024].",
+    help="Samples along the side of the cell [16 to 8192, which takes 4 GB; default: 1024].",
 )
 @_with_method
 @_with_renderer
