@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from voronoi_tiles.raster.copies import Ints, Scene, from_feet, lengths
 from voronoi_tiles.raster.frame import BLOCK, Complexes, Floats, Frame
+from voronoi_tiles.raster.ragged import ranges
 
 _SLACK = 1.0 + 1e-9
 """Keeps what rounding would drop: relative to the bounds, far above float64 and far below what costs time."""
@@ -125,7 +126,7 @@ def _children(scene: Scene, frame: Frame, parents: _Lists, level: int, across: i
             continue
         n = size[first:last]
         start = np.cumsum(n) - n
-        index = np.arange(int(n.sum())) + np.repeat(parents.start[parent[first:last]] - start, n)
+        index, _ = ranges(parents.start[parent[first:last]], parents.start[parent[first:last]] + n)
         element = parents.element[index]
         away = from_feet(np.repeat(centre[first:last], n), scene.middle[element], scene.half[element])
         keep = _keep(scene.label[element], away, start, radius, loose)
@@ -185,7 +186,7 @@ def _in_order(scene: Scene, lists: _Lists, order: Ints, columns: int, radius: fl
     """The finished lists, block after block, in runs."""
     n = np.diff(lists.start)[order]
     start = np.cumsum(n) - n
-    element = lists.element[np.arange(int(n.sum())) + np.repeat(lists.start[order] - start, n)]
+    element = lists.element[ranges(lists.start[order], lists.start[order] + n)[0]]
     label = scene.label[element]
     fresh = np.append(True, label[1:] != label[:-1])
     fresh[start] = True

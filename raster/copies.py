@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 
 from voronoi_tiles.errors import DesignError
 from voronoi_tiles.raster.frame import Frame
+from voronoi_tiles.raster.ragged import counting
 from voronoi_tiles.site import Site
 from voronoi_tiles.tolerance import EPSILON, SAME_POINT
 from voronoi_tiles.wallpaper import Isometry, Lattice, Operation, WallpaperGroup
@@ -229,8 +230,7 @@ def _images(
             f"{_ELEMENTS_MAX:,}",
             remedy="Take a smaller region, a cell that is less elongated, or larger tolerances.",
         )
-    element = np.repeat(np.arange(len(mid)), count)
-    inside = np.arange(total) - np.repeat(np.cumsum(count) - count, count)
+    inside, element = counting(count)
     i = low_s[element].astype(np.intp) + inside // count_t[element]
     j = low_t[element].astype(np.intp) + inside % count_t[element]
     position: Complexes = mid[element] + (i * p + j * q)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from voronoi_tiles.raster.candidates import Candidates
 from voronoi_tiles.raster.copies import Labels
 from voronoi_tiles.raster.frame import BLOCK, Complexes, Floats, Frame
+from voronoi_tiles.raster.ragged import ranges
 
 _RUNS = 192
 """Runs that a thread works on at once: with BLOCK^2 float64 each they stay within a core's cache."""
@@ -74,7 +75,7 @@ def _run_squares(candidates: Candidates, part: slice, frame: Frame, heights: Hei
     unit, length = scene.unit[element], scene.length[element]
     home = np.repeat(candidates.centre[block], size[order])
     place = np.empty(len(element), np.intp)
-    place[np.repeat(start - span.start, size[order]) + _counting(size[order])] = np.arange(len(element))
+    place[ranges(start - span.start, start - span.start + size[order])[0]] = np.arange(len(element))
     away = home[place] - scene.middle[element]
     step = np.arange(BLOCK) - BLOCK / 2
     nearest = np.full((len(runs), BLOCK, BLOCK), np.inf)
@@ -131,11 +132,6 @@ def _two_nearest(candidates: Candidates, square: Floats, part: slice) -> tuple[L
     back = np.empty_like(order)
     back[order] = np.arange(len(order))
     return label1[back], label2[back], np.sqrt(near1)[back], np.sqrt(near2)[back]
-
-
-def _counting(sizes: NDArray[np.intp]) -> NDArray[np.intp]:
-    """0, 1, ..., n - 1 for each of the sizes n, one after the other."""
-    return np.arange(int(sizes.sum())) - np.repeat(np.cumsum(sizes) - sizes, sizes)
 
 
 def _dot(a: Complexes | complex, b: Complexes) -> Floats:

@@ -17,6 +17,7 @@ from voronoi_tiles.errors import DesignError
 from voronoi_tiles.raster.candidates import Candidates
 from voronoi_tiles.raster.copies import Ints, Pattern, from_feet, lengths
 from voronoi_tiles.raster.frame import BLOCK, Complexes, Floats, Frame
+from voronoi_tiles.raster.ragged import ranges
 
 _CELLS = 1 << 23
 _PLACEMENTS = 1 << 14
@@ -97,9 +98,9 @@ class Judge:
         lists = self.candidates
         first, last = lists.run_start[block], lists.run_start[block + 1]
         for part in _portions(lists.element_start[last] - lists.element_start[first]):
-            runs, point = _ranges(first[part], last[part])
+            runs, point = ranges(first[part], last[part])
             point = point + part.start
-            element, of_run = _ranges(lists.element_start[runs], lists.element_start[runs + 1])
+            element, of_run = ranges(lists.element_start[runs], lists.element_start[runs + 1])
             away = self._away(place[point[of_run]], lists.element[element])
             starts = np.flatnonzero(np.append(True, of_run[1:] != of_run[:-1]))
             rows.append((point, self.codes[lists.run_label[runs]], np.minimum.reduceat(lengths(away), starts)))
@@ -141,7 +142,7 @@ class Judge:
         start = frame.offsets(column.astype(float), row.astype(float))
         stride = np.where(down, frame.v, frame.u)
         # What can be nearest anywhere on the step: half a step from its middle, distances differ by a step at most.
-        pair, step = _ranges(first, last)
+        pair, step = ranges(first, last)
         element = lists.element[pair]
         distance = lengths(self._away((start + stride / 2)[step], element))
         segment = np.cumsum(last - first) - (last - first)
@@ -155,7 +156,7 @@ class Judge:
         low, high = np.zeros(len(column)), np.ones(len(column))
         while len(number):
             # The intervals still to be decided, with their own elements: of both copies, and of all others.
-            index, of = _ranges(*_extent_of(step, number))
+            index, of = ranges(*_extent_of(step, number))
             owned_by_before, owned_by_after = copy[index] == before[of], copy[index] == after[of]
             t = self._equal(
                 start[number],
@@ -205,7 +206,7 @@ class Judge:
             place = start[active] + t * stride[active]
             least = []
             for element, of in (mine, theirs):
-                index, point = _ranges(*_extent_of(of, active))
+                index, point = ranges(*_extent_of(of, active))
                 distance = lengths(self._away(place[point], element[index]))
                 least.append(np.minimum.reduceat(distance, np.flatnonzero(np.append(True, point[1:] != point[:-1]))))
             return np.asarray(least[0] - least[1])
@@ -249,13 +250,6 @@ class Judge:
 
 
 _NOTHING = Near(np.zeros(0, np.intp), np.zeros(0, np.int64), np.zeros(0))
-
-
-def _ranges(first: Ints, last: Ints) -> tuple[Ints, Ints]:
-    """The numbers from first[k] up to last[k], one k after the other; and the k of each."""
-    size = last - first
-    of = np.repeat(np.arange(len(size)), size)
-    return np.arange(int(size.sum())) + np.repeat(first - (np.cumsum(size) - size), size), of
 
 
 def _extent_of(sorted_owner: Ints, wanted: Ints) -> tuple[Ints, Ints]:

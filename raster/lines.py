@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from voronoi_tiles.raster.copies import from_feet
 from voronoi_tiles.raster.frame import Complexes, Frame
+from voronoi_tiles.raster.ragged import counting
 
 Floats32 = NDArray[np.float32]
 
@@ -31,8 +32,7 @@ def coverage(segments: Complexes, width: float, frame: Frame) -> Floats32:
     margin = width / 2 + 1.0
     start, end = _clipped(ends, -margin, frame.width + margin, -margin, frame.height + margin)
     count = np.maximum(np.ceil(np.abs(end - start) / _PIECE), 1).astype(np.intp)
-    of = np.repeat(np.arange(len(start)), count)
-    number = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+    number, of = counting(count)
     step = ((end - start) / count)[of]
     middle, half = start[of] + (number + 0.5) * step, step / 2
     side = int(_PIECE + 2 * margin + 2)
@@ -54,8 +54,7 @@ def dashed(segments: Complexes, dash: float, gap: float) -> Complexes:
     """Cut segments (n, 2) into dashes of a length, with gaps between them; ends are full dashes as far as they fit."""
     length = np.abs(segments[:, 1] - segments[:, 0])
     count = np.maximum(np.round((length + gap) / (dash + gap)), 1).astype(np.intp)
-    of = np.repeat(np.arange(len(segments)), count)
-    number = np.arange(len(of)) - np.repeat(np.cumsum(count) - count, count)
+    number, of = counting(count)
     period = (length + gap) / count
     low = number * period[of]
     high = low + (period - gap)[of]

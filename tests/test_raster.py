@@ -536,10 +536,10 @@ def test_lists_of_neighbouring_blocks_are_told_apart() -> None:
     sites = [{"strokes": [{"point": [x, 0]}]} for x in (60, 30, 0)]
     cell = {"a": 300.0, "b": 300.0, "angle": 90.0}
     pattern = pattern_of({"schema": 1, "group": "p1", "cell": cell, "site": sites})
-    frame = rectangle_frame((8.0, -22.0, 52.0, 22.0), 128, 128)
+    frame = rectangle_frame((8.0, -18.0, 44.0, 18.0), 256, 256)
     lists = lists_of(pattern, frame)
     last, first = lists.run_label[lists.run_start[1:-1] - 1], lists.run_label[lists.run_start[1:-1]]
-    assert (np.flatnonzero(last == first) + 1).tolist() == [8, 16, 24, 32, 40, 48, 56]
+    assert (np.flatnonzero(last == first) + 1).tolist() == list(range(16, 256, 16))
     for block in range(len(lists)):
         assert len(list_of(lists, block)) < 4
     image = Renderer("cpu").render(pattern, frame)
