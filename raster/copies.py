@@ -220,16 +220,17 @@ def _images(
     room = reach + np.abs(half)
     width, height = room * (abs(q) / det), room * (abs(p) / det)
     low_s, low_t = np.ceil(s - width), np.ceil(t - height)
-    count_s = np.maximum(np.floor(s + width) - low_s + 1, 0).astype(np.intp)
-    count_t = np.maximum(np.floor(t + height) - low_t + 1, 0).astype(np.intp)
-    count = count_s * count_t
-    total = int(count.sum())
-    if total * len(pattern.placements) > _ELEMENTS_MAX:
+    count_s = np.maximum(np.floor(s + width) - low_s + 1, 0.0)
+    count_t = np.maximum(np.floor(t + height) - low_t + 1, 0.0)
+    # Still floats: what is too much may be too much for integers as well.
+    total = float((count_s * count_t).sum()) * len(pattern.placements)
+    if not total <= _ELEMENTS_MAX:
         raise DesignError(
-            f"about {total * len(pattern.placements):,} copies of elements lie about the image, more than "
-            f"{_ELEMENTS_MAX:,}",
+            f"about {total:.3g} copies of elements lie about the image, more than {_ELEMENTS_MAX:,}",
             remedy="Take a smaller region, a cell that is less elongated, or larger tolerances.",
         )
+    count_t = count_t.astype(np.intp)
+    count = count_s.astype(np.intp) * count_t
     inside, element = counting(count)
     i = low_s[element].astype(np.intp) + inside // count_t[element]
     j = low_t[element].astype(np.intp) + inside % count_t[element]

@@ -248,6 +248,9 @@ def test_the_region_grows_to_the_shape_of_the_picture(tmp_path: Path) -> None:
         {"region": (0, 0, 0, 5)},
         {"region": (0, 0, float("nan"), 5)},
         {"region": (0, 0, 1e9, 1e9)},
+        {"region": (0, 0, 1e12, 1e12)},
+        {"region": (0, 0, 1e300, 1e300)},
+        {"region": (1e9, 1e9, 1e9 + 1e-6, 1e9 + 1e-6)},
     ],
 )
 def test_impossible_pictures_are_refused(options: dict[str, object], tmp_path: Path) -> None:

@@ -20,6 +20,7 @@ from voronoi_tiles.raster.picture import Overlay, Picture, Region, default_regio
 from voronoi_tiles.raster.png import PngStream, Sink
 from voronoi_tiles.raster.render import Choice, Method, Provenance, Renderer
 from voronoi_tiles.symmetry import placed, symmetry_elements
+from voronoi_tiles.tolerance import COORDINATE_MAX, EPSILON
 
 if TYPE_CHECKING:
     from voronoi_tiles.design import Design
@@ -116,6 +117,11 @@ def _fit(region: Region, size: int | tuple[int, int]) -> tuple[Region, int, int]
         raise DesignError(
             f"the region {x0:g},{y0:g},{x1:g},{y1:g} is empty", remedy="Give x0,y0,x1,y1 with x0 < x1 and y0 < y1."
         )
+    farthest = max(map(abs, region))
+    if farthest > COORDINATE_MAX:
+        raise DesignError(
+            f"the region reaches to {farthest:g}", remedy=f"Its coordinates must be within {COORDINATE_MAX:g}."
+        )
     across, down = x1 - x0, y1 - y0
     if isinstance(size, tuple):
         width, height = size
@@ -126,6 +132,11 @@ def _fit(region: Region, size: int | tuple[int, int]) -> tuple[Region, int, int]
             f"a picture of {width} x {height} pixels", remedy=f"Choose sides from 1 to {SIDE_MAX:,} pixels."
         )
     step = max(across / width, down / height)
+    if step < 100 * EPSILON * farthest:
+        raise DesignError(
+            f"the pixels would be {step:.3g} wide, no more than the rounding of coordinates of {farthest:g}",
+            remedy="Show a larger region, or one nearer to the origin.",
+        )
     middle = (x0 + x1) / 2, (y0 + y1) / 2
     grown = (
         middle[0] - step * width / 2,
