@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import colorsys
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,18 +16,35 @@ from voronoi_tiles.raster.frame import BLOCK, cell_frame
 _SAMPLES = 64 * BLOCK
 """Samples along the cell in whose blocks neighbours are looked for."""
 
-_PERIODS = tuple(sorted(((m, n) for m in range(1, 5) for n in range(1, 5)), key=lambda p: (p[0] * p[1], p)))
+_SQUARES = tuple(sorted(((m, n) for m in range(1, 5) for n in range(1, 5)), key=lambda p: (p[0] * p[1], p)))
 _ENOUGH = 4
 """Colours that are worth a larger period; what four colours do not suffice for takes more."""
 
 _STEPS = 3_000
 """Most decisions of one search for a colouring; a count."""
 
+_SEARCHED = 500
+"""Most copies in a period for which the fewest colours are searched; a count. Larger ones are coloured in one go."""
+
+
+class Period(NamedTuple):
+    """A lattice of translations: copies (i, j) and (k, l) are the same where rows (i - k, j - l)^T is 0 modulo m, n."""
+
+    rows: tuple[tuple[int, int], tuple[int, int]]
+    m: int
+    n: int
+
+    def place(self, i: Ints, j: Ints) -> tuple[Ints, Ints]:
+        """The place of copies in the period."""
+        (a, b), (c, d) = self.rows
+        return (a * i + b * j) % self.m, (c * i + d * j) % self.n
+
 
 @dataclass(frozen=True, eq=False)
 class Colouring:
-    """`colour` intp (placements, m, n): copy (placement, i, j) has the colour of i modulo m and j modulo n."""
+    """`colour` intp (placements, m, n): copy (placement, i, j) has the colour at its place in the period."""
 
+    period: Period
     colour: Ints
 
     @property
@@ -36,26 +54,45 @@ class Colouring:
 
     def of(self, copies: Ints) -> Ints:
         """The colours of copies, rows (placement, i, j)."""
-        _, m, n = self.colour.shape
-        return np.asarray(self.colour[copies[:, 0], copies[:, 1] % m, copies[:, 2] % n])
+        return np.asarray(self.colour[(copies[:, 0], *self.period.place(copies[:, 1], copies[:, 2]))])
 
 
 def colour(pattern: Pattern) -> Colouring:
     """Colour the tiles: those that share an edge, or nearly meet, differ.
 
-    Of the larger cells with up to 4 x 4 cells the smallest is taken in which four colours suffice, or else the one with
-    the fewest.
+    Of periods of up to 4 x 4 cells the smallest is taken in which four colours suffice, else the one with the fewest;
+    where a tile meets its own translates in all of them, as long sites and narrow cells make it, a larger one.
     """
     pairs, crowd = neighbours(pattern)
-    best: Ints | None = None
-    for period in _PERIODS:
+    best: Colouring | None = None
+    for m, n in _SQUARES:
+        period = Period(((1, 0), (0, 1)), m, n)
         found = _colour_quotient(pairs, len(pattern.placements), period, crowd)
-        if found is not None and (best is None or found.max() < best.max()):
-            best = found
-        if best is not None and best.max() < max(_ENOUGH, crowd):
+        if found is not None and (best is None or found.max() < best.colour.max()):
+            best = Colouring(period, found)
+        if best is not None and best.colour.max() < max(_ENOUGH, crowd):
             break
-    assert best is not None  # 4 x 4 cells: a tile's neighbours are nearer than that, see `neighbours`
-    return Colouring(best)
+    if best is None:
+        period = _large_period(pairs)
+        found = _colour_quotient(pairs, len(pattern.placements), period, crowd)
+        assert found is not None
+        best = Colouring(period, found)
+    return best
+
+
+def _large_period(pairs: Ints) -> Period:
+    """The smallest cyclic period i + b j (or b i + j) modulo m in which no tile meets its own translate."""
+    own = pairs[pairs[:, 0] == pairs[:, 1], 2:]
+    for m in range(2, 2 * len(own) + 3):
+        for number, swapped in enumerate((own, own[:, ::-1])):
+            meets = (swapped[:, 0] + np.arange(m)[:, None] * swapped[:, 1]) % m == 0
+            free = np.flatnonzero(~meets.any(axis=1))
+            if len(free):
+                b = int(free[0])
+                return Period(((1, b) if number == 0 else (b, 1), (0, 0)), m, 1)
+    # One copy of each in a box that is wider than any step: always right, if large.
+    across, up = np.abs(own).max(axis=0).tolist()
+    return Period(((1, 0), (0, 1)), across + 1, up + 1)
 
 
 def neighbours(pattern: Pattern) -> tuple[Ints, int]:
@@ -90,16 +127,18 @@ def neighbours(pattern: Pattern) -> tuple[Ints, int]:
     return np.unique(rows, axis=0), crowd
 
 
-def _colour_quotient(pairs: Ints, placements: int, period: tuple[int, int], least: int) -> Ints | None:
-    """Colour the copies in m x n cells that go on periodically; None where a tile meets its own translate."""
-    m, n = period
-    cells = np.stack(np.meshgrid(np.arange(m), np.arange(n), indexing="ij"), axis=-1).reshape(-1, 2)
-    i, j = cells[:, 0, None], cells[:, 1, None]
-    here = (pairs[:, 0] * m + i) * n + j
-    there = (pairs[:, 1] * m + (i + pairs[:, 2]) % m) * n + (j + pairs[:, 3]) % n
+def _colour_quotient(pairs: Ints, placements: int, period: Period, least: int) -> Ints | None:
+    """Colour the copies in a period that goes on for ever; None where a tile meets its own translate."""
+    m, n = period.m, period.n
+    s, t = (part.ravel() for part in np.meshgrid(np.arange(m), np.arange(n), indexing="ij"))
+    step_s, step_t = period.place(pairs[:, 2], pairs[:, 3])
+    here = ((pairs[:, 0] * m + s[:, None]) * n + t[:, None]).ravel()
+    there = ((pairs[:, 1] * m + (s[:, None] + step_s) % m) * n + (t[:, None] + step_t) % n).ravel()
     if (here == there).any():
         return None
     count = placements * m * n
+    if count > _SEARCHED:
+        return _colour_greedily(here, there, count).reshape(placements, m, n)
     beside = np.zeros((count, count), bool)
     beside[here, there] = beside[there, here] = True
     for colours in range(min(least, count), count + 1):
@@ -107,6 +146,18 @@ def _colour_quotient(pairs: Ints, placements: int, period: tuple[int, int], leas
         if found is not None:
             return found.reshape(placements, m, n)
     return None
+
+
+def _colour_greedily(here: Ints, there: Ints, count: int) -> Ints:
+    """Give each node in turn the first colour that none of its neighbours has."""
+    order = np.argsort(np.concatenate((here, there)), kind="stable")
+    other = np.concatenate((there, here))[order]
+    start = np.searchsorted(np.concatenate((here, there))[order], np.arange(count + 1))
+    colour = np.full(count, -1, np.intp)
+    for node in range(count):
+        taken = set(colour[other[start[node] : start[node + 1]]].tolist())
+        colour[node] = next(c for c in range(count) if c not in taken)
+    return colour
 
 
 def _colour_graph(beside: NDArray[np.bool_], colours: int) -> Ints | None:

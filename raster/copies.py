@@ -23,7 +23,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Labels = NDArray[np.int32]
 
-_ELEMENTS_MAX = 30_000_000
+_ELEMENTS_MAX = 8_000_000
 """Most copies of elements about one image; a count. They take some 60 bytes each."""
 
 

@@ -119,11 +119,11 @@ class Picture:
 
 
 def default_region(pattern: Pattern) -> Region:
-    """Two cells each way from the origin, as a rectangle: edges match, unless the cell is oblique."""
+    """Two cells each way, that at the origin in the middle, as a rectangle: edges match, unless the cell is oblique."""
     a, b = pattern.lattice.a, pattern.lattice.b
-    side = 2 * abs(a)
+    middle = (a + b) / 2
     # In the hexagonal cell b + a/2 is at right angles to a, and two such rows are a period.
-    return (0.0, 0.0, side, 2 * b.imag)
+    return middle.real - abs(a), middle.imag - b.imag, middle.real + abs(a), middle.imag + b.imag
 
 
 def _borders(colours: Pixels, grow: int) -> NDArray[np.bool_]:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -94,8 +95,11 @@ class Renderer:
         notice: Callable[[str], None] | None = None,
     ) -> None:
         """Find the device. Raises RenderError where `choice` is "gl" and there is none."""
-        if choice not in {"auto", "gl", "cpu"} or method not in {"exact", "hoff"}:
-            raise ValueError(f"unknown renderer {choice!r} or method {method!r}")
+        for name, value, known in (("renderer", choice, get_args(Choice)), ("method", method, get_args(Method))):
+            if value not in known:
+                raise ValueError(f"unknown {name} {value!r}: use {', '.join(known)}")
+        if device is not None and operator.index(device) < 0:
+            raise ValueError(f"no number of a device: {device}")
         self._choice, self._method, self._compute, self._sides = choice, method, compute, sides
         self._notice = notice or (lambda _: None)
         self._fallback = ""
@@ -190,13 +194,14 @@ class Renderer:
 
     def _give_up(self, error: GlError) -> None:
         """Do without OpenGL from now on, and say why."""
+        what = "not available" if self._device is None else "failed"
         if self._device is not None:
             forget(self._device)
         self._device = None
         if self._choice == "gl":
             raise RenderError(f"OpenGL failed: {error}", remedy="Use --renderer cpu, or auto.") from error
         self._fallback = str(error)
-        self._notice(f"OpenGL not available ({error}). Using the CPU renderer.{_remedy(str(error))}")
+        self._notice(f"OpenGL {what} ({error}). Using the CPU renderer.{_remedy(str(error))}")
 
 
 def _remedy(reason: str) -> str:

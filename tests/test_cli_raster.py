@@ -88,7 +88,8 @@ def test_a_failed_check_is_exit_code_1(design: Path, tmp_path: Path) -> None:
     assert result.returncode == 1
     assert "FAILED" in result.stdout
     assert "wrong at (" in result.stdout
-    (line,) = result.stderr.splitlines()
+    wrote, line = result.stderr.splitlines()
+    assert wrote == "wrote diff.png"
     assert line.startswith("Error: bird.toml: the outlines failed the cross-check: ")
     assert "equidistance" in line
     assert (decoded((tmp_path / "diff.png").read_bytes()) != 255).any()
@@ -174,7 +175,7 @@ def test_render_to_standard_output(command: str, design: Path) -> None:
         (["render", "bird.toml", "-o", "x.png", "--size", "9999999999999999999"], "no size"),
         (["render", "bird.toml", "-o", "x.png", "--region", "0,0,60"], "no rectangle"),
         (["render", "bird.toml", "-o", "x.png", "--region", "0,0,-60,60"], "is empty"),
-        (["render", "bird.toml", "-o", "x.png", "--region", "0,0,nan,60"], "is empty"),
+        (["render", "bird.toml", "-o", "x.png", "--region", "0,0,nan,60"], "not finite"),
         (["render", "bird.toml", "-o", "x.png", "--region", "0,0,1e8,1e8"], "copies of elements"),
         (["render", "bird.toml", "-o", "x.png", "--overlay", "tea"], "tea"),
         (["render", "bird.toml", "-o", "missing/x.png"], "cannot write"),
@@ -208,7 +209,7 @@ def test_opengl_can_be_insisted_on(voronoi_tiles: CommandLine, design: Path, tmp
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
-@pytest.mark.parametrize(("signal_number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+@pytest.mark.parametrize(("signal_number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
 def test_an_interrupted_picture_leaves_nothing_behind(
     signal_number: signal.Signals, code: int, command: str, design: Path, tmp_path: Path
 ) -> None:

@@ -282,7 +282,7 @@ def test_the_precision_of_the_image_does_not_matter(monkeypatch: pytest.MonkeyPa
     tamper(monkeypatch, lambda image: replace(image, first=image.second, error=lambda distance: 0.0 * distance + 1e9))
     report = check(example(KEY), samples=100)
     assert_sound(report)
-    assert "10,000 samples" in report.figure("labels").basis
+    assert "10,000 times" in report.figure("labels").basis
 
 
 # --- what is broken: the outlines ----------------------------------------------------------------------------

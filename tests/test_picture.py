@@ -90,6 +90,27 @@ def test_random_designs_are_coloured_properly(number: int) -> None:
         assert not ((a != b) & (p == q)).any()
 
 
+@pytest.mark.parametrize(
+    ("group", "cell", "segment"),
+    [
+        ("pm", {"a": 60.0, "b": 1.0}, [[2.0, 0.1], [10.0, 0.4]]),
+        ("p1", {"a": 10.0, "b": 10.0, "angle": 90.0}, [[0, 0], [300, 9.5]]),
+        ("p2", {"a": 40.0, "b": 9.0, "angle": 90.0}, [[1, 0.5], [200, 3.5]]),
+    ],
+    ids=["narrow", "long", "both"],
+)
+def test_tiles_that_meet_their_own_translates(group: str, cell: dict[str, float], segment: list[list[float]]) -> None:
+    """Narrow cells and long sites need larger periods: no tile meets its like in any of them."""
+    site = {"strokes": [{"segment": segment}]}
+    pattern = pattern_of(vt.Design.from_dict({"schema": 1, "group": group, "cell": cell, "site": [site]}))
+    colouring = colour(pattern)
+    pairs, _ = neighbours(pattern)
+    here = np.insert(np.zeros((len(pairs), 2), np.intp), 0, pairs[:, 0], axis=1)
+    there = pairs[:, 1:]
+    assert (colouring.of(here) != colouring.of(there)).all()
+    assert len(np.unique(palette(colouring.count), axis=0)) == colouring.count
+
+
 def test_a_wrong_colouring_is_seen() -> None:
     """The judge of colourings is no rubber stamp: two colours do not do for four tiles about a point."""
     pattern = pattern_of(segment_design())
@@ -257,6 +278,15 @@ def test_impossible_pictures_are_refused(options: dict[str, object], tmp_path: P
     """One message, and no file."""
     with pytest.raises(vt.DesignError):
         render(segment_design(), tmp_path / "x.png", renderer="cpu", **options)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_touching_copies_are_refused(tmp_path: Path) -> None:
+    """As everywhere else: there are no such tiles."""
+    site = {"strokes": [{"segment": [[-5, 3], [25, 11]]}]}
+    design = vt.Design.from_dict({"schema": 1, "group": "pm", "cell": {"a": 60.0, "b": 50.0}, "site": [site]})
+    with pytest.raises(vt.TouchingCopiesError):
+        render(design, tmp_path / "x.png", renderer="cpu")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -464,7 +464,7 @@ def test_too_many_elements_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(copies, "_ELEMENTS_MAX", 1000)
     pattern = one("p6", {"segment": [[8, 3], [23, 7]]})
     gather(pattern, 0j, 0j, 10.0)
-    with pytest.raises(DesignError, match=r"about [\d,]+ copies of elements lie about the image, more than 1,000"):
+    with pytest.raises(DesignError, match=r"about [\d.e+]+ copies of elements lie about the image, more than 1,000"):
         gather(pattern, 0j, 0j, 1000.0)
 
 

@@ -215,6 +215,14 @@ def test_a_device_says_what_it_is(device: Device) -> None:
     assert device.has_compute == (device.context.version_code >= 430)
 
 
+def test_the_largest_image_is_what_all_limits_allow() -> None:
+    """A texture's, and a viewport's in both directions."""
+    device = Device.__new__(Device)
+    for texture, viewport in ((4096, (9000, 8000)), (9000, (4096, 8000)), (9000, (8000, 4096))):
+        device.info = {"GL_MAX_TEXTURE_SIZE": texture, "GL_MAX_VIEWPORT_DIMS": viewport}
+        assert device.largest_image == 4096
+
+
 def test_lists_larger_than_textures_are_refused(device: Device, monkeypatch: pytest.MonkeyPatch) -> None:
     """Rows wrap at the texture's width; what has too many lines is an error."""
     rows = np.arange(10_000, dtype=np.int32).reshape(5000, 2)
@@ -358,7 +366,9 @@ def assert_fell_back(image: LabelImage, lines: list[str], reason: str) -> None:
     assert image.provenance.spots == 0
     assert [float(image.error(d)) for d in (0.0, 60.0)] == [image.pattern.rounding(image.frame)] * 2
     (line,) = lines
-    assert line.startswith(f"OpenGL not available ({image.provenance.fallback}). Using the CPU renderer.")
+    assert line.startswith(
+        tuple(f"OpenGL {w} ({image.provenance.fallback}). Using the CPU renderer." for w in ("not available", "failed"))
+    )
     assert "\n" not in line
 
 
@@ -535,6 +545,24 @@ def test_what_does_not_fail(monkeypatch: pytest.MonkeyPatch) -> None:
     assert_within_error(image, Renderer("cpu").render(BIRD, image.frame))
 
 
+def test_the_error_of_meshes_is_that_of_the_farthest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Windows are drawn to different depths: the deepest rules for the image."""
+    device = stand_in(monkeypatch, largest=40)
+    depths = iter([100.0, 1e6, 10.0, 1.0])
+
+    def render_hoff(device: StandIn, candidates: Candidates, frame: Frame, *, sides: int) -> tuple[Any, ...]:
+        del sides
+        return *device.render_exact(candidates, frame), next(depths)
+
+    monkeypatch.setattr(hoff, "render_hoff", render_hoff)
+    frame = cell_frame(BIRD.lattice, 50)
+    image = Renderer("auto", method="hoff").render(BIRD, frame)
+    assert device.calls == len(image.windows) == 4
+    rounding = BIRD.rounding(frame)
+    assert float(image.error(7.0)) == hoff.mesh_error(7.0, frame, farthest=1e6) + rounding
+    assert float(image.error(7.0)) > 16 * 2.0**-24 * 1e6
+
+
 def corrupt_exact(patch: pytest.MonkeyPatch) -> None:
     """The driver's image is wrong."""
     sound = Device.render_exact
@@ -685,7 +713,7 @@ def test_unknown_choices_are_refused() -> None:
     unknown: Any = "vulkan"
     with pytest.raises(ValueError, match="unknown renderer 'vulkan'"):
         Renderer(unknown)
-    with pytest.raises(ValueError, match="or method 'vulkan'"):
+    with pytest.raises(ValueError, match="unknown method 'vulkan'"):
         Renderer("cpu", method=unknown)
 
 

@@ -36,7 +36,7 @@ _PATIENCE = 1.0
 EXIT_USAGE = 2
 EXIT_BUG = 70  # EX_SOFTWARE of sysexits.h
 EXIT_INTERRUPTED = 130  # as shells report SIGINT
-EXIT_TERMINATED = 143  # as shells report SIGTERM
+EXIT_SIGNAL = 128  # shells add the number of the signal: 143 for SIGTERM
 
 DEBUG_VARIABLE = "VORONOI_TILES_DEBUG"
 
@@ -221,6 +221,7 @@ def check(
 
             with writing(output) as file:
                 write_diff(tiling, report, file)
+            _say(f"wrote {output}")
     except Exception as error:
         raise click.exceptions.Exit(_report(design, error)) from error
     document = tiling.evidence(report)
@@ -242,7 +243,10 @@ def check(
     help="The file to write (.png); - for standard output.",
 )
 @click.option(
-    "--size", metavar="N|WxH", callback=_read_size, help="The longer side, or both sides, in pixels [default: 1600]."
+    "--size",
+    metavar="N|WxH",
+    callback=_read_size,
+    help="The longer side in pixels, or both: then the region grows to the picture's shape [default: 1600].",
 )
 @click.option(
     "--region",
@@ -347,7 +351,9 @@ def run() -> Never:
         # A reader that has seen enough ends us silently, as it ends other commands in a pipe.
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     # To be ended is no reason to leave half a file behind: what is begun is removed, as it is after Ctrl-C.
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(EXIT_TERMINATED))
+    for name in ("SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), lambda number, _: sys.exit(EXIT_SIGNAL + number))
     if sys.stdout is None:
         sys.stdout = _ClosedStdout()
     code = _run()
@@ -358,6 +364,11 @@ def run() -> Never:
 
 class _ClosedStdout(io.StringIO):
     """What stands for a standard output that was closed before we began: it refuses what is written."""
+
+    @property
+    def buffer(self) -> Never:
+        """Refuse bytes as well."""
+        raise OSError(errno.EBADF, "it is closed")
 
     def write(self, _text: str, /) -> int:
         raise OSError(errno.EBADF, "it is closed")

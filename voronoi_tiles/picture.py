@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from voronoi_tiles import __version__
 from voronoi_tiles.crosscheck import CheckReport, diff
-from voronoi_tiles.errors import DesignError
+from voronoi_tiles.errors import DesignError, ProofError
 from voronoi_tiles.files import writing
 from voronoi_tiles.raster.copies import Pattern
 from voronoi_tiles.raster.lines import dashed
@@ -20,7 +20,7 @@ from voronoi_tiles.raster.picture import Overlay, Picture, Region, default_regio
 from voronoi_tiles.raster.png import PngStream, Sink
 from voronoi_tiles.raster.render import Choice, Method, Provenance, Renderer
 from voronoi_tiles.symmetry import placed, symmetry_elements
-from voronoi_tiles.tolerance import COORDINATE_MAX, EPSILON
+from voronoi_tiles.tolerance import COORDINATE_MAX, EPSILON, NUMBER_MIN
 
 if TYPE_CHECKING:
     from voronoi_tiles.design import Design
@@ -41,7 +41,7 @@ _MIRROR = (178, 24, 43)
 _GLIDE = (33, 102, 172)
 _CENTRE = (120, 20, 110)
 _CELL = (255, 255, 255)
-_OUTLINE = (220, 0, 120)
+_OUTLINE = (255, 0, 255)
 _PAPER = (255, 255, 255)
 
 
@@ -65,21 +65,24 @@ def render(
     OVERLAYS; `renderer`, `device`, `method` and `notice` are those of Renderer; `progress` is told how many rows, of
     how many, are done. Pictures of any size are rendered in bands.
 
-    Raises DesignError for a size or a region that cannot be, RenderError where OpenGL fails and is insisted on,
-    OutputError, and with the overlay "outline" what `tessellate` raises.
+    Raises DesignError for a size or a region that cannot be, TouchingCopiesError where copies touch, RenderError where
+    OpenGL fails and is insisted on, OutputError, and with the overlay "outline" ProofError.
     """
+    if isinstance(overlay, str):
+        overlay = [overlay]
     unknown = set(overlay) - set(OVERLAYS)
     if unknown:
         raise ValueError(f"unknown overlay {min(unknown)!r}: use {', '.join(OVERLAYS)}")
     pattern = Pattern(design.sites, design.group, design.lattice)
     region, width, height = _fit(default_region(pattern) if region is None else region, size)
+    tiling = _tiling(design, needed="outline" in overlay)
     picture = Picture(
         pattern,
         region,
         width,
         height,
         renderer=Renderer(renderer, device=device, method=method, notice=notice),
-        overlays=_overlays(design, pattern, region, width, overlay),
+        overlays=_overlays(design, tiling, pattern, region, width, overlay),
     )
     text = {
         "Software": f"voronoi-tiles {__version__}",
@@ -114,8 +117,9 @@ def _fit(region: Region, size: int | tuple[int, int]) -> tuple[Region, int, int]
     """Give the region in the shape of the picture, and the picture's width and height."""
     x0, y0, x1, y1 = region
     if not (all(map(math.isfinite, region)) and x1 > x0 and y1 > y0):
+        what = "is empty" if all(map(math.isfinite, region)) else "is not finite"
         raise DesignError(
-            f"the region {x0:g},{y0:g},{x1:g},{y1:g} is empty", remedy="Give x0,y0,x1,y1 with x0 < x1 and y0 < y1."
+            f"the region {x0:g},{y0:g},{x1:g},{y1:g} {what}", remedy="Give x0,y0,x1,y1 with x0 < x1 and y0 < y1."
         )
     farthest = max(map(abs, region))
     if farthest > COORDINATE_MAX:
@@ -123,6 +127,8 @@ def _fit(region: Region, size: int | tuple[int, int]) -> tuple[Region, int, int]
             f"the region reaches to {farthest:g}", remedy=f"Its coordinates must be within {COORDINATE_MAX:g}."
         )
     across, down = x1 - x0, y1 - y0
+    if not all(isinstance(side, int) for side in (size if isinstance(size, tuple) else (size,))):
+        raise DesignError(f"a picture of {size} pixels", remedy="Give whole numbers.")
     if isinstance(size, tuple):
         width, height = size
     else:  # a strip is one pixel wide at least
@@ -132,7 +138,7 @@ def _fit(region: Region, size: int | tuple[int, int]) -> tuple[Region, int, int]
             f"a picture of {width} x {height} pixels", remedy=f"Choose sides from 1 to {SIDE_MAX:,} pixels."
         )
     step = max(across / width, down / height)
-    if step < 100 * EPSILON * farthest:
+    if step < max(100 * EPSILON * farthest, NUMBER_MIN):
         raise DesignError(
             f"the pixels would be {step:.3g} wide, no more than the rounding of coordinates of {farthest:g}",
             remedy="Show a larger region, or one nearer to the origin.",
@@ -147,16 +153,15 @@ def _fit(region: Region, size: int | tuple[int, int]) -> tuple[Region, int, int]
     return grown, width, height
 
 
-def _overlays(design: Design, pattern: Pattern, region: Region, width: int, wanted: Iterable[str]) -> list[Overlay]:
+def _overlays(
+    design: Design, tiling: Tiling | None, pattern: Pattern, region: Region, width: int, wanted: Iterable[str]
+) -> list[Overlay]:
     """Give the lines to be drawn on top: all lengths that are no widths in the design's units."""
     wanted = set(wanted)
     pixel = (region[2] - region[0]) / width
     side = math.sqrt(width * (region[3] - region[1]) / pixel)
     line = max(1.0, side / 500)
     found = []
-    if "outline" in wanted:
-        segments = outline_segments(design.tessellate(), pattern, region, accuracy=pixel / 10)
-        found.append(Overlay(segments, line, _OUTLINE))
     if "cell" in wanted:
         a, b = design.lattice.a, design.lattice.b
         middle = complex(region[0] + region[2], region[1] + region[3]) / 2
@@ -171,7 +176,21 @@ def _overlays(design: Design, pattern: Pattern, region: Region, width: int, want
         found += [Overlay(elements.mirrors, 1.4 * line, _MIRROR), Overlay(glides, 1.4 * line, _GLIDE)]
         symbols = _symbols(elements.centres, elements.orders, 7 * line * pixel)
         found += [Overlay(symbols, 5.0 * line, _PAPER), Overlay(symbols, 2.4 * line, _CENTRE)]
+    if "outline" in wanted:
+        assert tiling is not None
+        segments = outline_segments(tiling, pattern, region, accuracy=pixel / 10)
+        found.append(Overlay(segments, line, _OUTLINE))
     return found
+
+
+def _tiling(design: Design, *, needed: bool) -> Tiling | None:
+    """Compute the tiles: a picture is drawn of what can be tiled, even if the outlines fail their proof."""
+    try:
+        return design.tessellate()
+    except ProofError:
+        if needed:
+            raise
+        return None
 
 
 def _symbols(centres: Complexes, orders: NDArray[np.intp], radius: float) -> Complexes:

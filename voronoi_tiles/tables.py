@@ -96,6 +96,8 @@ def check_text(document: dict[str, Any]) -> str:
         if row["places"]:
             places = ", ".join(f"({x:.6g}, {y:.6g})" for x, y in row["places"][:3])
             page.line(f"{'':<14}wrong at {places}" + (" and elsewhere" if row["wrong"] > 3 else ""))
+    failed = [row["name"] for row in check["figures"] if not row["passed"]]
+    page.line(f"\nThe outlines and the image {'differ: ' + ', '.join(failed) if failed else 'agree'}.")
     return page.text()
 
 

@@ -59,9 +59,8 @@ def compare_labels(subject: Subject) -> tuple[Owners, list[Figure]]:
         float(excess[np.isfinite(excess)].max(initial=0.0)),
         limit,
         subject.tiling.design.units,
-        f"{int(undecided.sum()):,} samples that the image leaves open (distances within "
-        f"{float(np.max(bound)):.2g}, twice its "
-        "error) are settled in float64: 2 (accuracy + rounding), and the scan's 2^-23 of a sample",
+        "2 (accuracy + rounding), and 2^-23 of a sample for the scan; where the image's two distances are within twice "
+        f"its error ({float(np.max(bound)):.2g} at most) float64 decides: {int(undecided.sum()):,} times",
         _marks(subject, column[wrong], row[wrong], excess[wrong]),
     )
     strays = np.flatnonzero((scanned.count != 1).ravel() | (scanned.label < 0).ravel())
