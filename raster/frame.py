@@ -82,7 +82,7 @@ class Frame:
         return max(abs(x + y), abs(x - y))
 
     def window(self, column: int, row: int, width: int, height: int) -> Frame:
-        """A part of the grid, whose samples lie exactly where they lay."""
+        """A part of the grid, which may reach beyond it: its samples lie where they lay, up to rounding."""
         return replace(
             self, column=self.column + column, row=self.row + row, width=width, height=height, periodic=False
         )
@@ -104,6 +104,8 @@ def rectangle_frame(region: tuple[float, float, float, float], width: int, heigh
     x0, y0, x1, y1 = region
     if not (x1 > x0 and y1 > y0):
         raise ValueError(f"the region {region} is empty")
+    if width < 1 or height < 1:
+        raise ValueError(f"an image of {width} x {height} samples is empty")
     return Frame(
         complex(x0, y1), complex((x1 - x0) / width), complex(0.0, (y0 - y1) / height), width, height, (0.5, 0.5)
     )

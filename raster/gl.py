@@ -209,6 +209,9 @@ class Prepared:
         elements = element_records(candidates, frame)
         if compute:
             self.program = device.compute_program
+            limit = int(device.info["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"])
+            if max(elements.nbytes, runs.nbytes, 16 * frame.width * frame.height) > limit:
+                raise GlError(f"the lists are larger than the device's largest buffer of {limit:,} bytes")
             tables = [context.buffer(part.tobytes()) for part in (blocks, runs, elements)]
             self.result = context.buffer(reserve=16 * frame.width * frame.height)
             self._held += [*tables, self.result]

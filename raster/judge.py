@@ -91,7 +91,10 @@ class Judge:
         return self.pattern.rounding(self.frame)
 
     def near(self, x: Floats, y: Floats) -> Near:
-        """For each point all copies that may be nearest, or nearest of another copy, with their distances."""
+        """For each point the copies that may be nearest, or nearest of another copy, and perhaps some more.
+
+        The distances of the two nearest are true, those of others upper bounds.
+        """
         block = self._block(x, y)
         place = self.frame.offsets(x, y)
         rows = []

@@ -98,6 +98,8 @@ class Renderer:
         for name, value, known in (("renderer", choice, get_args(Choice)), ("method", method, get_args(Method))):
             if value not in known:
                 raise ValueError(f"unknown {name} {value!r}: use {', '.join(known)}")
+        if sides < 4 or sides % 4:
+            raise ValueError(f"cones have 4, 8, 12, ... sides, not {sides}")
         if device is not None and operator.index(device) < 0:
             raise ValueError(f"no number of a device: {device}")
         self._choice, self._method, self._compute, self._sides = choice, method, compute, sides
@@ -218,23 +220,25 @@ def spot_check(
 ) -> int:
     """Compare random samples of an image with float64 over all elements; give how many.
 
-    Raises GlError where a distance is off by more than its bound, or a label is wrong that the bound decides.
+    Raises GlError where a distance is off by more than its bound, or a label names a copy that is farther by more than
+    the bounds explain.
     """
     count = int(np.clip(_SPOT_WORK // len(scene), 16, 256))
     chance = np.random.default_rng(frame.width * 1_000_003 + frame.height)
     i, j = chance.integers(0, frame.width, count), chance.integers(0, frame.height, count)
     start = np.flatnonzero(np.append(True, scene.label[1:] != scene.label[:-1]))
-    first, _, d1, d2 = (image[j, i] for image in images)
+    first, second, d1, d2 = (image[j, i] for image in images)
+    if min(first.min(), second.min()) < 0 or max(first.max(), second.max()) >= len(start):
+        raise GlError("the spot check found labels of no copy")
     points = frame.offsets(i.astype(float), j.astype(float))
     for k, point in enumerate(points.tolist()):
         nearest = np.minimum.reduceat(distances(point, scene.middle, scene.half), start)
-        two = np.argpartition(nearest, 1)[:2]
-        two = two[np.argsort(nearest[two])]
-        true1, true2 = nearest[two].tolist()
+        true1, true2 = np.partition(nearest, 1)[:2].tolist()
         allowed = float(error(true2))
         where = f"sample ({i[k]}, {j[k]})"
         if not (abs(d1[k] - true1) <= allowed and abs(d2[k] - true2) <= allowed):
             raise GlError(f"the spot check found {where} off by more than {allowed:.3g} from float64")
-        if true2 - true1 > 2 * allowed and first[k] != two[0]:
+        behind = nearest[first[k]] - true1, nearest[second[k]] - true2
+        if not max(behind) <= 2 * allowed or first[k] == second[k]:
             raise GlError(f"the spot check found {where} with the wrong owner")
     return count

@@ -675,7 +675,7 @@ def test_the_spot_check_knows_the_bound(shape: tuple[int, int]) -> None:
         with pytest.raises(GlError, match=r"the spot check found sample \(\d+, \d+\) off by more than 0.001"):
             spot_check(lists.scene, frame, images, lambda _: allowed)
     for wrong in (second, np.full_like(first, -1), np.full_like(first, len(lists.scene.copies))):
-        with pytest.raises(GlError, match="with the wrong owner"):
+        with pytest.raises(GlError, match="wrong owner|labels of no copy"):
             spot_check(lists.scene, frame, (wrong, second, d1, d2), lambda _: allowed)
 
 
@@ -746,3 +746,26 @@ def test_the_bound_of_float32() -> None:
     assert float32_error(0.0, frame) == pytest.approx(16 * 2.0**-24 * 2 * 8 * 5)
     assert float32_error(100.0, frame) - float32_error(0.0, frame) == pytest.approx(16 * 2.0**-24 * 100)
     assert float32_error(7.0, frame.window(4, 5, 6, 7)) == float32_error(7.0, frame)
+
+
+@pytest.mark.parametrize("sides", [0, 1, 3, 6, -4])
+def test_cones_have_quarters(sides: int) -> None:
+    """Meshes are the same on all sides of an element: other numbers of sides are refused."""
+    with pytest.raises(ValueError, match="sides"):
+        Renderer("cpu", method="hoff", sides=sides)
+
+
+@pytest.mark.parametrize("wrong", [-1, 10**6])
+def test_the_spot_check_looks_at_both_labels(wrong: int) -> None:
+    """The label of the nearest other copy as well: of no copy, or of one that is farther."""
+    frame = cell_frame(BIRD.lattice, 40)
+    lists = lists_of(BIRD, frame)
+    first, second, d1, d2 = cpu.render(lists, frame)
+    error = Renderer("cpu").render(BIRD, frame).error
+    render.spot_check(lists.scene, frame, (first, second, d1, d2), error)
+    for images in ((first, np.full_like(second, wrong), d1, d2), (np.full_like(first, wrong), second, d1, d2)):
+        with pytest.raises(GlError, match="labels of no copy"):
+            render.spot_check(lists.scene, frame, images, error)
+    for images in ((first, np.roll(second, 7, axis=0), d1, d2), (first, first, d1, d2)):
+        with pytest.raises(GlError, match="wrong owner"):
+            render.spot_check(lists.scene, frame, images, error)
