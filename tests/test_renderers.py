@@ -675,7 +675,7 @@ def test_the_spot_check_knows_the_bound(shape: tuple[int, int]) -> None:
         with pytest.raises(GlError, match=r"the spot check found sample \(\d+, \d+\) off by more than 0.001"):
             spot_check(lists.scene, frame, images, lambda _: allowed)
     for wrong in (second, np.full_like(first, -1), np.full_like(first, len(lists.scene.copies))):
-        with pytest.raises(GlError, match="wrong owner|labels of no copy"):
+        with pytest.raises(GlError, match=r"wrong owner|labels of no copy"):
             spot_check(lists.scene, frame, (wrong, second, d1, d2), lambda _: allowed)
 
 
