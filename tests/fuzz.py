@@ -1,8 +1,8 @@
 """Random designs through the whole pipeline: `make fuzz N=10000`, or `python tests/fuzz.py 10000 --seed 7 --jobs 2`.
 
-Each design is either tiled, with the proof passed and a spot check by the brute-force oracle, or refused because copies
-touch, which shapely confirms at the place that the message names. All else is a failure: exit status 1, and the design
-is printed. Design k of a seed is the same whatever the number of designs.
+Each design is either tiled, with the proof, the cross-check and a spot check by brute force passed, or refused because
+copies touch, which shapely confirms at the place that the message names. All else is a failure: exit status 1, and the
+design is printed. Design k of a seed is the same whatever the number of designs.
 """
 # ruff: noqa: T201 - its result is what it prints
 
@@ -59,12 +59,16 @@ def try_design(design: dict[str, Any], rng: np.random.Generator, points: int = 6
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             read = Design.loads(text, format="json")
-            document = read.tessellate().document()
+            tiling = read.tessellate()
+            document = tiling.document()
+            check = tiling.check(samples=96, renderer="cpu")
     except TouchingCopiesError as error:
         return _refusal(read, error)
     except Exception as error:  # noqa: BLE001 - whatever comes out is a finding
         frame = traceback.extract_tb(error.__traceback__)[-1]
         return f"{type(error).__name__}: {error} ({frame.name}, line {frame.lineno})"
+    if not check.passed:
+        return f"the cross-check fails: {', '.join(check.failures)}"
     plane = brute.Plane.of(document)
     # Far from the origin the coordinates are no finer than the gap in question.
     touching = contact(plane, 1e-15 * plane.size) if plane.slack < 2 * brute.LIMIT * plane.size else ""
