@@ -12,11 +12,12 @@ A block's list is a subset of the list of the block that it is a quarter of.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from voronoi_tiles.raster.copies import Ints, Scene, from_feet, lengths
+from voronoi_tiles.raster.copies import Ints, Scene, distances, from_feet, lengths
 from voronoi_tiles.raster.frame import BLOCK, Complexes, Floats, Frame
 from voronoi_tiles.raster.ragged import ranges
 
@@ -45,6 +46,21 @@ class Candidates:
 
     def __len__(self) -> int:
         return len(self.centre)
+
+    @cached_property
+    def run_block(self) -> Ints:
+        """The block of each run."""
+        return np.repeat(np.arange(len(self)), np.diff(self.run_start))
+
+    @cached_property
+    def element_block(self) -> Ints:
+        """The block of each entry of `element`."""
+        return np.repeat(self.run_block, np.diff(self.element_start))
+
+    def from_centres(self) -> Floats:
+        """The distance of each entry of `element` from its block's centre."""
+        scene = self.scene
+        return distances(self.centre[self.element_block], scene.middle[self.element], scene.half[self.element])
 
 
 def find_candidates(scene: Scene, frame: Frame, *, looseness: float = 0.0) -> Candidates:
@@ -84,8 +100,7 @@ class _Lists:
 
 def _radius(frame: Frame, level: int) -> float:
     """The half diagonal of a block, whose far sides are the samples where the next block begins."""
-    side = BLOCK * 2**level / 2
-    return float(max(abs(side * (frame.u + frame.v)), abs(side * (frame.u - frame.v))))
+    return frame.half_diagonal(BLOCK * 2**level)
 
 
 def _centres(frame: Frame, column: Ints, row: Ints, level: int) -> Complexes:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voronoi_tiles.raster.candidates import find_candidates
-from voronoi_tiles.raster.copies import Ints, Pattern, distances, gather
+from voronoi_tiles.raster.copies import Ints, Pattern, gather
 from voronoi_tiles.raster.frame import BLOCK, cell_frame
 
 _SAMPLES = 64 * BLOCK
@@ -107,13 +107,10 @@ def neighbours(pattern: Pattern) -> tuple[Ints, int]:
     frame = cell_frame(pattern.lattice, _SAMPLES)
     scene = gather(pattern, frame.origin, frame.middle, frame.radius)
     lists = find_candidates(scene, frame)
-    of_block = np.repeat(np.arange(len(lists)), np.diff(lists.run_start))
-    block = np.repeat(of_block, np.diff(lists.element_start))
-    far = distances(lists.centre[block], scene.middle[lists.element], scene.half[lists.element])
-    nearest = np.minimum.reduceat(far, lists.element_start[:-1])
+    nearest = np.minimum.reduceat(lists.from_centres(), lists.element_start[:-1])
     least = np.minimum.reduceat(nearest, lists.run_start[:-1])
-    owning = np.flatnonzero(nearest <= least[of_block] + 2 * lists.radius)
-    label, block = lists.run_label[owning], of_block[owning]
+    owning = np.flatnonzero(nearest <= least[lists.run_block] + 2 * lists.radius)
+    label, block = lists.run_label[owning], lists.run_block[owning]
     crowd = int(np.bincount(block).max())
     found = []
     for step in range(1, len(owning)):

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 
 from voronoi_tiles.errors import DesignError
 from voronoi_tiles.raster.frame import Frame
-from voronoi_tiles.raster.ragged import counting
+from voronoi_tiles.raster.ragged import counting, starts
 from voronoi_tiles.site import Site
 from voronoi_tiles.tolerance import EPSILON, SAME_POINT
 from voronoi_tiles.wallpaper import Isometry, Lattice, Operation, WallpaperGroup
@@ -121,10 +121,13 @@ class Pattern:
 
     def coordinates(self, z: Complexes) -> tuple[Floats, Floats]:
         """The fractional coordinates of points."""
-        a, b, det = self.lattice.a, self.lattice.b, self.lattice.det
-        x = (z.real * b.imag - z.imag * b.real) / det
-        y = (a.real * z.imag - a.imag * z.real) / det
-        return np.asarray(x), np.asarray(y)
+        return self.lattice.fractional(z)
+
+    @cached_property
+    def basis(self) -> Ints:
+        """The reduced basis in integers over the conventional one, a row for each vector."""
+        x, y = self.coordinates(np.array(self.lattice.reduced_basis))
+        return np.round(np.stack((x, y), axis=1)).astype(np.intp)
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,6 +146,15 @@ class Scene:
 
     def __len__(self) -> int:
         return len(self.middle)
+
+    @cached_property
+    def copy_start(self) -> Ints:
+        """The first element of each copy."""
+        return starts(self.label)
+
+    def copy_distances(self, point: complex) -> Floats:
+        """The distance of each copy from a point, which counts from the origin."""
+        return np.minimum.reduceat(distances(point, self.middle, self.half), self.copy_start)
 
     @cached_property
     def length(self) -> Floats:
@@ -212,11 +224,9 @@ def _images(
         mid, half = mid.conj(), half.conj()
     mid, half = unit * mid + home, unit * half
 
-    p, q = pattern.lattice.reduced_basis
-    det = p.real * q.imag - p.imag * q.real
-    away = middle - mid
-    s = (away.real * q.imag - away.imag * q.real) / det
-    t = (p.real * away.imag - p.imag * away.real) / det
+    reduced = pattern.lattice.reduced
+    p, q, det = reduced.a, reduced.b, reduced.det
+    s, t = reduced.fractional(middle - mid)
     room = reach + np.abs(half)
     width, height = room * (abs(q) / det), room * (abs(p) / det)
     low_s, low_t = np.ceil(s - width), np.ceil(t - height)
@@ -238,10 +248,7 @@ def _images(
     near = distances(middle, position, half[element]) <= reach
     element, i, j = element[near], i[near], j[near]
     # From the reduced basis to (a, b), the one that operations are written in.
-    (p_a, p_b), (q_a, q_b) = (
-        (round(float(x[0])), round(float(y[0]))) for x, y in (pattern.coordinates(np.array([v])) for v in (p, q))
-    )
-    return position[near], half[element], np.stack((i * p_a + j * q_a, i * p_b + j * q_b), axis=1)
+    return position[near], half[element], np.stack((i, j), axis=1) @ pattern.basis
 
 
 def from_feet(z: Complexes | complex, middle: Complexes, half: Complexes) -> Complexes:
@@ -275,9 +282,7 @@ def distances(z: Complexes | complex, middle: Complexes, half: Complexes) -> Flo
 
 def _second_smallest(scene: Scene, point: complex) -> float:
     """The second smallest of the copies' distances from a point."""
-    starts = np.flatnonzero(np.append(True, scene.label[1:] != scene.label[:-1]))
-    nearest = np.minimum.reduceat(distances(point, scene.middle, scene.half), starts)
-    return float(np.partition(nearest, 1)[1])
+    return float(np.partition(scene.copy_distances(point), 1)[1])
 
 
 def merge_copies(tables: Sequence[Ints]) -> tuple[Ints, list[Labels]]:

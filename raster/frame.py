@@ -81,6 +81,10 @@ class Frame:
         x, y = (self.width / 2 + 1) * self.u, (self.height / 2 + 1) * self.v
         return max(abs(x + y), abs(x - y))
 
+    def half_diagonal(self, side: float) -> float:
+        """How far the corners of side x side steps are from their middle."""
+        return side / 2 * max(abs(self.u + self.v), abs(self.u - self.v))
+
     def window(self, column: int, row: int, width: int, height: int) -> Frame:
         """A part of the grid, which may reach beyond it: its samples lie where they lay, up to rounding."""
         return replace(

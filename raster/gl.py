@@ -182,8 +182,7 @@ def float32_error(distance: Floats | float, frame: Frame) -> Any:
     All vectors in the shader are at most d + 2r long: elements are cut to what matters in the block, and measured from
     its centre. Ten roundings, each of at most 2^-24 of that, go into the result.
     """
-    radius = BLOCK / 2 * max(abs(frame.u + frame.v), abs(frame.u - frame.v))
-    return 16 * 2.0**-24 * (distance + 2 * radius)
+    return 16 * 2.0**-24 * (distance + 2 * frame.half_diagonal(BLOCK))
 
 
 class Prepared:
@@ -274,9 +273,7 @@ def element_records(candidates: Candidates, frame: Frame) -> Floats32:
     long element is cut off, since its far ends would cost the digits that float32 does not have.
     """
     scene = candidates.scene
-    size = np.diff(candidates.element_start)
-    block = np.repeat(np.repeat(np.arange(len(candidates)), np.diff(candidates.run_start)), size)
-    middle = scene.middle[candidates.element] - candidates.centre[block]
+    middle = scene.middle[candidates.element] - candidates.centre[candidates.element_block]
     unit, length = scene.unit[candidates.element], scene.length[candidates.element]
     foot = np.clip(-(middle.real * unit.real + middle.imag * unit.imag), -length, length)
     room = 1.001 * candidates.radius

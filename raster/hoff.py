@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voronoi_tiles.raster.candidates import Candidates
-from voronoi_tiles.raster.copies import Labels, distances
+from voronoi_tiles.raster.copies import Labels
 from voronoi_tiles.raster.frame import WINDOW, Floats, Frame
 from voronoi_tiles.raster.gl import Device, Floats32, gl_errors
 
@@ -35,12 +35,8 @@ def mesh_error(distance: Floats | float, frame: Frame, *, farthest: float, sides
     float32, up to the frame's size, and a depth buffer of 24 bits over `farthest`.
     """
     snapping = (abs(frame.u) + abs(frame.v)) / 128
-    return cone_error(sides) * distance + snapping + 16 * 2.0**-24 * (farthest + 2 * min(frame.radius, _window(frame)))
-
-
-def _window(frame: Frame) -> float:
-    """The half diagonal of the largest window that is rendered at once."""
-    return WINDOW / 2 * max(abs(frame.u + frame.v), abs(frame.u - frame.v))
+    window = min(frame.radius, frame.half_diagonal(WINDOW))
+    return cone_error(sides) * distance + snapping + 16 * 2.0**-24 * (farthest + 2 * window)
 
 
 def heights(along: Floats, across: Floats, sides: int = SIDES) -> Floats:
@@ -54,12 +50,8 @@ def heights(along: Floats, across: Floats, sides: int = SIDES) -> Floats:
 
 def reaches(candidates: Candidates) -> tuple[NDArray[np.intp], Floats]:
     """The elements that matter anywhere in the frame, and how far from each: cones need be no wider."""
-    size = np.diff(candidates.element_start)
-    block = np.repeat(np.repeat(np.arange(len(candidates)), np.diff(candidates.run_start)), size)
-    scene = candidates.scene
-    far = distances(candidates.centre[block], scene.middle[candidates.element], scene.half[candidates.element])
-    reach = np.full(len(scene), -1.0)
-    np.maximum.at(reach, candidates.element, far + candidates.radius)
+    reach = np.full(len(candidates.scene), -1.0)
+    np.maximum.at(reach, candidates.element, candidates.from_centres() + candidates.radius)
     used = np.flatnonzero(reach > 0.0)
     return used, reach[used]
 

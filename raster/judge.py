@@ -17,7 +17,7 @@ from voronoi_tiles.errors import DesignError
 from voronoi_tiles.raster.candidates import Candidates
 from voronoi_tiles.raster.copies import Ints, Pattern, from_feet, lengths
 from voronoi_tiles.raster.frame import BLOCK, Complexes, Floats, Frame
-from voronoi_tiles.raster.ragged import ranges
+from voronoi_tiles.raster.ragged import first_least, ranges, starts
 
 _CELLS = 1 << 23
 _PLACEMENTS = 1 << 14
@@ -105,8 +105,7 @@ class Judge:
             point = point + part.start
             element, of_run = ranges(lists.element_start[runs], lists.element_start[runs + 1])
             away = self._away(place[point[of_run]], lists.element[element])
-            starts = np.flatnonzero(np.append(True, of_run[1:] != of_run[:-1]))
-            rows.append((point, self.codes[lists.run_label[runs]], np.minimum.reduceat(lengths(away), starts)))
+            rows.append((point, self.codes[lists.run_label[runs]], np.minimum.reduceat(lengths(away), starts(of_run))))
         return Near(*(np.concatenate(column) for column in zip(*rows, strict=True))) if rows else _NOTHING
 
     def certify(
@@ -172,9 +171,9 @@ class Judge:
             place = start[number] + t * stride[number]
             away = self._away(place[of], element[index])
             distance = lengths(away)
-            nearest = _first_least(distance, of, len(number))
-            mine = _first_least(np.where(owned_by_before, distance, np.inf), of, len(number))
-            theirs = _first_least(np.where(owned_by_after, distance, np.inf), of, len(number))
+            nearest = first_least(distance, of, len(number))
+            mine = first_least(np.where(owned_by_before, distance, np.inf), of, len(number))
+            theirs = first_least(np.where(owned_by_after, distance, np.inf), of, len(number))
             third = distance[nearest] < np.minimum(distance[mine], distance[theirs]) - 4 * self.rounding
             gradients = (
                 away[mine] / np.maximum(distance[mine], 1e-300),
@@ -211,7 +210,7 @@ class Judge:
             for element, of in (mine, theirs):
                 index, point = ranges(*_extent_of(of, active))
                 distance = lengths(self._away(place[point], element[index]))
-                least.append(np.minimum.reduceat(distance, np.flatnonzero(np.append(True, point[1:] != point[:-1]))))
+                least.append(np.minimum.reduceat(distance, starts(point)))
             return np.asarray(least[0] - least[1])
 
         active = np.arange(len(start))
@@ -258,14 +257,6 @@ _NOTHING = Near(np.zeros(0, np.intp), np.zeros(0, np.int64), np.zeros(0))
 def _extent_of(sorted_owner: Ints, wanted: Ints) -> tuple[Ints, Ints]:
     """Where in an ascending array the entries equal to each wanted number begin and end."""
     return np.searchsorted(sorted_owner, wanted, side="left"), np.searchsorted(sorted_owner, wanted, side="right")
-
-
-def _first_least(value: Floats, of: Ints, count: int) -> Ints:
-    """The index of the least value of each owner 0 ... count - 1; `of` ascends and names them all."""
-    start = np.searchsorted(of, np.arange(count))
-    least = np.minimum.reduceat(value, start)
-    hit = np.flatnonzero(value == least[of])
-    return hit[np.searchsorted(of[hit], np.arange(count))]
 
 
 def _portions(sizes: Ints) -> list[slice]:

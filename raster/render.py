@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from voronoi_tiles.errors import RenderError
 from voronoi_tiles.raster import cpu, hoff
 from voronoi_tiles.raster.candidates import Candidates, find_candidates
-from voronoi_tiles.raster.copies import Ints, Labels, Pattern, Scene, distances, gather, merge_copies
+from voronoi_tiles.raster.copies import Ints, Labels, Pattern, Scene, gather, merge_copies
 from voronoi_tiles.raster.frame import BLOCK, WINDOW, Frame
 from voronoi_tiles.raster.gl import Device, GlError, float32_error, forget, gl_errors
 from voronoi_tiles.raster.gl import device as find_device
@@ -226,13 +226,12 @@ def spot_check(
     count = int(np.clip(_SPOT_WORK // len(scene), 16, 256))
     chance = np.random.default_rng(frame.width * 1_000_003 + frame.height)
     i, j = chance.integers(0, frame.width, count), chance.integers(0, frame.height, count)
-    start = np.flatnonzero(np.append(True, scene.label[1:] != scene.label[:-1]))
     first, second, d1, d2 = (image[j, i] for image in images)
-    if min(first.min(), second.min()) < 0 or max(first.max(), second.max()) >= len(start):
+    if min(first.min(), second.min()) < 0 or max(first.max(), second.max()) >= len(scene.copies):
         raise GlError("the spot check found labels of no copy")
     points = frame.offsets(i.astype(float), j.astype(float))
     for k, point in enumerate(points.tolist()):
-        nearest = np.minimum.reduceat(distances(point, scene.middle, scene.half), start)
+        nearest = scene.copy_distances(point)
         true1, true2 = np.partition(nearest, 1)[:2].tolist()
         allowed = float(error(true2))
         where = f"sample ({i[k]}, {j[k]})"

@@ -90,9 +90,7 @@ class Action:
 
     def fractional(self, z: complex) -> tuple[float, float]:
         """Return a point in fractional coordinates."""
-        a, b = self.lattice.a, self.lattice.b
-        det = a.real * b.imag - a.imag * b.real
-        return (z.real * b.imag - z.imag * b.real) / det, (a.real * z.imag - a.imag * z.real) / det
+        return self.lattice.fractional(z)
 
     @cached_property
     def covering_radius(self) -> float:

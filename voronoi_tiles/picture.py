@@ -197,9 +197,8 @@ def _symbols(centres: Complexes, orders: NDArray[np.intp], radius: float) -> Com
     """Give the sides of the symbols of rotation centres: a lens for 2, else regular polygons; complex128 (n, 2)."""
     sides = []
     for order in (2, 3, 4, 6):
-        turn = np.exp(2j * np.pi * (np.arange(max(order, 4) + 1) / max(order, 4) + 0.25))
-        if order == 3:
-            turn = np.exp(2j * np.pi * (np.arange(4) / 3 + 0.25))
+        count = 4 if order == 2 else order
+        turn = np.exp(2j * np.pi * (np.arange(count + 1) / count + 0.25))
         if order == 2:
             turn = turn.real * 0.5 + 1j * turn.imag
         corners = centres[orders == order, None] + radius * turn
@@ -211,11 +210,15 @@ def outline_segments(tiling: Tiling, pattern: Pattern, region: Region, *, accura
     """Give the outlines of all copies that may show in a region as chords, within `accuracy` (in units): (n, 2)."""
     lattice = pattern.lattice
     corners = np.array([complex(x, y) for x in region[::2] for y in region[1::2]])
+    flat = [
+        np.concatenate(
+            [np.stack((ring, np.roll(ring, -1)), axis=1) for ring in tile.outline.flatten(accuracy=accuracy)]
+        )
+        for tile in tiling.tiles
+    ]
     found = []
     for placement in pattern.placements:
-        rings = tiling.tiles[placement.site].outline.flatten(accuracy=accuracy)
-        sides = [np.stack((ring, np.roll(ring, -1)), axis=1) for ring in rings]
-        segments = placement.isometry(np.concatenate(sides))
+        segments = placement.isometry(flat[placement.site])
         # The translates whose box, in lattice coordinates, meets that of the region.
         ranges = [
             np.arange(math.ceil(shown.min() - own.max()), math.floor(shown.max() - own.min()) + 1)

@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from voronoi_tiles.tolerance import UNIT_SNAP
 
 Complexes = NDArray[np.complex128]
+Floats = NDArray[np.float64]
 System = Literal["oblique", "rectangular", "square", "hexagonal"]
 
 _HALF_SQRT3 = math.sqrt(3.0) / 2.0
@@ -223,6 +224,20 @@ class Lattice:
         """The Cartesian point of the fractional coordinates (x, y)."""
         s, t = float(x), float(y)
         return complex(s * self.a.real + t * self.b.real, s * self.a.imag + t * self.b.imag)
+
+    @overload
+    def fractional(self, z: complex) -> tuple[float, float]: ...
+    @overload
+    def fractional(self, z: Complexes) -> tuple[Floats, Floats]: ...
+    def fractional(self, z: complex | Complexes) -> tuple[float | Floats, float | Floats]:
+        """The fractional coordinates (x, y) of a point, or of an array of points: the inverse of `cartesian`."""
+        a, b, det = self.a, self.b, self.det
+        return (z.real * b.imag - z.imag * b.real) / det, (a.real * z.imag - a.imag * z.real) / det
+
+    @cached_property
+    def reduced(self) -> Lattice:
+        """The same lattice over its shortest basis."""
+        return Lattice(*self.reduced_basis)
 
     def isometry(self, operation: Operation) -> Isometry:
         """The Cartesian isometry of `operation`.

@@ -69,9 +69,7 @@ def _marks(figure: Figure, report: CheckReport, lattice: Lattice) -> tuple[Compl
     order = np.argsort(-figure.marks.excess, kind="stable")[:_MOST]
     place, excess = figure.marks.place[order], figure.marks.excess[order]
     a, b = lattice.reduced_basis
-    away = place - report.frame.origin
-    s = (away.real * b.imag - away.imag * b.real) / lattice.det
-    t = (a.real * away.imag - a.imag * away.real) / lattice.det
+    s, t = lattice.reduced.fractional(place - report.frame.origin)
     place = place - np.floor(s) * a - np.floor(t) * b
     with np.errstate(divide="ignore"):
         size = np.log10(excess / report.frame.pixel)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voronoi_tiles.crosscheck.labels import Owners
-from voronoi_tiles.crosscheck.report import NO_MARKS, Figure, Marks
+from voronoi_tiles.crosscheck.report import Figure, Marks
 from voronoi_tiles.crosscheck.subject import STRANGER, Codes, Complexes, Floats, Ints, Subject
 from voronoi_tiles.raster.judge import Crossings, Judge, decode, encode
 from voronoi_tiles.vector.nearest import distance_to_arcs
@@ -119,7 +119,7 @@ def compare_points(subject: Subject) -> Figure:
         limit,
         subject.tiling.design.units,
         "accuracy + 4 rounding",
-        Marks(points[wrong], error[wrong]) if wrong.any() else NO_MARKS,
+        Marks(points[wrong], error[wrong]),
     )
 
 
@@ -260,5 +260,5 @@ def _crossed(subject: Subject, copy: Codes, arc: Ints) -> Figure:
         2.0,
         "crossings",
         "an arc's two ends, beside crossings hidden in one step",
-        Marks(np.array(missed, complex), np.full(len(missed), np.inf)) if missed else NO_MARKS,
+        Marks(np.array(missed, complex), np.full(len(missed), np.inf)),
     )

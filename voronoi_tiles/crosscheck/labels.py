@@ -7,9 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from voronoi_tiles.crosscheck.report import NO_MARKS, Figure, Marks
+from voronoi_tiles.crosscheck.report import Figure, Marks
 from voronoi_tiles.crosscheck.subject import Codes, Floats, Ints, Subject
 from voronoi_tiles.raster.judge import decode, encode
+from voronoi_tiles.raster.ragged import first_least
 from voronoi_tiles.vector.scan import QUANTUM, owners
 
 
@@ -29,7 +30,7 @@ def compare_labels(subject: Subject) -> tuple[Owners, list[Figure]]:
     placed = [(subject.outlines[row.site], row.isometry) for row in pattern.placements]
     scanned = owners(placed, subject.grid)
     table = scanned.labels.copy()
-    table[:, 1:] = scanned.labels[:, 1:] @ subject.basis
+    table[:, 1:] = scanned.labels[:, 1:] @ pattern.basis
 
     codes, inverse = np.unique(np.concatenate((encode(image.copies), encode(table))), return_inverse=True)
     names: NDArray[np.int32] = inverse.reshape(-1).astype(np.int32)
@@ -87,14 +88,12 @@ def _settle(
     behind = np.full(len(column), np.inf)
     for part, index in subject.split(column, row):
         near = part.judge.near((column[index] - part.column).astype(float), (row[index] - part.row).astype(float))
-        start = np.flatnonzero(np.append(True, near.point[1:] != near.point[:-1]))
-        least = np.minimum.reduceat(near.distance, start)
-        first = np.flatnonzero(near.distance == least[near.point])
-        first = first[np.searchsorted(near.point[first], np.arange(len(index)))]
+        first = first_least(near.distance, near.point, len(index))
         owner[index] = np.searchsorted(codes, near.copy[first])
         claim = np.where(claimed[index] >= 0, codes[claimed[index]], -1)
         theirs = near.copy == claim[near.point]
-        behind[index[near.point[theirs]]] = near.distance[theirs] - least[near.point[theirs]]
+        point = near.point[theirs]
+        behind[index[point]] = near.distance[theirs] - near.distance[first[point]]
     return owner, behind
 
 
@@ -121,6 +120,4 @@ def _area(subject: Subject, owner: NDArray[np.int32], codes: Codes) -> Figure:
 
 
 def _marks(subject: Subject, column: Ints, row: Ints, excess: Floats) -> Marks:
-    if not len(column):
-        return NO_MARKS
     return Marks(subject.frame.points(column.astype(float), row.astype(float)), excess)

@@ -75,15 +75,9 @@ class Subject:
         return Grid(frame.origin, a, b, frame.width, frame.height, frame.phase)
 
     @cached_property
-    def basis(self) -> Ints:
-        """The grid's two lattice vectors in integers over the conventional basis, a row each."""
-        x, y = self.pattern.coordinates(np.array(self.pattern.lattice.reduced_basis))
-        return np.round(np.stack((x, y), axis=1)).astype(np.intp)
-
-    @cached_property
     def period(self) -> tuple[int, int]:
         """What is added to a copy's code when it is moved by the grid's lattice vectors."""
-        rows = np.concatenate((np.zeros((2, 1), np.intp), self.basis), axis=1)
+        rows = np.concatenate((np.zeros((2, 1), np.intp), self.pattern.basis), axis=1)
         first, second = (encode(rows) - encode(np.zeros((2, 3), np.intp))).tolist()
         return int(first), int(second)
 
