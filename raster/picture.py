@@ -16,7 +16,7 @@ from scipy import ndimage
 
 from voronoi_tiles.raster.colouring import Colouring, colour, palette
 from voronoi_tiles.raster.copies import Pattern
-from voronoi_tiles.raster.frame import Complexes, Frame, rectangle_frame
+from voronoi_tiles.raster.frame import Complexes, rectangle_frame
 from voronoi_tiles.raster.lines import coverage
 from voronoi_tiles.raster.render import LabelImage, Provenance, Renderer
 
@@ -77,6 +77,7 @@ class Picture:
         self.width, self.height = width, height
         self.style = style or Style.of_size(width, height)
         self.fine = self.style.supersampling
+        self.grid = rectangle_frame(region, width, height)
         self.frame = rectangle_frame(region, width * self.fine, height * self.fine)
         self.provenance: Provenance = renderer.provenance()
         self.colouring: Colouring = colour(pattern)
@@ -104,7 +105,7 @@ class Picture:
         pixels = flat[inner].astype(np.float32)
         pixels += cover[..., None] * (np.array(INK, np.float32) - pixels)
         pixels = _mean(pixels, fine)
-        shown = _pixel_frame(self.frame, fine, self.width, self.height).window(0, top, self.width, rows)
+        shown = self.grid.window(0, top, self.width, rows)
         for overlay in self.overlays:
             strength = coverage(overlay.segments, overlay.width, shown)[..., None]
             pixels += strength * (np.array(overlay.colour, np.float32) - pixels)
@@ -161,8 +162,3 @@ def _mean(pixels: NDArray[np.float32], fine: int) -> NDArray[np.float32]:
         return pixels
     rows, columns = pixels.shape[0] // fine, pixels.shape[1] // fine
     return np.asarray(pixels.reshape(rows, fine, columns, fine, 3).mean(axis=(1, 3), dtype=np.float32))
-
-
-def _pixel_frame(frame: Frame, fine: int, width: int, height: int) -> Frame:
-    """The grid of pixels over the grid of samples."""
-    return Frame(frame.origin, frame.u * fine, frame.v * fine, width, height, (0.5, 0.5))

@@ -48,10 +48,8 @@ class Provenance:
 
 
 class Window(NamedTuple):
-    """A part of an image that was rendered at once, the column and row where it begins, and its candidate lists."""
+    """A part of an image that was rendered at once, and its candidate lists."""
 
-    column: int
-    row: int
     frame: Frame
     candidates: Candidates
 
@@ -137,9 +135,10 @@ class Renderer:
         copies, names = merge_copies([window.candidates.scene.copies for window in windows])
         if len(windows) > 1:
             for window, new in zip(windows, names, strict=True):
+                y, x = window.frame.row - frame.row, window.frame.column - frame.column
                 for image in whole[:2]:
-                    part = image[window.row : window.row + limit, window.column : window.column + limit]
-                    part[...] = new[part]
+                    labels = image[y : y + limit, x : x + limit]
+                    labels[...] = new[labels]
         first, second, d1, d2 = whole
         error = self._error(pattern, frame, farthest)
         by = self.provenance(spots)
@@ -157,7 +156,7 @@ class Renderer:
         part = frame.window(x, y, min(limit, frame.width - x), min(limit, frame.height - y))
         scene = gather(pattern, part.origin, part.middle, part.radius)
         looseness = hoff.cone_error(self._sides) if self._method == "hoff" else 0.0
-        return Window(x, y, part, find_candidates(scene, part, looseness=looseness))
+        return Window(part, find_candidates(scene, part, looseness=looseness))
 
     def _images(self, pattern: Pattern, window: Window) -> tuple[list[NDArray[Any]], float, int]:
         """Render one window: the four images, the farthest distance that was drawn, the samples that were checked."""

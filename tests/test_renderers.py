@@ -319,9 +319,10 @@ def test_seams_do_not_show(method: render.Method, window: int, monkeypatch: pyte
             assert same(whole, parts)
             seen = np.zeros((70, 90), int)
             for part in parts.windows:
-                seen[part.row : part.row + part.frame.height, part.column : part.column + part.frame.width] += 1
+                x, y = part.frame.column - frame.column, part.frame.row - frame.row
+                seen[y : y + part.frame.height, x : x + part.frame.width] += 1
                 assert max(part.frame.width, part.frame.height) <= window
-                assert complex(part.frame.points(0.0, 0.0)) == complex(frame.points(part.column, part.row))
+                assert complex(part.frame.points(0.0, 0.0)) == complex(frame.points(x, y))
                 assert len(part.candidates) == -(-part.frame.width // BLOCK) * -(-part.frame.height // BLOCK)
             assert (seen == 1).all()
             rows = [tuple(row) for row in parts.copies.tolist()]

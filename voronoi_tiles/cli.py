@@ -491,21 +491,16 @@ def _make_folder(target: str, output: str) -> None:
 
 def _refuse_other_output(design: str, output: str | None) -> None:
     """Refuse a picture that is none by its name, or that would overwrite the design."""
+    from voronoi_tiles.files import is_special
+
     if output is None or output == "-":
         return
     if not output:
         raise click.UsageError("The name of the file to write is empty: -o FILE.")
-    if not output.lower().endswith(".png") and not _is_special(output):
+    if not output.lower().endswith(".png") and not is_special(output):
         raise click.UsageError(f"{output} is no name of a picture: give it the suffix .png.")
     if design != "-" and os.path.realpath(output) == os.path.realpath(design):
         raise click.UsageError(f"{output} is a design, and would be overwritten.")
-
-
-def _is_special(path: str) -> bool:
-    """Tell whether a path is a device or a pipe."""
-    from voronoi_tiles.files import is_special
-
-    return is_special(path)
 
 
 def _shown(design: str) -> str:

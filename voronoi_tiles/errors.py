@@ -96,38 +96,30 @@ class TouchingCopiesError(VoronoiTilesError, ValueError):
         return type(self)(self.site, self.other, self.operation, self.place, file=self.file or file)
 
 
-class ProofError(VoronoiTilesError, ArithmeticError):
+class _ResultError(VoronoiTilesError, ArithmeticError):
+    """A result that is not right: `message`, without a full stop; `report` has all figures."""
+
+    exit_code: ClassVar[int] = 1
+
+    def __init__(self, message: str, report: Any = None) -> None:
+        super().__init__(message)
+        self.message = message
+        self.report = report
+
+    def __str__(self) -> str:
+        return f"{self.message}."
+
+
+class ProofError(_ResultError):
     """A result that failed its proof: `message`, without a full stop; `report` is the ProofReport with all figures."""
 
-    exit_code: ClassVar[int] = 1
 
-    def __init__(self, message: str, report: Any = None) -> None:
-        super().__init__(message)
-        self.message = message
-        self.report = report
-
-    def __str__(self) -> str:
-        return f"{self.message}."
-
-
-class CheckError(VoronoiTilesError, ArithmeticError):
+class CheckError(_ResultError):
     """A result that failed its cross-check: `message`, without a full stop; `report` is the CheckReport."""
 
-    exit_code: ClassVar[int] = 1
 
-    def __init__(self, message: str, report: Any = None) -> None:
-        super().__init__(message)
-        self.message = message
-        self.report = report
-
-    def __str__(self) -> str:
-        return f"{self.message}."
-
-
-class RenderError(VoronoiTilesError, RuntimeError):
-    """An image that could not be rendered; `message` and `remedy` are those of DesignError."""
-
-    exit_code: ClassVar[int] = 1
+class _RemediedError(VoronoiTilesError):
+    """What cannot be done; `message` and `remedy` are those of DesignError."""
 
     def __init__(self, message: str, *, remedy: str | None = None) -> None:
         super().__init__(message)
@@ -138,17 +130,18 @@ class RenderError(VoronoiTilesError, RuntimeError):
         return f"{self.message}. {self.remedy}" if self.remedy else f"{self.message}."
 
 
-class OutputError(VoronoiTilesError, OSError):
+class RenderError(_RemediedError, RuntimeError):
+    """An image that could not be rendered; `message` and `remedy` are those of DesignError."""
+
+    exit_code: ClassVar[int] = 1
+
+
+class OutputError(_RemediedError, OSError):
     """A file that could not be written; `path` is the file, which is as it was before.
 
     `message` and `remedy` are those of DesignError.
     """
 
     def __init__(self, message: str, path: str | os.PathLike[str] | None = None, *, remedy: str | None = None) -> None:
-        super().__init__(message)
-        self.message = message
+        super().__init__(message, remedy=remedy)
         self.path = path
-        self.remedy = remedy
-
-    def __str__(self) -> str:
-        return f"{self.message}. {self.remedy}" if self.remedy else f"{self.message}."

@@ -97,8 +97,8 @@ def compare_points(subject: Subject) -> Figure:
     shift = m.astype(np.int64) * subject.period[0] + n.astype(np.int64) * subject.period[1]
     x, y = x - m * frame.width, y - n * frame.height
     mine, theirs, least = (np.full(len(points), np.inf) for _ in range(3))
-    for part, index in subject.split(x, y):
-        near = part.judge.near(x[index] - part.column, y[index] - part.row)
+    for judge, index in subject.split(x, y):
+        near = judge.near(x[index] - judge.frame.column, y[index] - judge.frame.row)
         np.minimum.at(least, index[near.point], near.distance)
         for distances, copies in ((mine, base_copy - shift), (theirs, beyond - shift)):
             hit = near.copy == copies[index[near.point]]
@@ -149,21 +149,20 @@ def _from_definition(subject: Subject, points: Complexes, distance: Floats) -> F
 def _certified(subject: Subject, owned: Owners) -> Crossings:
     """Find, in float64, where the steps between samples of different owners pass from copy to copy."""
     parts = []
-    for part in subject.parts:
+    for judge in subject.judges:
         for down in (False, True):
-            column, row, before, after = _steps(subject, owned, part.judge, part.column, part.row, down=down)
-            parts.append(part.judge.certify(column, row, np.full(len(column), down), before, after))
+            column, row, before, after = _steps(subject, owned, judge, down=down)
+            parts.append(judge.certify(column, row, np.full(len(column), down), before, after))
     return Crossings(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
 
-def _steps(
-    subject: Subject, owned: Owners, judge: Judge, x: int, y: int, *, down: bool
-) -> tuple[Ints, Ints, Codes, Codes]:
+def _steps(subject: Subject, owned: Owners, judge: Judge, *, down: bool) -> tuple[Ints, Ints, Codes, Codes]:
     """The steps of one window to the next column, or row, whose ends have different owners: place, and both codes.
 
     The step from the last column or row leads to the first one of the next cell.
     """
     frame, window = subject.frame, judge.frame
+    x, y = window.column, window.row
     rows, columns = slice(y, y + window.height), slice(x, x + window.width)
     here = owned.identity[rows, columns]
     if down:

@@ -86,8 +86,9 @@ def _settle(
     """Find the owner of samples in float64, and how much farther the copy is that the outlines claim."""
     owner = np.full(len(column), -1, np.int32)
     behind = np.full(len(column), np.inf)
-    for part, index in subject.split(column, row):
-        near = part.judge.near((column[index] - part.column).astype(float), (row[index] - part.row).astype(float))
+    for judge, index in subject.split(column, row):
+        x, y = column[index] - judge.frame.column, row[index] - judge.frame.row
+        near = judge.near(x.astype(float), y.astype(float))
         first = first_least(near.distance, near.point, len(index))
         owner[index] = np.searchsorted(codes, near.copy[first])
         claim = np.where(claimed[index] >= 0, codes[claimed[index]], -1)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,14 +28,6 @@ Codes = NDArray[np.int64]
 
 STRANGER = -1
 """Stands for a copy that does not exist: no code is negative."""
-
-
-class Part(NamedTuple):
-    """A window of the image, the column and row where it begins, and the raster stage's judge of it."""
-
-    judge: Judge
-    column: int
-    row: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,22 +89,19 @@ class Subject:
         return tuple(found)
 
     @cached_property
-    def parts(self) -> tuple[Part, ...]:
-        """The windows of the image."""
-        return tuple(
-            Part(Judge(self.pattern, window.frame, window.candidates), window.column, window.row)
-            for window in self.image.windows
-        )
+    def judges(self) -> tuple[Judge, ...]:
+        """The raster stage's judges of the image's windows; the image itself begins at column and row 0."""
+        return tuple(Judge(self.pattern, window.frame, window.candidates) for window in self.image.windows)
 
-    def split(self, column: Floats | Ints, row: Floats | Ints) -> Iterator[tuple[Part, Ints]]:
-        """Give for each window the indices of those places, in sample coordinates, that lie in it."""
-        for part in self.parts:
-            window = part.judge.frame
-            inside = (column >= part.column) & (column < part.column + window.width)
-            inside &= (row >= part.row) & (row < part.row + window.height)
+    def split(self, column: Floats | Ints, row: Floats | Ints) -> Iterator[tuple[Judge, Ints]]:
+        """Give for each window its judge, and the indices of those places, in sample coordinates, that lie in it."""
+        for judge in self.judges:
+            window = judge.frame
+            inside = (column >= window.column) & (column < window.column + window.width)
+            inside &= (row >= window.row) & (row < window.row + window.height)
             index = np.flatnonzero(inside)
             if len(index):
-                yield part, index
+                yield judge, index
 
     def relative(self, own: Codes, other: Codes) -> tuple[Ints, Codes]:
         """For pairs of copies the site of the first, and the code of the second as the first's base site sees it."""
