@@ -80,6 +80,8 @@ class Picture:
         self.grid = rectangle_frame(region, width, height)
         self.frame = rectangle_frame(region, width * self.fine, height * self.fine)
         self.provenance: Provenance = renderer.provenance()
+        self.renderers: dict[str, None] = {}
+        """Who has rendered, in turn: more than one where OpenGL has failed between two bands."""
         self.colouring: Colouring = colour(pattern)
 
     def bands(self) -> Iterator[Pixels]:
@@ -96,6 +98,7 @@ class Picture:
         frame = self.frame.window(-halo, top * fine - halo, self.width * fine + 2 * halo, rows * fine + 2 * halo)
         image = self.renderer.render(self.pattern, frame)
         self.provenance = image.provenance
+        self.renderers.setdefault(str(image.provenance))
         colours = palette(self.colouring.count)
         index = self.colouring.of(image.copies)[image.first]
         flat = colours[index]

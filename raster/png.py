@@ -75,6 +75,8 @@ class PngStream:
         self._file = file
         self._closed = False
         self._above = np.zeros(3 * width, dtype=np.uint8)
+        self.trailer: dict[str, str] = {}
+        """Texts that are known only when the picture is done: they are written after it."""
         self._compressor = zlib.compressobj(_LEVEL)
         self._compressed = bytearray()
         file.write(SIGNATURE)
@@ -129,6 +131,8 @@ class PngStream:
         self._compressed += self._compressor.flush()
         self._flush(_DATA_BYTES)
         self._flush(1)
+        for keyword, value in self.trailer.items():
+            self._chunk(*_text_chunk(keyword, value))
         self._chunk(b"IEND", b"")
 
     def _flush(self, least: int) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import itertools
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,10 +20,10 @@ from voronoi_tiles.picture import render, write_diff
 from voronoi_tiles.raster import picture as raster_picture
 from voronoi_tiles.raster.colouring import colour, neighbours, palette
 from voronoi_tiles.raster.copies import Pattern
-from voronoi_tiles.raster.frame import cell_frame, rectangle_frame
+from voronoi_tiles.raster.frame import Frame, cell_frame, rectangle_frame
 from voronoi_tiles.raster.lines import coverage, dashed
 from voronoi_tiles.raster.picture import INK, Picture, Style, default_region
-from voronoi_tiles.raster.render import Renderer
+from voronoi_tiles.raster.render import LabelImage, Renderer
 from voronoi_tiles.starters import starter_text
 
 EXAMPLES = sorted((Path(__file__).parents[1] / "examples").glob("*.toml"))
@@ -249,6 +250,27 @@ def test_what_a_picture_says_of_itself(tmp_path: Path) -> None:
     assert "float64" in str(provenance)
     (density,) = (body for kind, body in chunks if kind == b"pHYs")
     assert int.from_bytes(density[:4], "big") == 2000  # 240 pixels for 120 mm
+
+
+def test_a_picture_names_all_who_rendered_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where OpenGL fails between two bands, the picture says so, whoever began it."""
+    path = tmp_path / "bird.png"
+    seen: list[int] = []
+
+    def rendered(renderer: Renderer, pattern: Pattern, frame: Frame) -> LabelImage:
+        image = genuine(renderer, pattern, frame)
+        seen.append(frame.height)
+        return image if len(seen) > 1 else replace(image, provenance=replace(image.provenance, renderer="gl"))
+
+    genuine = Renderer.render
+    monkeypatch.setattr(Renderer, "render", rendered)
+    monkeypatch.setattr(raster_picture, "_BAND", 3000)
+    render(segment_design(), path, size=60, renderer="cpu")
+    texts = dict(body.split(b"\0", 1) for kind, body in chunks_of(path.read_bytes()) if kind == b"tEXt")
+    first, second = texts[b"Renderer"].decode().split(", then ")
+    assert first.startswith("exact on gl")
+    assert second.startswith("exact on cpu")
+    assert len(seen) > 2
 
 
 def test_the_region_grows_to_the_shape_of_the_picture(tmp_path: Path) -> None:

@@ -88,7 +88,6 @@ def render(
         "Software": f"voronoi-tiles {__version__}",
         "Title": f"{design.name} ({design.group.name})",
         "Source": design.source,
-        "Renderer": str(picture.provenance),
     }
     per_metre = width / ((region[2] - region[0]) * design.unit_mm / 1000)
     with (
@@ -99,6 +98,7 @@ def render(
             png.write(band)
             if progress is not None:
                 progress(png.rows, height)
+        png.trailer["Renderer"] = ", then ".join(picture.renderers)
     return picture.provenance
 
 
