@@ -19,7 +19,7 @@ PIP := -m pip install --quiet --disable-pip-version-check
 INSTALLED := $(VENV)/.installed
 INSTALLED_DEV := $(VENV)/.installed-dev
 INSTALLED_TYPES := $(TYPES_VENV)/.installed
-SOURCES := $(wildcard voronoi_tiles/*.py voronoi_tiles/*/*.py vector/*.py raster/*.py raster/*.glsl)
+SOURCES := $(wildcard voronoi_tiles/*.py voronoi_tiles/*/*.py vector/*.py vector/*/*.py raster/*.py raster/*.glsl voronoi_tiles/*.toml)
 EXAMPLES := $(wildcard examples/*.toml)
 
 help:
@@ -40,8 +40,11 @@ demo: $(INSTALLED)
 	for design in $(EXAMPLES); do \
 	    $(VENV)/bin/voronoi-tiles render $$design -o $(DEMO)/$$(basename $$design .toml).png --size 800 --quiet || exit 1; \
 	done
+	$(VENV)/bin/voronoi-tiles export examples/art/swallow.toml -o $(DEMO)/sheet.svg --sheet 300x200mm --margin 5mm --fit clip
+	$(VENV)/bin/voronoi-tiles export examples/p3-puzzle.toml -o $(DEMO)/sheet.dxf --sheet 300x200mm --margin 5mm --kerf 0.15mm
+	$(VENV)/bin/voronoi-tiles coupon -o $(DEMO)/coupon.svg --thickness 3mm
 	@echo "The tiles are in $(abspath $(DEMO)): open the .svg files in a browser, Inkscape or your cutter's software."
-	@echo "The .png files beside them show how their copies fill the plane."
+	@echo "The .png files beside them show how their copies fill the plane; sheet.svg and sheet.dxf are sheets of them."
 
 test: $(INSTALLED_DEV)
 	$(VENV)/bin/python -m pytest $(PYTEST)
@@ -73,6 +76,7 @@ types: $(INSTALLED_TYPES)
 bench: $(INSTALLED_DEV)
 	$(VENV)/bin/python bench/engine.py
 	$(VENV)/bin/python bench/raster.py
+	$(VENV)/bin/python bench/sheets.py
 
 fuzz: $(INSTALLED_DEV)
 	$(VENV)/bin/python tests/fuzz.py $(N)

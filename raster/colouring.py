@@ -1,14 +1,10 @@
-"""A proper colouring of all copies, the same in every translate of some larger cell: no two neighbours are alike."""
+"""A proper colouring of all copies; neighbours are those whose tiles share an edge, or nearly meet, by distances."""
 
 from __future__ import annotations
 
-import colorsys
-from dataclasses import dataclass
-from typing import NamedTuple
-
 import numpy as np
-from numpy.typing import NDArray
 
+from voronoi_tiles.colouring import Colouring, colour_pairs
 from voronoi_tiles.raster.candidates import find_candidates
 from voronoi_tiles.raster.copies import Ints, Pattern, gather
 from voronoi_tiles.raster.frame import BLOCK, cell_frame
@@ -16,83 +12,11 @@ from voronoi_tiles.raster.frame import BLOCK, cell_frame
 _SAMPLES = 64 * BLOCK
 """Samples along the cell in whose blocks neighbours are looked for."""
 
-_SQUARES = tuple(sorted(((m, n) for m in range(1, 5) for n in range(1, 5)), key=lambda p: (p[0] * p[1], p)))
-_ENOUGH = 4
-"""Colours that are worth a larger period; what four colours do not suffice for takes more."""
-
-_STEPS = 3_000
-"""Most decisions of one search for a colouring; a count."""
-
-_SEARCHED = 500
-"""Most copies in a period for which the fewest colours are searched; a count. Larger ones are coloured in one go."""
-
-
-class Period(NamedTuple):
-    """A lattice of translations: copies (i, j) and (k, l) are the same where rows (i - k, j - l)^T is 0 modulo m, n."""
-
-    rows: tuple[tuple[int, int], tuple[int, int]]
-    m: int
-    n: int
-
-    def place(self, i: Ints, j: Ints) -> tuple[Ints, Ints]:
-        """The place of copies in the period."""
-        (a, b), (c, d) = self.rows
-        return (a * i + b * j) % self.m, (c * i + d * j) % self.n
-
-
-@dataclass(frozen=True, eq=False)
-class Colouring:
-    """`colour` intp (placements, m, n): copy (placement, i, j) has the colour at its place in the period."""
-
-    period: Period
-    colour: Ints
-
-    @property
-    def count(self) -> int:
-        """How many colours there are."""
-        return int(self.colour.max()) + 1
-
-    def of(self, copies: Ints) -> Ints:
-        """The colours of copies, rows (placement, i, j)."""
-        return np.asarray(self.colour[(copies[:, 0], *self.period.place(copies[:, 1], copies[:, 2]))])
-
 
 def colour(pattern: Pattern) -> Colouring:
-    """Colour the tiles: those that share an edge, or nearly meet, differ.
-
-    Of periods of up to 4 x 4 cells the smallest is taken in which four colours suffice, else the one with the fewest;
-    where a tile meets its own translates in all of them, as long sites and narrow cells make it, a larger one.
-    """
+    """Colour the tiles: those that share an edge, or nearly meet, differ."""
     pairs, crowd = neighbours(pattern)
-    best: Colouring | None = None
-    for m, n in _SQUARES:
-        period = Period(((1, 0), (0, 1)), m, n)
-        found = _colour_quotient(pairs, len(pattern.placements), period, crowd)
-        if found is not None and (best is None or found.max() < best.colour.max()):
-            best = Colouring(period, found)
-        if best is not None and best.colour.max() < max(_ENOUGH, crowd):
-            break
-    if best is None:
-        period = _large_period(pairs)
-        found = _colour_quotient(pairs, len(pattern.placements), period, crowd)
-        assert found is not None
-        best = Colouring(period, found)
-    return best
-
-
-def _large_period(pairs: Ints) -> Period:
-    """The smallest cyclic period i + b j (or b i + j) modulo m in which no tile meets its own translate."""
-    own = pairs[pairs[:, 0] == pairs[:, 1], 2:]
-    for m in range(2, 2 * len(own) + 3):
-        for number, swapped in enumerate((own, own[:, ::-1])):
-            meets = (swapped[:, 0] + np.arange(m)[:, None] * swapped[:, 1]) % m == 0
-            free = np.flatnonzero(~meets.any(axis=1))
-            if len(free):
-                b = int(free[0])
-                return Period(((1, b) if number == 0 else (b, 1), (0, 0)), m, 1)
-    # One copy of each in a box that is wider than any step: always right, if large.
-    across, up = np.abs(own).max(axis=0).tolist()
-    return Period(((1, 0), (0, 1)), across + 1, up + 1)
+    return colour_pairs(pairs, len(pattern.placements), least=crowd)
 
 
 def neighbours(pattern: Pattern) -> tuple[Ints, int]:
@@ -122,93 +46,3 @@ def neighbours(pattern: Pattern) -> tuple[Ints, int]:
     first, second = scene.copies[pairs[:, 0]], scene.copies[pairs[:, 1]]
     rows = np.concatenate((first[:, :1], second[:, :1], second[:, 1:] - first[:, 1:]), axis=1)
     return np.unique(rows, axis=0), crowd
-
-
-def _colour_quotient(pairs: Ints, placements: int, period: Period, least: int) -> Ints | None:
-    """Colour the copies in a period that goes on for ever; None where a tile meets its own translate."""
-    m, n = period.m, period.n
-    s, t = (part.ravel() for part in np.meshgrid(np.arange(m), np.arange(n), indexing="ij"))
-    step_s, step_t = period.place(pairs[:, 2], pairs[:, 3])
-    here = ((pairs[:, 0] * m + s[:, None]) * n + t[:, None]).ravel()
-    there = ((pairs[:, 1] * m + (s[:, None] + step_s) % m) * n + (t[:, None] + step_t) % n).ravel()
-    if (here == there).any():
-        return None
-    count = placements * m * n
-    if count > _SEARCHED:
-        return _colour_greedily(here, there, count).reshape(placements, m, n)
-    beside = np.zeros((count, count), bool)
-    beside[here, there] = beside[there, here] = True
-    for colours in range(min(least, count), count + 1):
-        found = _colour_graph(beside, colours)
-        if found is not None:
-            return found.reshape(placements, m, n)
-    return None
-
-
-def _colour_greedily(here: Ints, there: Ints, count: int) -> Ints:
-    """Give each node in turn the first colour that none of its neighbours has."""
-    order = np.argsort(np.concatenate((here, there)), kind="stable")
-    other = np.concatenate((there, here))[order]
-    start = np.searchsorted(np.concatenate((here, there))[order], np.arange(count + 1))
-    colour = np.full(count, -1, np.intp)
-    for node in range(count):
-        taken = set(colour[other[start[node] : start[node + 1]]].tolist())
-        colour[node] = next(c for c in range(count) if c not in taken)
-    return colour
-
-
-def _colour_graph(beside: NDArray[np.bool_], colours: int) -> Ints | None:
-    """Colour a graph with at most so many colours; None where there is no such colouring, or it takes too long.
-
-    Depth first, the node with the fewest colours left next, of these the one with the most neighbours (Brelaz 1979).
-    """
-    count = len(beside)
-    degree = beside.sum(axis=1)
-    colour = np.full(count, -1, np.intp)
-    blocked = np.zeros((count, colours), np.intp)  # how many coloured neighbours have each colour
-    order: list[tuple[int, int]] = []
-    steps = 0
-    start = 0
-    while len(order) < count:
-        open_nodes = np.flatnonzero(colour < 0)
-        taken = (blocked[open_nodes] > 0).sum(axis=1)
-        node = int(open_nodes[np.lexsort((-degree[open_nodes], -taken))[0]])
-        used = int(colour.max()) + 1
-        free = [c for c in range(start, min(used + 1, colours)) if not blocked[node, c]]
-        steps += 1
-        if steps > _STEPS:
-            return None
-        if free:
-            colour[node] = free[0]
-            blocked[beside[node], free[0]] += 1
-            order.append((node, free[0]))
-            start = 0
-            continue
-        if not order:
-            return None
-        node, last = order.pop()
-        colour[node] = -1
-        blocked[beside[node], last] -= 1
-        start = last + 1
-    return colour
-
-
-# Hue, saturation, value: told apart at a glance, next to each other in any order, and in print.
-_PALETTE = (
-    (0.55, 0.42, 0.86),
-    (0.11, 0.38, 0.98),
-    (0.02, 0.52, 0.90),
-    (0.40, 0.32, 0.80),
-    (0.76, 0.30, 0.86),
-    (0.15, 0.62, 0.95),
-    (0.63, 0.52, 0.66),
-    (0.93, 0.30, 0.95),
-)
-
-
-def palette(count: int) -> NDArray[np.uint8]:
-    """So many colours, different from each other: uint8 (count, 3), red, green, blue."""
-    # By the golden ratio no two hues are alike, whatever their number.
-    more = [(k * 0.6180339887 % 1.0, 0.35 + 0.15 * (k % 3), 0.75 + 0.2 * (k % 2)) for k in range(len(_PALETTE), count)]
-    rows = [*_PALETTE[:count], *more]
-    return np.array([[round(255 * part) for part in colorsys.hsv_to_rgb(*row)] for row in rows], np.uint8)

@@ -14,7 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from voronoi_tiles.raster.colouring import Colouring, colour, palette
+from voronoi_tiles.colouring import Colouring, palette
+from voronoi_tiles.raster.colouring import colour
 from voronoi_tiles.raster.copies import Pattern
 from voronoi_tiles.raster.frame import Complexes, rectangle_frame
 from voronoi_tiles.raster.lines import coverage

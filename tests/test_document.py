@@ -7,8 +7,8 @@ import math
 
 import numpy as np
 
-from voronoi_tiles.vector.document import document_text, outline_document, tile_record
 from voronoi_tiles.vector.outline import Outline
+from voronoi_tiles.vector.writers.document import document_text, outline_document, tile_record
 from voronoi_tiles.wallpaper import GROUPS, Operation
 
 ELEMENTS = np.array([[1.0, 2.0, 3.0, 4.5], [5.0, 5.0, 5.0, 5.0]])

@@ -14,7 +14,11 @@ STAGES = ("vector", "raster")
 PIPELINE = "voronoi_tiles.tiling"
 
 # All other modules of voronoi_tiles are vocabulary: a new one has to keep to its rules.
-ABOVE_THE_STAGES = {"__init__", "__main__", "cli", "files", "picture", "starters", "tables", "tiling"}
+ABOVE_THE_STAGES = {"__init__", "__main__", "cli", "coupon", "files", "lettering", "marks", "picture"} | {
+    "starters",
+    "tables",
+    "tiling",
+}
 VOCABULARY = {path.stem for path in (ROOT / "voronoi_tiles").glob("*.py")} - ABOVE_THE_STAGES
 
 # Design.tessellate() is a convenience of the pipeline's; its result needs a type.

@@ -16,9 +16,10 @@ from strategies import Dice, make_design
 from test_png import chunks_of, decoded
 
 import voronoi_tiles as vt
+from voronoi_tiles.colouring import palette
 from voronoi_tiles.picture import render, write_diff
 from voronoi_tiles.raster import picture as raster_picture
-from voronoi_tiles.raster.colouring import colour, neighbours, palette
+from voronoi_tiles.raster.colouring import colour, neighbours
 from voronoi_tiles.raster.copies import Pattern
 from voronoi_tiles.raster.frame import Frame, cell_frame, rectangle_frame
 from voronoi_tiles.raster.lines import coverage, dashed

@@ -12,7 +12,7 @@ from conftest import RIGHT
 
 from voronoi_tiles.vector.arcs import LineArc, ParabolaArc
 from voronoi_tiles.vector.outline import Outline
-from voronoi_tiles.vector.svg import cut_file, decimal_text, page_length, path_data, preview
+from voronoi_tiles.vector.writers.svg import cut_file, decimal_text, page_length, path_data, preview
 from voronoi_tiles.wallpaper import Isometry
 
 SVG = "{http://www.w3.org/2000/svg}"

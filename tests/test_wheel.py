@@ -20,7 +20,7 @@ def expected() -> set[str]:
         f"{home}/{path.relative_to(ROOT / folder).as_posix()}"
         for folder, home in HOMES.items()
         for path in (ROOT / folder).rglob("*")
-        if path.suffix in {".py", ".glsl"} or path.name == "py.typed"
+        if path.suffix in {".py", ".glsl", ".toml"} or path.name == "py.typed"
     }
 
 

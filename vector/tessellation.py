@@ -55,12 +55,13 @@ class TileRecord:
         name: of its site.
         outline: of the tile of the base site.
         symmetry: the operations that map the site onto itself, the identity first.
+        tessellation: that it belongs to.
     """
 
     name: str
     outline: Outline
     symmetry: tuple[Operation, ...]
-    _tessellation: Tessellation
+    tessellation: Tessellation
     _index: int
 
     def copy(self, operation: Operation) -> Outline:
@@ -70,19 +71,19 @@ class TileRecord:
         has no such operation.
         """
         motion = to_motion(operation)
-        action = self._tessellation.action
+        action = self.tessellation.action
         if modulo_lattice(motion) not in action.motions:
             raise ValueError(f"{operation} is no operation of the group {action.group.name}")
-        return self._tessellation.outline(self._index, motion)
+        return self.tessellation.outline(self._index, motion)
 
     def refuse_touching(self) -> None:
         """Raise TouchingCopiesError if any copies touch."""
-        tessellation = self._tessellation
+        tessellation = self.tessellation
         refuse_touching(tessellation.action, tessellation.names, tessellation.placed)
 
     def local(self) -> LocalTile:
         """Return the tile of the site moved by the lattice to near the origin, where rounding is least."""
-        return LocalTile(self.name, self._tessellation, self._index)
+        return LocalTile(self.name, self.tessellation, self._index)
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,7 +186,7 @@ def tessellate(
             symmetry=tuple(
                 to_operation(compose(compose(translation(p, 1), m), translation(p, -1))) for m in p.stabilizer
             ),
-            _tessellation=tessellation,
+            tessellation=tessellation,
             _index=tile,
         )
         for tile, (name, p) in enumerate(zip(names, placed, strict=True))

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
         TouchingCopiesError,
         VoronoiTilesError,
     )
+    from voronoi_tiles.fabrication import Job, JobError, Product
     from voronoi_tiles.picture import render
     from voronoi_tiles.site import Site
     from voronoi_tiles.tiling import Tile, Tiling
@@ -37,6 +38,8 @@ __all__ = [
     "Design",
     "DesignError",
     "Isometry",
+    "Job",
+    "JobError",
     "Lattice",
     "LineArc",
     "Neighbour",
@@ -44,6 +47,7 @@ __all__ = [
     "Outline",
     "OutputError",
     "ParabolaArc",
+    "Product",
     "ProofError",
     "RenderError",
     "Site",
@@ -68,6 +72,7 @@ _HOMES = {
         "TouchingCopiesError",
         "VoronoiTilesError",
     ),
+    "voronoi_tiles.fabrication": ("Job", "JobError", "Product"),
     "voronoi_tiles.picture": ("render",),
     "voronoi_tiles.site": ("Site",),
     "voronoi_tiles.tiling": ("Tile", "Tiling"),

@@ -10,8 +10,8 @@ import json
 import math
 import os
 import sys
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, cast
 
@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from voronoi_tiles import reading
 from voronoi_tiles.errors import DesignError
 from voronoi_tiles.site import Site, build_site
-from voronoi_tiles.strokes import polylines
+from voronoi_tiles.strokes import Placement, polylines
 from voronoi_tiles.svgpath import ARC_SHARE
 from voronoi_tiles.tolerance import (
     ANGLE_MIN,
@@ -49,12 +49,25 @@ _FULL_SYMBOLS |= {"p2gg": "pgg", "c2mm": "cmm", "p4mm": "p4m", "p4gm": "p4g", "p
 _STARTER = 'Run "voronoi-tiles new p4" for a design to start from.'
 
 
+@dataclass(frozen=True)
+class Art:
+    """A drawing that belongs to a site: its strokes are engraved or scored on every copy of the tile.
+
+    `file` is its path as written in the design; `placement` moves it, after its lower left corner has been laid
+    on the design's origin and its millimetres have become the design's units.
+    """
+
+    file: str
+    placement: Placement
+
+
 @dataclass(frozen=True, eq=False)
 class Design:
     """A design that has been read and checked.
 
     Lengths are in `units`; `source` is the design as canonical JSON (ASCII, sorted keys), which `loads` reads
-    again; `name` is the stem of the file it came from, or "design".
+    again; `name` is the stem of the file it came from, or "design". `art` has an entry for each site, None where it has
+    none; files are looked for in `folder`, that of the design.
     """
 
     group: WallpaperGroup
@@ -62,7 +75,9 @@ class Design:
     units: Units
     sites: tuple[Site, ...]
     source: str
+    art: tuple[Art | None, ...] = ()
     name: str = "design"
+    folder: str = ""
 
     def __repr__(self) -> str:
         sites = ", ".join(site.name for site in self.sites[:3]) + (", ..." if len(self.sites) > 3 else "")
@@ -85,7 +100,10 @@ class Design:
         suffix = Path(file).suffix.lower()
         if suffix not in (".toml", ".json"):
             suffix = ".json" if text.lstrip()[:1] == "{" else ".toml"
-        return cls.loads(text, format=suffix[1:], file=shown, name="design" if file == "-" else Path(file).stem)
+        if file == "-":
+            return cls.loads(text, format=suffix[1:], file=shown)
+        design = cls.loads(text, format=suffix[1:], file=shown, name=Path(file).stem)
+        return replace(design, folder=str(Path(file).parent))
 
     @classmethod
     def loads(
@@ -220,7 +238,7 @@ def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 # --- the design ---------------------------------------------------------------------------------------------
 
-_Parts = tuple[WallpaperGroup, Lattice, Units, tuple[Site, ...], str]
+_Parts = tuple[WallpaperGroup, Lattice, Units, tuple[Site, ...], str, tuple[Art | None, ...]]
 
 
 def _read_design(value: object) -> _Parts:
@@ -235,8 +253,9 @@ def _read_design(value: object) -> _Parts:
         lattice = _read_cell(cell, group)
     listed = reading.required(table, "site", "Write [[site]] and, below it, its strokes.")
     sites = _read_sites(listed, FLATTENING_MM / UNIT_MM[units], lattice)
+    art = _read_art(listed)
     source = json.dumps(_canonical(table), sort_keys=True, separators=(",", ":"), allow_nan=False)
-    return group, lattice, units, sites, source
+    return group, lattice, units, sites, source, art
 
 
 def _read_units(value: object) -> Units:
@@ -319,13 +338,39 @@ def _read_sites(value: object, accuracy: float, lattice: Lattice) -> tuple[Site,
     sites = []
     for k, item in enumerate(listed):
         with reading.within(f"site[{k}]"):
-            table = reading.table(item, ("name", "tolerance", "strokes"), remedy)
+            table = reading.table(item, ("name", "tolerance", "strokes", "art"), remedy)
             name = table.get("name", f"site{k + 1}")
             with reading.within("name"):
                 _check_name(name, taken)
             taken[name] = k
             sites.append(_read_site(table, name, accuracy, lattice))
     return tuple(sites)
+
+
+def _read_art(listed: Sequence[Any]) -> tuple[Art | None, ...]:
+    """The art of sites that have been read."""
+    result: list[Art | None] = []
+    for k, item in enumerate(listed):
+        if "art" not in item:
+            result.append(None)
+            continue
+        with reading.within(f"site[{k}]"), reading.within("art"):
+            result.append(_one_art(item["art"]))
+    return tuple(result)
+
+
+def _one_art(value: object) -> Art:
+    remedy = 'Write art = "face.svg", or art = { file = "face.svg", translate = [5, 3] }.'
+    if isinstance(value, str):
+        value = {"file": value}
+    if not isinstance(value, Mapping):
+        raise DesignError(f"must be a file's name or a table, not {reading.shown(value)}", remedy=remedy)
+    table = reading.table(value, ("file", *reading.PLACEMENT), remedy)
+    file = reading.required(table, "file", remedy)
+    with reading.within("file"):
+        if not isinstance(file, str) or not file or "\0" in file:
+            raise DesignError(f"must be a file's name, not {reading.shown(file)}", remedy=remedy)
+    return Art(file, reading.placement(table))
 
 
 def _check_name(name: object, taken: Mapping[str, int]) -> None:

@@ -246,8 +246,8 @@ _KINDS: dict[str, tuple[Callable[[_Stroke], Complexes], tuple[str, ...], bool]] 
     "circle": (_circle, ("radius",), False),
     "path": (_path, (), True),
 }
-_PLACEMENT = ("scale", "rotate", "translate")
-_KEYS = tuple(dict.fromkeys([*_KINDS, *(name for row in _KINDS.values() for name in row[1]), *_PLACEMENT]))
+PLACEMENT = ("scale", "rotate", "translate")
+_KEYS = tuple(dict.fromkeys([*_KINDS, *(name for row in _KINDS.values() for name in row[1]), *PLACEMENT]))
 _EXAMPLE = "Write a stroke such as { segment = [[5, 3], [25, 11]] }."
 
 
@@ -265,13 +265,13 @@ def stroke(value: object, accuracy: float) -> tuple[Complexes, bool]:
     kind = kinds[0]
     read, options, curved = _KINDS[kind]
     for name in of:
-        if name not in (kind, *options, *_PLACEMENT):
+        if name not in (kind, *options, *PLACEMENT):
             raise DesignError(
                 f"does not go with {kind}",
                 key=name,
-                remedy=f"Leave it out; beside {kind} stand {', '.join((*options, *_PLACEMENT))}.",
+                remedy=f"Leave it out; beside {kind} stand {', '.join((*options, *PLACEMENT))}.",
             )
-    placed = read(_Stroke(of, accuracy, _placement(of)))
+    placed = read(_Stroke(of, accuracy, placement(of)))
     if not (np.abs(placed.real).max() <= COORDINATE_MAX and np.abs(placed.imag).max() <= COORDINATE_MAX):
         raise DesignError(
             f"the stroke reaches beyond {COORDINATE_MAX:g}", remedy="Draw it smaller, or nearer to the origin."
@@ -283,7 +283,8 @@ def stroke(value: object, accuracy: float) -> tuple[Complexes, bool]:
     return placed, curved
 
 
-def _placement(of: Table) -> curves.Placement:
+def placement(of: Table) -> curves.Placement:
+    """Read `scale`, `rotate` and `translate`, those that are there."""
     scale, rotate, translate = 1.0, 0.0, 0j
     if "scale" in of:
         with within("scale"):

@@ -60,6 +60,58 @@ def info_text(figures: dict[str, Any]) -> str:
     return page.text()
 
 
+def report_text(figures: dict[str, Any]) -> str:
+    """Write the figures of a job (fabrication.report_figures) as tables."""
+    page = _Page()
+    sheet, use, cut, pieces = figures["page"], figures["use"], figures["cut"], figures["pieces"]
+    accuracy = "" if figures["curves"] == "exact" else f", within {figures['accuracy']:g} mm"
+    page.head(
+        {
+            "design": f"{printable(figures['design'])}, {figures['group']}",
+            "page": f"{sheet['width']:.6g} x {sheet['height']:.6g} mm, {use['share']:.1%} of it tiles, "
+            f"{use['whole_share']:.1%} whole ones",
+            "pieces": f"{pieces['count']:,}, {pieces['whole']:,} of them whole tiles, "
+            f"{pieces['turned_over']:,} turned over",
+            "colours": f"{figures['colours']} suffice for the whole tessellation",
+            "cut": f"{cut['length'] / 1000:.3f} m, {cut['pierces']:,} pierces, {cut['travel'] / 1000:.3f} m of travel",
+            "curves": f"{figures['curves']}{accuracy}; the shortest piece is {figures['shortest_piece']:.3g} mm",
+            "time": f"{figures['time'] / 60:.1f} min, acceleration not counted",
+        }
+    )
+    page.table(
+        "Pieces",
+        ["site", "turned over", "whole", ">colour", ">count"],
+        [
+            (
+                row["site"],
+                "yes" if row["turned_over"] else "no",
+                "yes" if row["whole"] else "no",
+                "-" if row["colour"] is None else row["colour"],
+                f"{row['count']:,}",
+            )
+            for row in pieces["kinds"]
+        ],
+    )
+    page.table(
+        "Layers in the order of work",
+        ["layer", "work", "colour", ">paths", ">closed", ">length m", ">travel m", ">minutes"],
+        [
+            (
+                row["name"],
+                row["work"],
+                row["colour"],
+                f"{row['paths']:,}",
+                f"{row['closed']:,}",
+                f"{row['length'] / 1000:.3f}",
+                f"{row['travel'] / 1000:.3f}",
+                f"{row['time'] / 60:.1f}",
+            )
+            for row in figures["layers"]
+        ],
+    )
+    return page.text()
+
+
 def check_text(document: dict[str, Any]) -> str:
     """Write what `check --json` prints as tables."""
     page = _Page()

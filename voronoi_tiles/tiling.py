@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -12,7 +12,7 @@ import numpy as np
 
 from voronoi_tiles import __version__
 from voronoi_tiles.errors import CheckError, OutputError, ProofError
-from voronoi_tiles.files import write_whole
+from voronoi_tiles.files import write_whole, writing
 from voronoi_tiles.site import Site
 
 if TYPE_CHECKING:
@@ -20,12 +20,13 @@ if TYPE_CHECKING:
 
     from voronoi_tiles.crosscheck import CheckReport
     from voronoi_tiles.design import Design
+    from voronoi_tiles.fabrication import Job, Product
     from voronoi_tiles.vector.outline import Outline
     from voronoi_tiles.vector.proof import ProofReport
-    from voronoi_tiles.vector.tessellation import TileRecord
+    from voronoi_tiles.vector.tessellation import Tessellation, TileRecord
     from voronoi_tiles.wallpaper import Operation
 
-FORMATS = ("svg", "json")
+FORMATS = ("svg", "json", "dxf", "pdf", "lbrn2")
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,13 +69,13 @@ class Tile:
 
     def svg_path(self) -> str:
         """Write the outline as exact SVG path data in units about the design's origin, y turned to run down."""
-        from voronoi_tiles.vector.svg import path_data
+        from voronoi_tiles.vector.writers.svg import path_data
 
         return path_data(self.outline)
 
     def _repr_svg_(self) -> str:
         """Draw the tile and its site: notebooks show this."""
-        from voronoi_tiles.vector.svg import preview
+        from voronoi_tiles.vector.writers.svg import preview
 
         return preview(self.outline, self.site.elements)
 
@@ -89,6 +90,11 @@ class Tiling:
 
     def __repr__(self) -> str:
         return f"<Tiling {self.design.name!r}: {self.design.group.name}, {len(self.tiles)} tiles>"
+
+    @property
+    def tessellation(self) -> Tessellation:
+        """All tiles in terms of exact motions: what sheets are made from."""
+        return self.tiles[0]._record.tessellation  # noqa: SLF001 - the tiling owns its tiles
 
     def figures(self) -> dict[str, Any]:
         """Give what there is to know about the tiles in numbers, as `voronoi-tiles info --json` prints it."""
@@ -146,7 +152,7 @@ class Tiling:
 
         With a cross-check's report a last key, "evidence", holds what was proved and checked.
         """
-        from voronoi_tiles.vector.document import outline_document, tile_record
+        from voronoi_tiles.vector.writers.document import outline_document, tile_record
 
         document = outline_document(
             self.design.units,
@@ -161,7 +167,7 @@ class Tiling:
 
     def json(self, check: CheckReport | None = None) -> str:
         """Write the outline document as JSON text, floats with 17 significant digits."""
-        from voronoi_tiles.vector.document import document_text
+        from voronoi_tiles.vector.writers.document import document_text
 
         return document_text(self.document(check))
 
@@ -170,7 +176,7 @@ class Tiling:
 
         With a cross-check's report the metadata hold what was proved and checked.
         """
-        from voronoi_tiles.vector.svg import cut_file
+        from voronoi_tiles.vector.writers.svg import cut_file
 
         return cut_file(
             [(tile.site.name, tile.outline) for tile in self.tiles],
@@ -181,24 +187,72 @@ class Tiling:
         )
 
     def text(self, file_format: str, check: CheckReport | None = None) -> str:
-        """Write the file of one of `FORMATS`. Raises ValueError for another."""
+        """Give the exact tiles as a text, "svg" or "json". Raises ValueError for another format."""
         match file_format:
             case "svg":
                 return self.svg(check)
             case "json":
                 return self.json(check)
             case _:
-                raise ValueError(f"unknown format {file_format!r}: use one of {', '.join(FORMATS)}")
+                raise ValueError(f"unknown format {file_format!r}: use svg or json")
 
-    def export(self, path: str | os.PathLike[str], *, check: CheckReport | None = None) -> None:
-        """Write a file whole or not at all, its format by its suffix (.svg, .json).
+    def make(self, job: Job, file_format: str = "svg") -> Product:
+        """Make the drawing of a job for a format of files ("svg", "dxf", "pdf", "lbrn2").
 
-        A cross-check's report goes into the file. Raises OutputError where the suffix is another, or the file cannot be
-        written, and CheckError, before anything is written, where the report has failures.
+        Raises JobError where the job cannot be done.
         """
+        from voronoi_tiles.fabrication import make
+
+        return make(self, job, file_format)
+
+    def write(
+        self, path: str | os.PathLike[str], file_format: str, *, job: Job | None, check: CheckReport | None = None
+    ) -> tuple[str, ...]:
+        """Write a file whole or not at all; what was lost to kerf or fillet is returned in sentences.
+
+        Without a job SVG and JSON hold the exact tiles where they lie in the plane. Raises JobError for a job that
+        cannot be done, or that comes with JSON.
+        """
+        from voronoi_tiles.fabrication import Job, JobError
+
         if check is not None:
             require(check)
-        write_whole(path, self.text(format_of(path), check).encode())
+        drawn = any(art is not None for art in self.design.art)
+        if job is None and (file_format == "json" or (file_format == "svg" and not drawn)):
+            write_whole(path, self.text(file_format, check).encode())
+            return ()
+        if file_format == "json":
+            raise JobError(
+                "a JSON document holds the exact outlines of one of each tile, and no sheet",
+                remedy="Write svg, dxf, pdf or lbrn2, or leave the other options out.",
+            )
+        product = self.make(job or Job(), file_format)
+        if check is not None:
+            product = product.with_evidence(self.evidence(check))
+        with writing(path) as file:
+            product.write(file)
+        return product.notes
+
+    def export(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        edges: Literal["once", "pieces"] | None = None,
+        job: Job | None = None,
+        check: CheckReport | None = None,
+    ) -> None:
+        """Write a file whole or not at all, its format by its suffix (.svg, .dxf, .pdf, .lbrn2, .json).
+
+        `job` says what is to be made of the tiles (sheet, kerf, ...), `edges` is a short way to a job that says only
+        this. A cross-check's report goes into the file. Raises OutputError where the suffix is another, or the file
+        cannot be written, JobError for a job that cannot be done, and CheckError, before anything is written, where the
+        report has failures.
+        """
+        from voronoi_tiles.fabrication import Job
+
+        if edges is not None:
+            job = Job(edges=edges) if job is None else replace(job, edges=edges)
+        self.write(path, format_of(path), job=job, check=check)
 
 
 def _tile_figures(tile: Tile) -> dict[str, Any]:

@@ -85,11 +85,11 @@ def cut_file(
     left, bottom = min(box[0] for box in bounds), min(box[1] for box in bounds)
     right, top = max(box[2] for box in bounds), max(box[3] for box in bounds)
     width, height = page_length((right - left) * unit_mm), page_length((top - bottom) * unit_mm)
-    drawing = _drawing(f"{width}mm", f"{height}mm", f"0 0 {width} {height}")
+    drawing = new_document(f"{width}mm", f"{height}mm", f"0 0 {width} {height}")
     drawing.attribs["xmlns:inkscape"] = INKSCAPE_NAMESPACE
     drawing.attribs["xmlns:vt"] = RECIPE_NAMESPACE
     recipe = ET.Element("vt:recipe", {"program": "voronoi-tiles", "version": version})
-    recipe.text = _xml_text(design)
+    recipe.text = xml_text(design)
     drawing.set_metadata(recipe)
     if evidence is not None:
         drawing.set_metadata(_evidence(evidence))
@@ -99,7 +99,7 @@ def cut_file(
     for number, (name, outline) in enumerate(tiles, start=1):
         data = path_data(outline, origin=complex(left, top), scale=unit_mm)
         path = layer.add(drawing.path(d=data, id=f"tile{number}"))
-        path.attribs["inkscape:label"] = _xml_text(name)
+        path.attribs["inkscape:label"] = xml_text(name)
     return _xml(drawing)
 
 
@@ -111,7 +111,7 @@ def preview(outline: Outline, elements: NDArray[np.float64]) -> str:
     corner = complex(low_x - margin, high_y + margin)
     width = page_length((high_x - low_x + 2 * margin) * scale)
     height = page_length((high_y - low_y + 2 * margin) * scale)
-    drawing = _drawing(width, height, f"0 0 {width} {height}")
+    drawing = new_document(width, height, f"0 0 {width} {height}")
     tile = path_data(outline, origin=corner, scale=scale)
     drawing.add(drawing.path(d=tile, fill="#f3ead8", stroke="#000000", stroke_width=1))
     site = " ".join(_strokes(elements, corner, scale))
@@ -149,7 +149,7 @@ def _attributes(facts: Mapping[str, Any]) -> dict[str, str]:
         for key, value in facts.items()
         if value is not None
     }
-    return {key: _xml_text(text) for key, text in texts.items()}
+    return {key: xml_text(text) for key, text in texts.items()}
 
 
 def _strokes(elements: NDArray[np.float64], origin: complex, scale: float) -> Iterable[str]:
@@ -162,7 +162,7 @@ def _strokes(elements: NDArray[np.float64], origin: complex, scale: float) -> It
         yield f"M {a} L {b}"
 
 
-def _drawing(width: str, height: str, view_box: str) -> Drawing:
+def new_document(width: str, height: str, view_box: str) -> Drawing:
     """Start an SVG document."""
     from svgwrite import Drawing
 
@@ -177,6 +177,6 @@ def _xml(drawing: Drawing) -> str:
     return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
 
 
-def _xml_text(text: str) -> str:
+def xml_text(text: str) -> str:
     """Replace the characters that XML 1.0 cannot carry."""
     return _NOT_XML.sub("\ufffd", text)

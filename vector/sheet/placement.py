@@ -1,0 +1,128 @@
+"""Which tiles lie on a sheet."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from voronoi_tiles.vector.curves.intersections import candidate_pairs, crossings
+from voronoi_tiles.vector.curves.paths import Bools, Floats, Ints, Paths
+from voronoi_tiles.vector.curves.pieces import boxes, point_at
+from voronoi_tiles.vector.curves.winding import item_winding
+from voronoi_tiles.vector.sheet.period import Period
+from voronoi_tiles.vector.sheet.region import Region, beside_border
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """Tiles that have something of a region: tile of the period, its lattice vector (n x 2), and whether it has all."""
+
+    tile: Ints
+    step: Ints
+    whole: Bools
+
+
+def place_tiles(period: Period, region: Region) -> Placement:
+    """Find the tiles that lie in a region, and those that its border cuts; row by row from below, then from the left.
+
+    Tiles that only touch the border, within `region.close`, are whole, or have nothing of the region.
+    """
+    everything = np.arange(len(period.site))
+    outlines, items = period.outlines(everything, np.zeros((len(everything), 2), np.intp))
+    box = tile_boxes(outlines, items)
+    tile, step = _near(period, box, region)
+    shift = period.at(np.zeros(len(tile), np.complex128), step)
+    here = box[tile] + np.column_stack((shift.real, shift.imag, shift.real, shift.imag))
+    # Order by the middle of the box: the sheet's rows, whatever the tile.
+    order = np.lexsort((here[:, 0] + here[:, 2], np.round(here[:, 1] + here[:, 3], 6)))
+    tile, step, here = tile[order], step[order], here[order]
+    near = _meets_border(here, region)
+    kept = region.contains(here[:, 0] + 1j * here[:, 1])
+    whole = kept.copy()
+    unclear = np.flatnonzero(near)
+    if len(unclear):
+        paths, parts = period.outlines(tile[unclear], step[unclear])
+        inner, outer = _against(region, paths, parts)
+        kept[unclear] = inner
+        whole[unclear] = inner & ~outer
+    chosen = np.flatnonzero(kept)
+    return Placement(tile[chosen], step[chosen], whole[chosen])
+
+
+def tile_boxes(paths: Paths, items: Ints) -> Floats:
+    """The boxes of items of paths: least x, least y, greatest x, greatest y (n x 4)."""
+    piece = boxes(paths)
+    first = paths.offsets[items[:-1]]
+    low = np.minimum.reduceat(piece[:, :2], first)
+    return np.column_stack((low, np.maximum.reduceat(piece[:, 2:], first)))
+
+
+def _near(period: Period, box: Floats, region: Region) -> tuple[Ints, Ints]:
+    """The tiles whose boxes meet that of the region by more than touching."""
+    left, bottom, right, top = region.bounds
+    a, b = period.basis.tolist()
+    det = a.real * b.imag - a.imag * b.real
+    tiles, steps = [], []
+    for number, (x0, y0, x1, y1) in enumerate(box.tolist()):
+        corners = np.array([complex(x, y) for x in (left - x1, right - x0) for y in (bottom - y1, top - y0)])
+        i = (corners.real * b.imag - corners.imag * b.real) / det
+        j = (a.real * corners.imag - a.imag * corners.real) / det
+        grid = np.meshgrid(
+            np.arange(np.floor(i.min()), np.ceil(i.max()) + 1, dtype=np.intp),
+            np.arange(np.floor(j.min()), np.ceil(j.max()) + 1, dtype=np.intp),
+        )
+        step = np.stack(grid, axis=-1).reshape(-1, 2)
+        shift = period.at(np.zeros(len(step), np.complex128), step)
+        close = region.close
+        meets = (x0 + shift.real < right - close) & (x1 + shift.real > left + close)
+        meets &= (y0 + shift.imag < top - close) & (y1 + shift.imag > bottom + close)
+        tiles.append(np.full(int(meets.sum()), number))
+        steps.append(step[meets])
+    return np.concatenate(tiles), np.concatenate(steps)
+
+
+def _meets_border(box: Floats, region: Region) -> Bools:
+    """Tell which boxes come within `region.close` of the box of a piece of the border."""
+    import shapely
+
+    close = region.close
+    grown = box + np.array([-close, -close, close, close])
+    hit = shapely.STRtree(shapely.box(*grown.T)).query(shapely.box(*boxes(region.border).T))[1]
+    near = np.zeros(len(box), np.bool_)
+    near[hit] = True
+    return near
+
+
+def _against(region: Region, paths: Paths, items: Ints) -> tuple[Bools, Bools]:
+    """Tell which items have something of the region, and which have something beyond it.
+
+    What is near the border is decided by the parts between the points where the two meet.
+    """
+    count = len(items) - 1
+    owner = np.repeat(np.repeat(np.arange(count), np.diff(items)), paths.counts)
+    i, j = candidate_pairs(paths, region.border, region.close)
+    met = crossings(paths, i, region.border, j)
+    # The middles of the parts of every piece: between its ends and the points where it meets the border.
+    piece = np.concatenate((np.arange(len(paths.start)), np.arange(len(paths.start)), i[met.pair]))
+    at = np.concatenate((np.zeros(len(paths.start)), np.ones(len(paths.start)), met.t))
+    order = np.lexsort((at, piece))
+    piece, at = piece[order], at[order]
+    same = np.flatnonzero(piece[1:] == piece[:-1])
+    middle = point_at(paths, piece[same], (at[same] + at[same + 1]) / 2)
+    off = region.distance(middle) > region.close
+    within = region.contains(middle)
+    of = owner[piece[same]]
+    inner = np.bincount(of[off & within], minlength=count) > 0
+    outer = np.bincount(of[off & ~within], minlength=count) > 0
+    # An outline with no part on one side of the border has all of a ring's places on that side, or none of them.
+    beside_in, beside_out = beside_border(region.border, _longest(region.border), region.close)
+    inner |= (item_winding(paths, paths.offsets[items], beside_in) > 0).any(axis=1)
+    outer |= (item_winding(paths, paths.offsets[items], beside_out) > 0).any(axis=1)
+    return inner, outer
+
+
+def _longest(paths: Paths) -> Ints:
+    """The longest piece of each path."""
+    first, lengths = paths.offsets[:-1].tolist(), paths.lengths
+    return np.array([a + int(lengths[a:b].argmax()) for a, b in zip(first, paths.offsets[1:].tolist(), strict=True)])

@@ -1,0 +1,1 @@
+"""Files: SVG, DXF, PDF, LightBurn, the outline document."""

@@ -1,0 +1,152 @@
+"""The command `export`: files of tiles, exact or ready for a cutter."""
+
+from __future__ import annotations
+
+import os
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from voronoi_tiles.commands.common import PATH, report_error, say, tessellate
+from voronoi_tiles.commands.options import with_job, with_renderer
+
+if TYPE_CHECKING:
+    from voronoi_tiles.crosscheck import CheckReport
+    from voronoi_tiles.fabrication.job import Job
+    from voronoi_tiles.raster.render import Choice
+    from voronoi_tiles.tiling import Tiling
+
+
+@click.command()
+@click.argument("designs", metavar="DESIGN...", nargs=-1, required=True, type=PATH)
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    metavar="OUT",
+    type=PATH,
+    help="The file to write, its format by its suffix (.svg, .dxf, .pdf, .lbrn2, .json); a folder for several designs; "
+    "- for standard output.",
+)
+@click.option(
+    "--format",
+    "file_format",
+    type=click.Choice(("svg", "json", "dxf", "pdf", "lbrn2")),
+    help="The format where OUT names none: a folder or standard output.",
+)
+@with_job
+@click.option("-q", "--quiet", is_flag=True, help="Report only what fails.")
+@click.option("--check", is_flag=True, help="Cross-check the outlines first, and record it in the file's metadata.")
+@with_renderer
+def export(
+    designs: tuple[str, ...],
+    output: str,
+    file_format: str | None,
+    job: Job | None,
+    quiet: bool,
+    check: bool,
+    renderer: Choice,
+    device: int | None,
+) -> None:
+    """Write the tiles of designs: SVG, DXF, PDF or LightBurn files, ready to cut, or a JSON outline document.
+
+    DESIGN is a TOML or JSON file, or - for standard input. Lengths are millimetres unless they say cm or in. With
+    several designs the good ones are written, the bad ones named, and the exit code is the worst.
+    """
+    from voronoi_tiles.files import STDOUT
+    from voronoi_tiles.tiling import require
+
+    if not check and (renderer != "auto" or device is not None):
+        raise click.UsageError("--renderer and --device say how to check: add --check.")
+    targets = _targets(designs, output, file_format)
+    if job is not None and job.colours == "files" and output == STDOUT:
+        raise click.UsageError("Several files need a name that they can begin with: -o sheet.svg.")
+    worst = 0
+    for design, (target, target_format) in zip(designs, targets, strict=True):
+        try:
+            tiling = tessellate(design)
+            report = tiling.check(renderer=renderer, device=device, notice=say) if check else None
+            if report is not None:
+                require(report)
+            _make_folder(target, output)
+            written = _write(tiling, target, target_format, job, report)
+        except Exception as error:  # noqa: BLE001 - whatever one design does, the others are still to be written
+            worst = max(worst, report_error(design, error))
+        else:
+            if not quiet and target != STDOUT:
+                for line in written:
+                    say(line)
+    if worst:
+        raise click.exceptions.Exit(worst)
+
+
+def _write(tiling: Tiling, target: str, form: str, job: Job | None, check: CheckReport | None) -> list[str]:
+    """Write one design, or its files, one for each colour; say what there is to say."""
+    if job is None or job.colours != "files":
+        return [*tiling.write(target, form, job=job, check=check), f"wrote {target}"]
+    from voronoi_tiles.fabrication import colour_names
+
+    lines = []
+    path = Path(target)
+    for number, name in colour_names(tiling, job):
+        part = str(path.with_name(f"{path.stem}-{name}{path.suffix}"))
+        lines += [*tiling.write(part, form, job=replace(job, only_colour=number), check=check), f"wrote {part}"]
+    return lines
+
+
+def _targets(designs: Sequence[str], output: str, file_format: str | None) -> list[tuple[str, str]]:
+    """Give for each design the file to write and its format; refuse what cannot be meant.
+
+    That is: one place for several results, or a result that would overwrite a design.
+    """
+    from voronoi_tiles.tiling import FORMATS
+
+    if not output:
+        raise click.UsageError("The name of the file to write is empty: -o FILE.")
+    if designs.count("-") > 1:
+        raise click.UsageError("Standard input can be read once only.")
+    path = Path(output)
+    several = len(designs) > 1
+    if output == "-":
+        if several:
+            raise click.UsageError("Several designs need a folder: -o DIR.")
+        return [("-", file_format or FORMATS[0])]
+    folder = os.path.isdir(output)  # noqa: PTH112 - a name that the system refuses is no folder, and no error here
+    suffix = path.suffix.lower().removeprefix(".")
+    if not several and not output.endswith("/") and not folder:
+        if suffix not in FORMATS and not file_format:
+            suffixes = " or ".join(f".{name}" for name in FORMATS)
+            raise click.UsageError(f"The format of {output} is not clear: give it the suffix {suffixes}, or --format.")
+        if suffix in FORMATS and file_format not in {None, suffix}:
+            raise click.UsageError(f"{output} and --format {file_format} contradict each other: leave out --format.")
+        targets = [(output, file_format or suffix)]
+    elif not folder and (os.path.exists(output) or suffix in FORMATS):  # noqa: PTH110 - same
+        raise click.UsageError(f"Several designs need a folder: -o DIR, and {output} is a file.")
+    else:
+        suffix = file_format or FORMATS[0]
+        stems = ["design" if design == "-" else Path(design).stem for design in designs]
+        twice = [stem for stem, count in Counter(stems).items() if count > 1]
+        if twice:
+            raise click.UsageError(f"Two designs would be written to {twice[0]}.{suffix}: rename one.")
+        targets = [(str(path / f"{stem}.{suffix}"), suffix) for stem in stems]
+    sources = {os.path.realpath(design) for design in designs if design != "-"}
+    for target, _ in targets:
+        if os.path.realpath(target) in sources:
+            raise click.UsageError(f"{target} is a design, and would be overwritten.")
+    return targets
+
+
+def _make_folder(target: str, output: str) -> None:
+    """Make the folder OUT when results go into one."""
+    from voronoi_tiles.files import output_error
+
+    if target in {output, "-"}:
+        return
+    try:
+        Path(output).mkdir(parents=True, exist_ok=True)
+    except (OSError, ValueError) as error:
+        raise output_error(output, error) from error

@@ -1,0 +1,137 @@
+"""Commands around fabrication: `report`, `coupon` and `template`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from voronoi_tiles.commands.common import PATH, refuse_output, report_error, say, tessellate
+from voronoi_tiles.commands.options import LENGTH, with_job
+from voronoi_tiles.errors import DesignError
+
+if TYPE_CHECKING:
+    from voronoi_tiles.fabrication.job import Job
+    from voronoi_tiles.vector.writers.drawing import Drawing
+
+_DRAWINGS = (".svg", ".dxf", ".pdf", ".lbrn2")
+_SPEED = click.FloatRange(min=0.0, min_open=True)
+
+
+@click.command()
+@click.argument("design", type=PATH)
+@with_job
+@click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
+@click.option("--cut-speed", type=_SPEED, metavar="MM/S", help="Speed of cutting [default: 10].")
+@click.option("--engrave-speed", type=_SPEED, metavar="MM/S", help="Speed of engraving and scoring [default: 60].")
+@click.option("--travel-speed", type=_SPEED, metavar="MM/S", help="Speed between two cuts [default: 200].")
+@click.option(
+    "--pierce-time",
+    type=click.FloatRange(min=0.0),
+    metavar="S",
+    help="Time for each pierce, in seconds [default: 0.3].",
+)
+def report(
+    design: str,
+    job: Job | None,
+    as_json: bool,
+    cut_speed: float | None,
+    engrave_speed: float | None,
+    travel_speed: float | None,
+    pierce_time: float | None,
+) -> None:
+    """Print what a job comes to: pieces, sheet use, cut length, pierces, travel, time.
+
+    It takes the options of export; nothing is written.
+    """
+    import json
+
+    from voronoi_tiles.fabrication import Job
+    from voronoi_tiles.fabrication.report import PIERCE_S, report_figures
+    from voronoi_tiles.files import STDOUT, write_whole
+    from voronoi_tiles.tables import report_text
+
+    given = {"cut": cut_speed, "score": engrave_speed, "engrave": engrave_speed, "travel": travel_speed}
+    speeds = {work: speed for work, speed in given.items() if speed is not None}
+    try:
+        tiling = tessellate(design)
+        product = tiling.make(job or Job())
+        figures = report_figures(
+            tiling, product, speeds=speeds, pierce_s=PIERCE_S if pierce_time is None else pierce_time
+        )
+    except Exception as error:
+        raise click.exceptions.Exit(report_error(design, error)) from error
+    text = json.dumps(figures, indent=2) + "\n" if as_json else report_text(figures)
+    write_whole(STDOUT, text.encode())
+
+
+@click.command()
+@click.option(
+    "-o", "--output", required=True, metavar="FILE", type=PATH, help="The file to write; its suffix says how."
+)
+@click.option(
+    "--kerfs",
+    default="0.05:0.4:0.05",
+    metavar="RANGE",
+    help="First, last and step, or a list [default: 0.05:0.4:0.05].",
+)
+@click.option("--thickness", type=LENGTH, required=True, metavar="LENGTH", help="How thick the sheet is.")
+@click.option("--plug", type=LENGTH, metavar="LENGTH", help="The size of the plugs [default: 10mm].")
+@click.option("--preset", default="plain", metavar="NAME|FILE", help="Colours and layers [default: plain].")
+def coupon(output: str, kerfs: str, thickness: float, plug: float | None, preset: str) -> None:
+    """Write a test piece that shows the kerf: numbered plugs and holes for each of a range of kerfs, and strips.
+
+    Cut it, and try which plug just holds in its hole: its number is the kerf.
+    """
+    from voronoi_tiles.coupon import PLUG_MM, kerf_range
+    from voronoi_tiles.coupon import coupon as draw
+    from voronoi_tiles.fabrication.making import recoloured
+
+    refuse_output("-", output, _DRAWINGS)
+    try:
+        try:
+            drawing = draw(kerf_range(kerfs), thickness=thickness, plug=PLUG_MM if plug is None else plug)
+        except ValueError as error:
+            raise click.UsageError(str(error)) from None
+        form = Path(output).suffix.lower().removeprefix(".") or "svg"
+        _write(recoloured(drawing, preset, form), output, form)
+    except DesignError as error:
+        raise click.exceptions.Exit(report_error(preset, error)) from error
+
+
+@click.command()
+@click.argument("design", type=PATH)
+@click.option("-o", "--output", required=True, metavar="FILE", type=PATH, help="The file to write (.svg).")
+@click.option("--site", metavar="NAME", help="The site to draw for [default: the first].")
+def template(design: str, output: str, site: str | None) -> None:
+    """Write a page to draw a site's art on, and say what to write into the design.
+
+    The tile and the site's strokes are on a layer "guide"; draw in the layer "engrave", or in one called "score".
+    """
+    from voronoi_tiles.fabrication.template import art_template
+
+    refuse_output(design, output, (".svg",))
+    try:
+        tiling = tessellate(design)
+        names = [tile.site.name for tile in tiling.tiles]
+        if site is not None and site not in names:
+            raise DesignError(f'there is no site "{site}"', remedy=f"Sites are {', '.join(names)}.")
+        tile = tiling.tiles[0 if site is None else names.index(site)]
+        drawing, corner = art_template(tiling, tile)
+        _write(drawing, output, "svg")
+    except Exception as error:
+        raise click.exceptions.Exit(report_error(design, error)) from error
+    place = f"[{corner.real:g}, {corner.imag:g}]"
+    say(f'for [[site]] "{tile.site.name}": art = {{ file = "{Path(output).name}", translate = {place} }}')
+
+
+def _write(drawing: Drawing, output: str, form: str) -> None:
+    """Write a drawing that is no tiling's."""
+    from voronoi_tiles.fabrication.making import write_drawing
+    from voronoi_tiles.files import STDOUT, writing
+
+    with writing(output) as file:
+        write_drawing(drawing, file, form)
+    if output != STDOUT:
+        say(f"wrote {output}")

@@ -1,0 +1,35 @@
+"""Drawings of others: SVG and DXF files, read without trusting them.
+
+Whatever a file holds, reading it ends with the drawing or with one DrawingError, in bounded time and memory: nothing
+outside the file is opened, and sizes, depths and numbers of elements are limited (`voronoi_tiles.drawings.model`).
+"""
+
+from __future__ import annotations
+
+import os
+
+from voronoi_tiles.drawings.model import DrawingError, ReadDrawing, Shape, load_bytes
+
+__all__ = ["DrawingError", "ReadDrawing", "Shape", "read_drawing"]
+
+
+def read_drawing(path: str | os.PathLike[str]) -> ReadDrawing:
+    """Read an SVG or DXF file, by its content where that is clear and else by its suffix; `-` is standard input.
+
+    Raises DrawingError for what cannot be read.
+    """
+    name = os.fspath(path)
+    data = load_bytes(name)
+    shown = "standard input" if name == "-" else name
+    head = data[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
+    suffix = os.path.splitext(name)[1].lower()  # noqa: PTH122 - a name that is no path is no error here
+    is_xml = head.startswith((b"<", b"\x1f\x8b", b"\xff\xfe<", b"\xfe\xff\x00<"))
+    if is_xml or suffix in {".svg", ".svgz"}:
+        from voronoi_tiles.drawings.svg import svg_drawing
+
+        return svg_drawing(data, shown)
+    if suffix == ".dxf" or head.startswith((b"0", b"999", b"AutoCAD Binary DXF")):
+        from voronoi_tiles.drawings.dxf import dxf_drawing
+
+        return dxf_drawing(data, shown)
+    raise DrawingError("neither an SVG nor a DXF file", file=shown, remedy="Give it the suffix .svg or .dxf if it is.")

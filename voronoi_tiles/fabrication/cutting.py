@@ -1,0 +1,93 @@
+"""What is cut: every line once, or closed contours; in a short order, with bridges that hold the pieces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from voronoi_tiles.fabrication.bridges import bridged
+from voronoi_tiles.fabrication.colouring import Colouring
+from voronoi_tiles.fabrication.job import Job, JobError
+from voronoi_tiles.fabrication.layout import Contours, Layout
+from voronoi_tiles.presets import Role
+from voronoi_tiles.vector.curves.paths import Bools, Paths
+from voronoi_tiles.vector.curves.tabs import with_tabs
+from voronoi_tiles.vector.sheet.faces import ring_areas
+from voronoi_tiles.vector.sheet.strands import OUTSIDE, Strands
+from voronoi_tiles.vector.sheet.tour import short_tour
+from voronoi_tiles.vector.sheet.trails import find_trails, joined
+
+
+@dataclass(frozen=True, eq=False)
+class Cut:
+    """The cuts of one layer: `suffix` is added to what the preset calls its role; `colour` is a number of the palette."""
+
+    role: Role
+    suffix: str
+    colour: int | None
+    paths: Paths
+
+
+def cut_once(layout: Layout, job: Job) -> Paths:
+    """Every line once: what lies between tiles in the fewest trails, then the rings around them."""
+    strands = layout.strands()
+    outer = (strands.left == OUTSIDE) | (strands.right == OUTSIDE) | strands.border
+    inner = np.flatnonzero(~outer)
+    paths, first, last, node = strands.paths.take(inner), strands.first[inner], strands.last[inner], strands.node
+    if job.tabs > 0.0:
+        paths, first, last, node = bridged(paths, first, last, node, strands, inner, job.tabs)
+    trails = joined(paths, find_trails(first, last, node))
+    around = _outer_rings(layout, strands, outer)
+    if job.tabs > 0.0:
+        around = _tabbed(around, job.tabs)
+    return Paths.concatenate([trails, around])
+
+
+def _outer_rings(layout: Layout, strands: Strands, outer: Bools) -> Paths:
+    """The rings around the tiles, closed, in a short order; with a frame, that around the frame as the last."""
+    if layout.region is not None and layout.job.fit == "clip":
+        return toured(layout.region.border)
+    kept = np.flatnonzero(outer)
+    rings = joined(strands.paths.take(kept), find_trails(strands.first[kept], strands.last[kept], strands.node))
+    if layout.region is not None and layout.job.fit == "frame":
+        return Paths.concatenate([toured(rings), layout.region.border])
+    return toured(rings)
+
+
+def toured(paths: Paths) -> Paths:
+    """Put paths into an order with short ways between them."""
+    if len(paths) < 2:
+        return paths
+    order, turned = short_tour(paths.start[paths.offsets[:-1]], paths.end[paths.offsets[1:] - 1])
+    return paths.take(order).reversed(turned)
+
+
+def _tabbed(paths: Paths, width: float) -> Paths:
+    """Leave bridges in closed paths."""
+    try:
+        return with_tabs(paths, width)
+    except ValueError as error:
+        raise JobError(str(error), remedy="Use narrower --tabs.") from error
+
+
+def cut_pieces(contours: Contours, colouring: Colouring, job: Job) -> list[Cut]:
+    """The contours of pieces, holes first, each colour on its own."""
+    outer = ring_areas(contours.paths) > 0
+    of = np.repeat(np.arange(len(contours.copy)), np.diff(contours.items))
+    colour = colouring.of_copies(contours.copy)
+    cuts = []
+    groups: Sequence[int | None] = sorted(set(colour.tolist())) if job.colours == "layers" else [None]
+    roles: tuple[tuple[Role, Bools], ...] = (("inner", ~outer), ("cut", outer))
+    for role, chosen in roles:
+        for group in groups:
+            picked = np.flatnonzero(chosen if group is None else chosen & (colour[of] == group))
+            if not len(picked):
+                continue
+            paths = toured(contours.paths.take(picked))
+            if job.tabs > 0.0:
+                paths = _tabbed(paths, job.tabs)
+            suffix = "" if group is None else f"-{group + 1}" if group >= 0 else "-frame"
+            cuts.append(Cut(role, suffix, group, paths))
+    return cuts

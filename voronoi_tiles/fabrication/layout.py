@@ -1,0 +1,325 @@
+"""Where the tiles of a job lie, and their lines: strands that are cut once, or closed contours of pieces."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from voronoi_tiles.fabrication.fitting import fewer_arcs
+from voronoi_tiles.fabrication.job import Job, JobError
+from voronoi_tiles.vector.contour import Bools, Complexes, Floats, Ints
+from voronoi_tiles.vector.copies import Motion, compose, inverse, reverses_orientation
+from voronoi_tiles.vector.curves.conversion import to_lines
+from voronoi_tiles.vector.curves.offset import Offset, OffsetError, offset, round_corners
+from voronoi_tiles.vector.curves.paths import Paths, ranges
+from voronoi_tiles.vector.sheet.faces import Pieces, clipped_pieces, frame_pieces, ring_areas
+from voronoi_tiles.vector.sheet.orbits import approximated
+from voronoi_tiles.vector.sheet.period import Period, make_period
+from voronoi_tiles.vector.sheet.placement import Placement, place_tiles, tile_boxes
+from voronoi_tiles.vector.sheet.pulling import pulled_apart, spread
+from voronoi_tiles.vector.sheet.region import Region
+from voronoi_tiles.vector.sheet.strands import Strands, clipped_strands, whole_strands
+
+if TYPE_CHECKING:
+    from voronoi_tiles.tiling import Tiling
+    from voronoi_tiles.vector.tessellation import Placed
+
+FRAME = -1
+"""The site of a piece of a frame."""
+
+_LOSSES = {
+    "ring": "a piece vanishes",
+    "neck": "a neck breaks",
+    "gap": "a gap closes",
+    "part": "a thin part vanishes",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """The page and what of it is filled: `region` is None where one of each tile is made, and the page fits them."""
+
+    width: float
+    height: float
+    region: Region | None
+    centre: complex
+
+
+@dataclass(frozen=True, eq=False)
+class Copies:
+    """The tiles on the page, n of them: tile of the period, lattice vector, whether it is there as a whole.
+
+    `moved_by` is how far each was pulled from its place, millimetres.
+    """
+
+    tile: Ints
+    step: Ints
+    whole: Bools
+    moved_by: Complexes
+
+
+@dataclass(frozen=True, eq=False)
+class Contours:
+    """Closed pieces: piece k are the rings items[k] up to items[k + 1], outer ones first.
+
+    `copy` is the tile on the page that each is, or is part of; FRAME for parts of a frame. `area` is what each has
+    without fillet and kerf, square millimetres.
+    """
+
+    paths: Paths
+    items: Ints
+    copy: Ints
+    area: Floats
+
+
+class Layout:
+    """A tiling on the page of a job, in millimetres, y up."""
+
+    def __init__(
+        self, tiling: Tiling, job: Job, sheet: Sheet, fit: Callable[[Paths], Paths] | None, *, refit: bool = True
+    ) -> None:
+        """Place the tiles; `fit` replaces the exact curves (in the design's units), `refit` what kerf and fillet leave."""
+        tessellation = tiling.tessellation
+        self.job = job
+        self.refit = refit
+        self.sheet = sheet
+        self.action = tessellation.action
+        self.design_units = tiling.design.unit_mm
+        period = make_period(tessellation)
+        if fit is not None:
+            period = approximated(period, tessellation.action, fit)
+        turn = np.deg2rad(job.rotate)
+        self.factor = self.design_units * complex(_unit(turn, job.rotate))
+        self.shift = sheet.centre + job.offset if sheet.region is not None else 0j
+        self.period: Period = period.placed(self.factor, self.shift)
+        self.losses: list[str] = []
+        self.spread = 1.0
+        self._dressed: dict[int, Paths] = {}
+        if job.apart is not None:
+            self.spread = self._spread(job.apart)
+        self.region = sheet.region
+        # The tiles where they are cut: as in the period, unless they are pulled apart.
+        self.spaced = self.period
+        if self.spread != 1.0:
+            self.spaced = pulled_apart(self.period, self._centres(), sheet.centre, self.spread)
+        self.placement = self._place(tessellation.placed)
+        self.copies = Copies(self.placement.tile, self.placement.step, self.placement.whole, self._pull(self.placement))
+
+    @property
+    def site(self) -> Ints:
+        """The site of each copy."""
+        return self.period.site[self.copies.tile]
+
+    @property
+    def turned_over(self) -> Bools:
+        """Whether each copy is its site's tile turned over."""
+        over = np.array([reverses_orientation(motion) for motion in self.period.motion])
+        return over[self.copies.tile]
+
+    def motion_to_page(self, tile: int) -> tuple[complex, complex, bool]:
+        """What takes points of the drawn site, in the design's units, to a tile of the period: factor, shift, conj."""
+        motion = self.period.motion[tile]
+        unit, conj = self.action.linear[motion[:4]]
+        place = complex(self.action.cartesian(motion[4] / 2, motion[5] / 2))
+        return self.factor * unit, self.factor * place + self.shift, conj
+
+    def strands(self) -> Strands:
+        """The lines of the sheet, each once; those of tiles that are pulled apart, two for a side."""
+        return self._strands
+
+    @cached_property
+    def _strands(self) -> Strands:
+        if self.region is not None and self.job.fit == "clip":
+            return clipped_strands(self.spaced, self.placement, self.region)
+        return whole_strands(self.spaced, self.placement)
+
+    def contours(self) -> Contours:
+        """The closed contours of all pieces, kerf, fillets and gaps applied."""
+        whole = np.flatnonzero(self.copies.whole)
+        paths, items = self._whole(whole)
+        copy, area = whole, self.tile_areas[self.copies.tile[whole]]
+        rest = self.rest()
+        if rest is not None:
+            done, kept = self._dress_each(rest)
+            paths = Paths.concatenate([paths, done.paths])
+            items = np.concatenate((items, items[-1] + done.items[1:]))
+            copy = np.concatenate((copy, done.tile))
+            area = np.append(area, piece_areas(rest)[kept])
+        return Contours(paths, items, copy, area)
+
+    def rest(self) -> Pieces | None:
+        """What there is beside the whole tiles: what the border leaves of those that it cuts, or the frame."""
+        if self.region is None or self.job.fit == "whole":
+            return None
+        if self.job.fit == "frame":
+            rest = frame_pieces(self.strands(), self.region)
+        else:
+            cut = np.flatnonzero(~self.copies.whole)
+            outlines, items = self.spaced.outlines(self.copies.tile[cut], self.copies.step[cut])
+            rest = clipped_pieces(self.strands(), cut, outlines, items)
+        return rest if len(rest.tile) else None
+
+    @cached_property
+    def tile_areas(self) -> Floats:
+        """The areas of the period's tiles, square millimetres."""
+        everything = np.arange(len(self.period.site))
+        outlines, items = self.period.outlines(everything, np.zeros((len(everything), 2), np.intp))
+        return np.asarray(np.add.reduceat(ring_areas(outlines), items[:-1]))
+
+    def _place(self, placed: list[Placed]) -> Placement:
+        """Find the tiles on the page."""
+        if self.region is None:
+            sites, first = np.unique(self.period.site, return_index=True)
+            shifts = np.array([placed[site].shift for site in sites.tolist()], np.intp)
+            return Placement(first, shifts, np.ones(len(first), np.bool_))
+        placement = place_tiles(self.spaced, self.region)
+        if self.job.fit != "clip":
+            kept = np.flatnonzero(placement.whole)
+            placement = Placement(placement.tile[kept], placement.step[kept], placement.whole[kept])
+        if not len(placement.tile):
+            rings, items = self.period.outlines(np.zeros(1, np.intp), np.zeros((1, 2), np.intp))
+            x0, y0, x1, y1 = tile_boxes(rings, items)[0].tolist()
+            raise JobError(
+                f"no whole tile fits on the sheet: one takes {x1 - x0:.4g} x {y1 - y0:.4g} mm",
+                remedy="Take a larger sheet, a smaller margin, another --offset or --rotate, or --fit clip.",
+            )
+        return placement
+
+    def _base(self, tile: int) -> Paths:
+        """The rings of a tile of the period where it stands, kerf and fillet applied."""
+        known = self._dressed.get(tile)
+        if known is not None:
+            return known
+        site = int(self.period.site[tile])
+        first = int(np.flatnonzero(self.period.site == site)[0])
+        if tile == first:
+            outline, _ = self.period.outlines(np.array([tile]), np.zeros((1, 2), np.intp))
+            result = self._refitted(self._dress(outline))
+        else:
+            # The same shape as the first one of its site, not one that is computed anew.
+            result = self._image(
+                self._base(first), compose(self.period.motion[tile], inverse(self.period.motion[first]))
+            )
+        self._dressed[tile] = result
+        return result
+
+    def _image(self, paths: Paths, motion: Motion) -> Paths:
+        """The image of rings on the page under a motion of the design's plane; the material stays on the left."""
+        unit, conj = self.action.linear[motion[:4]]
+        place = complex(self.action.cartesian(motion[4] / 2, motion[5] / 2))
+        factor = unit * (self.factor / self.factor.conjugate()) if conj else unit
+        base = self.shift.conjugate() if conj else self.shift
+        image = paths.moved(factor, self.factor * place + self.shift - factor * base, conj=conj)
+        return image.reversed() if conj else image
+
+    def _dress(self, rings: Paths, *, whole: bool = True) -> Paths:
+        """Round the corners of a piece and let its contour keep half the kerf.
+
+        A tile that is `whole` must leave all its rings; of a part of one, or of a frame, less may be left, or nothing.
+        """
+        job = self.job
+        if job.fillet > 0.0:
+            rings = self._kept(round_corners, rings, job.fillet, "fillet", whole=whole)
+        if job.kerf > 0.0 and len(rings):
+            rings = self._kept(offset, rings, job.kerf / 2, "kerf", whole=whole)
+        return rings
+
+    def _kept(
+        self, change: Callable[[Paths, float], Offset], rings: Paths, size: float, name: str, *, whole: bool
+    ) -> Paths:
+        """Apply a change to a piece, and note what is lost by it."""
+        try:
+            result = change(rings, size)
+        except OffsetError as error:
+            raise JobError(
+                f"--{name} cannot be applied at ({error.place.real:.4g}, {error.place.imag:.4g}) mm of the page",
+                remedy=f"Change --{name} a little, and please report the design.",
+            ) from error
+        given = getattr(self.job, name)
+        for lost in result.lost:
+            place = f"({lost.place.real:.4g}, {lost.place.imag:.4g}) mm"
+            if whole and (lost.kind in ("ring", "neck") or len(result.paths) != len(rings)):
+                raise JobError(
+                    f"--{name} {given:g}mm is too much: {_LOSSES[lost.kind]} at {place} of the page",
+                    remedy=f"Use a smaller --{name}, or a larger design.",
+                )
+            self.losses.append(f"--{name} {given:g}mm: {_LOSSES[lost.kind]} at {place} of the page")
+        return result.paths
+
+    def _whole(self, copies: Ints) -> tuple[Paths, Ints]:
+        """The rings of whole tiles, and where each one's begin."""
+        tile, step = self.copies.tile[copies], self.copies.step[copies]
+        if not self.job.dressed and self.spread == 1.0:
+            return self.period.outlines(tile, step)
+        bases = [self._base(k) for k in range(len(self.period.site))]
+        rings = Paths.concatenate(bases)
+        starts = np.append(0, np.cumsum([len(base) for base in bases])).astype(np.intp)
+        counts = np.diff(starts)[tile]
+        stamped = rings.take(ranges(starts[:-1][tile], counts))
+        items = np.append(0, np.cumsum(counts)).astype(np.intp)
+        shift = self.period.at(np.zeros(len(tile), np.complex128), step) + self.copies.moved_by[copies]
+        return _shifted(stamped, items, shift), items
+
+    def _dress_each(self, pieces: Pieces) -> tuple[Pieces, Ints]:
+        """Apply fillet and kerf to pieces one by one; also gives which of them are left."""
+        if not self.job.dressed:
+            return pieces, np.arange(len(pieces.tile))
+        done = [
+            self._dress(pieces.paths.take(np.arange(a, b)), whole=False)
+            for a, b in zip(pieces.items[:-1].tolist(), pieces.items[1:].tolist(), strict=True)
+        ]
+        counts = np.array([len(rings) for rings in done])
+        kept = np.flatnonzero(counts)
+        items = np.append(0, np.cumsum(counts[kept])).astype(np.intp)
+        return Pieces(self._refitted(Paths.concatenate(done)), items, pieces.tile[kept]), kept
+
+    def _refitted(self, rings: Paths) -> Paths:
+        """Replace the many short arcs that kerf and fillet leave by the fewest within what is left of the accuracy."""
+        return fewer_arcs(rings, self.job.accuracy) if self.job.dressed and self.refit else rings
+
+    def _centres(self) -> Complexes:
+        """The points of the period's tiles that are spread: the middles of their boxes."""
+        result = []
+        for tile in range(len(self.period.site)):
+            low_x, low_y, high_x, high_y = self._base(tile).bounds
+            result.append(complex((low_x + high_x) / 2, (low_y + high_y) / 2))
+        return np.array(result)
+
+    def _spread(self, apart: float) -> float:
+        """How far the layout is spread for the gap."""
+        fine = self.job.accuracy / 8
+        contours = [to_lines(self._base(tile), accuracy=fine) for tile in range(len(self.period.site))]
+        return spread(contours, self._centres(), self.period.basis, apart + 2 * fine)
+
+    def _pull(self, placement: Placement) -> Complexes:
+        """How far each tile is pulled."""
+        if self.spread == 1.0:
+            return np.zeros(len(placement.tile), np.complex128)
+        place = self.period.at(self._centres()[placement.tile], placement.step)
+        return np.asarray((self.spread - 1.0) * (place - self.sheet.centre))
+
+
+def piece_areas(pieces: Pieces) -> Floats:
+    """The area of each piece, its holes taken off."""
+    return np.asarray(np.add.reduceat(ring_areas(pieces.paths), pieces.items[:-1]))
+
+
+def _unit(turn: float, degrees: float) -> complex:
+    """The unit complex number at an angle, exact at right angles."""
+    if degrees % 90.0 == 0.0:
+        return (1, 1j, -1, -1j)[int(degrees // 90.0) % 4]
+    return complex(np.cos(turn), np.sin(turn))
+
+
+def _shifted(paths: Paths, items: Ints, shift: Complexes) -> Paths:
+    """Move each item by its own vector."""
+    per_path = np.repeat(shift, np.diff(items))
+    per_piece = per_path[paths.owner]
+    control = paths.control + per_piece[:, None]
+    control[paths.kind == 0] = 0
+    control[paths.kind != 2, 1] = 0
+    return replace(paths, start=paths.start + per_piece, end=paths.end + per_piece, control=control)

@@ -1,0 +1,204 @@
+"""From a tiling and a job to the drawing that is written, and to the figures of a report."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, BinaryIO
+
+import numpy as np
+
+from voronoi_tiles import __version__
+from voronoi_tiles.colouring import palette
+from voronoi_tiles.fabrication.colouring import Colouring, colour_tiles
+from voronoi_tiles.fabrication.engraving import Engraving, engrave
+from voronoi_tiles.fabrication.job import ACCURACY_MM, Job, JobError
+from voronoi_tiles.fabrication.fitting import curve_fit
+from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, Sheet
+from voronoi_tiles.fabrication.sheets import read_sheet
+from voronoi_tiles.presets import FORMATS as FILE_FORMATS
+from voronoi_tiles.presets import Format, Preset, Role, load_preset
+from voronoi_tiles.vector.curves.conversion import to_cubics, to_lines
+from voronoi_tiles.vector.curves.paths import ARC, Bools, Floats, Ints, Paths, ranges
+from voronoi_tiles.vector.curves.tabs import with_tabs
+from voronoi_tiles.vector.sheet.faces import ring_areas
+from voronoi_tiles.vector.sheet.strands import OUTSIDE
+from voronoi_tiles.vector.sheet.tour import short_tour
+from voronoi_tiles.vector.sheet.trails import find_trails, joined
+from voronoi_tiles.vector.writers.drawing import Drawing, Layer, Work
+
+if TYPE_CHECKING:
+    from voronoi_tiles.tiling import Tiling
+
+@dataclass(frozen=True, eq=False)
+class Product:
+    """What a job makes of a tiling, for a format of files.
+
+    `notes` say in sentences what was lost to kerf or fillet; `colours` is how many the whole tessellation takes.
+    """
+
+    form: Format
+    drawing: Drawing
+    pieces: Pieces
+    colours: int
+    notes: tuple[str, ...]
+    curves: str
+    accuracy: float
+
+    def with_evidence(self, evidence: Mapping[str, Any]) -> Product:
+        """The same with what was proved and checked in the recipe."""
+        recipe = {**self.drawing.recipe, "evidence": json.dumps(evidence, sort_keys=True)}
+        return replace(self, drawing=replace(self.drawing, recipe=recipe))
+
+    def write(self, file: BinaryIO) -> None:
+        """Write the drawing."""
+        write_drawing(self.drawing, file, self.form, curves=self.curves, accuracy=self.accuracy)
+
+
+def make(tiling: Tiling, job: Job, file_format: str = "svg") -> Product:
+    """Make what a job asks for, in the curves that a format takes.
+
+    Raises JobError where the job cannot be done, DesignError where the preset or the sheet's drawing is broken.
+    """
+    if file_format not in FORMATS:
+        raise JobError(f"no drawing can be made as {file_format!r}", remedy=f"Use one of {', '.join(FORMATS)}.")
+    form: Format = file_format  # type: ignore[assignment] - it is one of them
+    preset = load_preset(job.preset)
+    preset.require(form)
+    curves = _curves(job, preset, form)
+    fit, rest = curve_fit(job, curves, tiling.design.unit_mm)
+    sheet = read_sheet(job)
+    layout = Layout(tiling, job, sheet, fit, refit=curves != "polyline")
+    colouring = colour_tiles(layout)
+    if job.pieces:
+        contours = _of_colour(layout.contours(), colouring, job)
+        cuts = _cut_pieces(layout, contours, colouring, job)
+        pieces = _pieces(layout, contours, colouring)
+    else:
+        cuts = [_Cut("cut", "cut", None, _cut_once(layout, job))]
+        contours = None
+        pieces = _tiles(layout, colouring)
+    engraving = engrave(tiling, layout, contours, sheet, _shown(colouring, layout, job))
+    convert = _converter(curves, rest)
+    layers = _layers(preset, form, job, cuts, engraving, convert)
+    drawing = _page(layers, sheet, job, tiling)
+    notes = tuple(dict.fromkeys((*layout.losses, *engraving.notes)))
+    return Product(form, drawing, pieces, colouring.count, notes, curves, job.accuracy)
+
+
+def colour_names(tiling: Tiling, job: Job) -> list[tuple[int, str]]:
+    """Give the colours that a job has pieces of, each with a name for its file; FRAME for the frame."""
+    layout = Layout(tiling, job, read_sheet(job), None)
+    colouring = colour_tiles(layout)
+    found = np.unique(colouring.of_copies(np.arange(len(layout.copies.tile)))).tolist()
+    if layout.region is not None and job.fit == "frame":
+        found.append(FRAME)
+    return [(number, "frame" if number == FRAME else str(number + 1)) for number in found]
+
+
+def _of_colour(contours: Contours, colouring: Colouring, job: Job) -> Contours:
+    """The pieces of the only colour that is asked for."""
+    if job.only_colour is None:
+        return contours
+    chosen = np.flatnonzero(colouring.of_copies(contours.copy) == job.only_colour)
+    rings = ranges(contours.items[chosen], np.diff(contours.items)[chosen])
+    items = np.append(0, np.cumsum(np.diff(contours.items)[chosen])).astype(np.intp)
+    return Contours(contours.paths.take(rings), items, contours.copy[chosen], contours.area[chosen])
+
+
+def _shown(colouring: Colouring, layout: Layout, job: Job) -> Bools:
+    """Tell which tiles on the page are drawn."""
+    colour = colouring.of_copies(np.arange(len(layout.copies.tile)))
+    return np.ones(len(colour), np.bool_) if job.only_colour is None else np.asarray(colour == job.only_colour)
+
+
+def _curves(job: Job, preset: Preset, form: Format) -> str:
+    """What the curves become."""
+    wanted = job.curves
+    if wanted is None:
+        by_preset = {"svg": preset.svg_curves, "dxf": preset.dxf_curves}.get(form, "exact")
+        wanted = "spline" if by_preset == "cubic" else by_preset
+    if form == "dxf" and wanted == "exact":
+        wanted = "spline"
+    return wanted
+
+
+def _converter(curves: str, accuracy: float) -> Callable[[Paths], Paths]:
+    """What is still to be done to paths so that they hold only what the file takes."""
+    from voronoi_tiles.vector.curves.biarcs import to_arcs
+
+    if curves == "polyline":
+        return lambda paths: to_lines(paths, accuracy=accuracy)
+    if curves == "arc":
+        return lambda paths: to_arcs(paths, accuracy=accuracy)
+    if curves == "spline":
+        return lambda paths: to_cubics(paths, accuracy=_CUBIC_ACCURACY)
+    return lambda paths: paths
+
+
+def _layers(
+    preset: Preset, form: Format, job: Job, cuts: list[_Cut], engraving: Engraving, convert: Callable[[Paths], Paths]
+) -> list[Layer]:
+    """The layers in the order of work: engraving, scores, cuts inside, cuts around."""
+    stroke = preset.stroke_width(job.kerf)
+    layers = []
+    drawn: tuple[tuple[Role, Work, Paths], ...] = (
+        ("engrave", "engrave", engraving.engraved),
+        ("score", "score", engraving.scored),
+    )
+    for role, work, paths in drawn:
+        if len(paths):
+            layers.append(
+                Layer.of_paths(
+                    preset.layer_name(role, form), work, preset.colours[role], stroke, convert(_toured(paths))
+                )
+            )
+    for cut in cuts:
+        name = preset.layer_name(cut.role, form)
+        colour = preset.colours[cut.role]
+        if cut.colour is not None:
+            name = f"{name}{cut.name.removeprefix(cut.role)}"
+            if cut.colour >= 0 and cut.role == "cut":
+                colour = _palette(preset, cut.colour)
+        layers.append(Layer.of_paths(name, "cut", colour, stroke, convert(cut.paths)))
+    return layers
+
+
+def _palette(preset: Preset, number: int) -> str:
+    """The colour of a layer of cuts; the first is the preset's own."""
+    colours = (preset.colours["cut"], *preset.palette)
+    if number < len(colours):
+        return colours[number]
+    red, green, blue = palette(number + 1)[number].tolist()
+    return f"#{red:02x}{green:02x}{blue:02x}"
+
+
+def _page(layers: list[Layer], sheet: Sheet, job: Job, tiling: Tiling) -> Drawing:
+    """Put the layers on the page; without a sheet, on one that fits them."""
+    width, height = sheet.width, sheet.height
+    if sheet.region is None:
+        boxes = np.array([layer.paths.bounds for layer in layers if len(layer.paths)])
+        low, high = boxes[:, :2].min(axis=0) - job.margin, boxes[:, 2:].max(axis=0) + job.margin
+        shift = -complex(*low.tolist())
+        width, height = (high - low).tolist()
+        layers = [
+            Layer(
+                layer.name,
+                layer.work,
+                layer.colour,
+                layer.stroke,
+                layer.paths.moved(1.0, shift),
+                layer.items,
+                layer.labels,
+            )
+            for layer in layers
+        ]
+    design = tiling.design
+    recipe = {
+        "program": "voronoi-tiles",
+        "version": __version__,
+        "job": json.dumps(job.recipe(), sort_keys=True),
+        "design": design.source,
+    }
+    return Drawing(width, height, tuple(layers), f"{design.name} ({design.group.name})", recipe)

@@ -1,0 +1,48 @@
+"""A page to draw a site's art on: the tile and its strokes as a guide, and an empty layer for the art."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from voronoi_tiles.fabrication.engraving import GUIDE
+from voronoi_tiles.vector.curves.paths import Paths
+from voronoi_tiles.vector.writers.drawing import Drawing, Layer
+
+if TYPE_CHECKING:
+    from voronoi_tiles.tiling import Tile, Tiling
+
+MARGIN_MM: Final = 5.0
+"""Room around the tile; millimetres."""
+
+_ENGRAVE: Final = "engrave"
+
+
+def art_template(tiling: Tiling, tile: Tile) -> tuple[Drawing, complex]:
+    """Give a page with a site's tile and strokes on the layer "guide", which art leaves out, and an empty layer "engrave".
+
+    Also gives what `translate` the art needs in the design, in its units, to lie where it was drawn.
+    """
+    unit = tiling.design.unit_mm
+    outline = tile.outline
+    paths = Paths(
+        start=outline.start * unit,
+        end=outline.end * unit,
+        control=np.column_stack((np.where(outline.curved, outline.control * unit, 0), np.zeros(len(outline)))),
+        kind=outline.curved.astype(np.uint8),
+        offsets=outline.ring_offsets,
+        closed=np.ones(len(outline.ring_offsets) - 1, np.bool_),
+    )
+    elements = tile.site.elements
+    ends = (elements[:, [0, 2]] + 1j * elements[:, [1, 3]]) * unit
+    strokes = Paths.polylines([line for line in ends if line[0] != line[1]])
+    low_x, low_y, high_x, high_y = Paths.concatenate([paths, strokes]).bounds
+    # A whole millimetre, so that what is to be written into the design is short.
+    corner = complex(np.floor(low_x - MARGIN_MM), np.floor(low_y - MARGIN_MM))
+    width, height = np.ceil(high_x + MARGIN_MM) - corner.real, np.ceil(high_y + MARGIN_MM) - corner.imag
+    layers = (
+        Layer.of_paths(GUIDE, "score", "#c0c0c0", 0.1, Paths.concatenate([paths, strokes]).moved(1.0, -corner)),
+        Layer.of_paths(_ENGRAVE, "engrave", "#ff0000", 0.1, Paths.empty()),
+    )
+    return Drawing(float(width), float(height), layers, f"art of {tile.site.name}"), corner / unit

@@ -1,0 +1,71 @@
+"""Drawings written as files, and in the names and colours of a preset."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import BinaryIO
+
+from voronoi_tiles.fabrication.job import ACCURACY_MM
+from voronoi_tiles.presets import FORMATS as FILE_FORMATS
+from voronoi_tiles.presets import Format, Role, load_preset
+from voronoi_tiles.vector.curves.conversion import to_cubics
+from voronoi_tiles.vector.curves.paths import ARC
+from voronoi_tiles.vector.writers.drawing import Drawing
+
+FORMATS: tuple[Format, ...] = FILE_FORMATS
+
+CUBIC_ACCURACY = 1e-6
+"""How far a cubic curve may be from a circular arc that it stands for; millimetres: what files hold anyway."""
+
+
+def write_drawing(
+    drawing: Drawing, file: BinaryIO, form: str, *, curves: str = "arc", accuracy: float = ACCURACY_MM
+) -> None:
+    """Write a drawing as one of FORMATS; DXF with these curves. Raises ValueError for another format."""
+    match form:
+        case "svg":
+            from voronoi_tiles.vector.writers.svgpage import write_svg
+
+            write_svg(_without_arcs(drawing), file)
+        case "dxf":
+            from voronoi_tiles.vector.writers.dxf import write_dxf
+
+            assert curves in ("arc", "spline", "polyline")
+            write_dxf(drawing, file, curves=curves, accuracy=accuracy)
+        case "pdf":
+            from voronoi_tiles.vector.writers.pdf import write_pdf
+
+            write_pdf(drawing, file)
+        case "lbrn2":
+            from voronoi_tiles.vector.writers.lbrn2 import write_lbrn2
+
+            write_lbrn2(drawing, file)
+        case _:
+            raise ValueError(f"no drawing can be written as {form!r}: use one of {', '.join(FORMATS)}")
+
+
+def recoloured(drawing: Drawing, preset_name: str, form: str) -> Drawing:
+    """Give a drawing of the layers "engrave", "inside" and "cut" the names and colours of a preset.
+
+    Raises DesignError where the preset is broken or does not read the format.
+    """
+    preset = load_preset(preset_name)
+    preset.require(form)  # type: ignore[arg-type] - one of FORMATS
+    roles: dict[str, Role] = {"engrave": "engrave", "inside": "inner", "cut": "cut"}
+    layers = []
+    for layer in drawing.layers:
+        role = roles[layer.name]
+        name = preset.layer_name(role, form)  # type: ignore[arg-type] - same
+        layers.append(replace(layer, name=name, colour=preset.colours[role], stroke=preset.stroke_width()))
+    return replace(drawing, layers=tuple(layers))
+
+
+def _without_arcs(drawing: Drawing) -> Drawing:
+    """Replace circular arcs by cubic curves."""
+    layers = [
+        replace(layer, paths=to_cubics(layer.paths, accuracy=CUBIC_ACCURACY))
+        if (layer.paths.kind == ARC).any()
+        else layer
+        for layer in drawing.layers
+    ]
+    return replace(drawing, layers=tuple(layers))

@@ -1,0 +1,177 @@
+"""Paths as straight chords: what every check measures, with the way back to the path, its pieces and its length."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from voronoi_tiles.vector.curves.paths import ARC, CUBIC, QUAD, Paths, ranges
+
+Complexes = NDArray[np.complex128]
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+CHORDS_MAX: Final = 2_000
+"""Most chords of one piece; a count. A circle of a kilometre has them at a tenth of a millimetre."""
+
+_BATCH: Final = 100_000  # chords that are compared with all others at a time
+
+
+@dataclass(frozen=True, eq=False)
+class Chords:
+    """The chords of some paths, in their order.
+
+    `start` and `end` are complex128 (n,), `piece` and `path` (intp, n) tell what each is of, `before` (float64, n) is
+    the length of its path before it. `first` (intp, p + 1) is where the chords of each path begin, `total` (float64, p)
+    the length of each path by its chords, and `ring` (bool, p) says whether it comes back to its beginning.
+    """
+
+    start: Complexes
+    end: Complexes
+    piece: Ints
+    path: Ints
+    before: Floats
+    first: Ints
+    total: Floats
+    ring: Bools
+
+    @cached_property
+    def lengths(self) -> Floats:
+        """The length of each chord."""
+        return np.abs(self.end - self.start)
+
+    @cached_property
+    def tree(self) -> shapely.STRtree:
+        """The chords by their boxes."""
+        return shapely.STRtree(lines(self.start, self.end))
+
+    def next(self, chords: Ints) -> Ints:
+        """The chord that follows each on its path; -1 after the last one of a path that is no ring."""
+        path = self.path[chords]
+        after = chords + 1
+        over = after == self.first[path + 1]
+        return np.where(over, np.where(self.ring[path], self.first[path], -1), after)
+
+    def along(self, path: Ints, at: Floats) -> tuple[Complexes, Bools]:
+        """The points of paths at these lengths from their beginnings, and which of them are on the path.
+
+        Rings go on from their beginning.
+        """
+        total = self.total[path]
+        turned = np.where(self.ring[path], np.mod(at, np.where(total > 0, total, 1.0)), at)
+        on = (turned >= 0.0) & (turned <= total)
+        place = np.clip(turned, 0.0, total)
+        chord = np.searchsorted(self._running, self._base[path] + place, side="right") - 1
+        chord = np.clip(chord, self.first[path], self.first[path + 1] - 1)
+        length = self.lengths[chord]
+        share = np.clip((place - self.before[chord]) / np.where(length > 0.0, length, 1.0), 0.0, 1.0)
+        return self.start[chord] + share * (self.end[chord] - self.start[chord]), on
+
+    def apart(self, path: Ints, one: Floats, other: Floats) -> Floats:
+        """From one length along a path to another, the shorter way round a ring; signed."""
+        way = other - one
+        total = np.where(self.ring[path] & (self.total[path] > 0), self.total[path], np.inf)
+        with np.errstate(invalid="ignore"):
+            turns = np.where(np.isfinite(total), np.round(way / total), 0.0)
+            return way - np.where(turns != 0.0, turns * total, 0.0)
+
+    @cached_property
+    def _base(self) -> Floats:
+        """The length of all paths before each."""
+        return np.append(0.0, np.cumsum(self.total))
+
+    @cached_property
+    def _running(self) -> Floats:
+        """The length of all chords before each."""
+        return self._base[self.path] + self.before
+
+    def pairs(self, reach: float) -> Iterator[tuple[Ints, Ints]]:
+        """All pairs of chords (the first before the second) whose boxes are nearer than `reach`, in batches.
+
+        A chord and the one that follows it on its path are none.
+        """
+        for low in range(0, len(self.start), _BATCH):
+            some = np.arange(low, min(low + _BATCH, len(self.start)))
+            x0, x1 = (
+                np.minimum(self.start[some].real, self.end[some].real),
+                np.maximum(self.start[some].real, self.end[some].real),
+            )
+            y0, y1 = (
+                np.minimum(self.start[some].imag, self.end[some].imag),
+                np.maximum(self.start[some].imag, self.end[some].imag),
+            )
+            one, two = self.tree.query(shapely.box(x0 - reach, y0 - reach, x1 + reach, y1 + reach))
+            one = some[one]
+            ahead = two > one
+            one, two = one[ahead].astype(np.intp), two[ahead].astype(np.intp)
+            apart = (self.next(one) != two) & (self.next(two) != one)
+            yield one[apart], two[apart]
+
+
+def lines(start: Complexes, end: Complexes) -> NDArray[np.object_]:
+    """Segments as shapely's lines."""
+    coordinates = np.empty((len(start), 2, 2))
+    for k, points in enumerate((start, end)):
+        coordinates[:, k, 0], coordinates[:, k, 1] = points.real, points.imag
+    return np.asarray(shapely.linestrings(coordinates), dtype=object)
+
+
+def chords_of(paths: Paths, accuracy: float, meeting: float) -> Chords:
+    """Chords within `accuracy` of paths; one whose ends are nearer than `meeting` is a ring."""
+    count = _counts(paths, accuracy)
+    piece = np.repeat(np.arange(len(count)), count)
+    k = ranges(np.zeros(len(count), np.intp), count)
+    steps = count[piece]
+    start, end = _points(paths, piece, k / steps), _points(paths, piece, (k + 1) / steps)
+    # Ends of pieces stay bit for bit.
+    start[k == 0], end[k == steps - 1] = paths.start, paths.end
+    path = paths.owner[piece]
+    first = np.append(0, np.cumsum(np.bincount(path, minlength=len(paths)))).astype(np.intp)
+    lengths = np.abs(end - start)
+    running = np.append(0.0, np.cumsum(lengths))
+    total = np.diff(running[first])
+    # Sums are taken anew for each path, so that the millionth is as exact as the first.
+    before = running[:-1] - running[first[:-1]][path]
+    ring = paths.closed | (np.abs(paths.end[paths.offsets[1:] - 1] - paths.start[paths.offsets[:-1]]) <= meeting)
+    return Chords(start, end, piece, path, before, first, total, ring)
+
+
+def _counts(paths: Paths, accuracy: float) -> Ints:
+    """How many chords each piece takes.
+
+    The distance between a Bezier curve and n chords is at most its second differences' largest times 1/4 (degree 2) or
+    3/4 (degree 3) over n squared; that of an arc is r (1 - cos(turn / 2n)).
+    """
+    start, end, (one, two) = paths.start, paths.end, paths.control.T
+    count = np.ones(len(start))
+    quad, cubic, arc = (np.flatnonzero(paths.kind == kind) for kind in (QUAD, CUBIC, ARC))
+    count[quad] = np.sqrt(np.abs(start - 2 * one + end)[quad] / (4 * accuracy))
+    bend = np.maximum(np.abs(start - 2 * one + two)[cubic], np.abs(one - 2 * two + end)[cubic])
+    count[cubic] = np.sqrt(0.75 * bend / accuracy)
+    if len(arc):
+        radius, turn = paths.arc_radius_and_turn(arc)
+        count[arc] = np.abs(turn) / np.sqrt(8 * accuracy / np.maximum(radius, accuracy))
+    return np.asarray(np.ceil(np.clip(np.nan_to_num(count, nan=1.0), 1.0, CHORDS_MAX)), np.intp)
+
+
+def _points(paths: Paths, piece: Ints, t: Floats) -> Complexes:
+    """The points of pieces at parameters from 0 to 1."""
+    start, end = paths.start[piece], paths.end[piece]
+    one, two = paths.control[piece].T
+    kind = paths.kind[piece]
+    s = 1 - t
+    points = s * start + t * end
+    quad, cubic, arc = (kind == QUAD), (kind == CUBIC), (kind == ARC)
+    points[quad] = (s * s * start + 2 * s * t * one + t * t * end)[quad]
+    points[cubic] = (s**3 * start + 3 * s * s * t * one + 3 * s * t * t * two + t**3 * end)[cubic]
+    if arc.any():
+        centre, radius, begin, turn = paths.circles(piece[arc])
+        points[arc] = centre + radius * np.exp(1j * (begin + t[arc] * turn))
+    return points

@@ -1,0 +1,231 @@
+"""Where cut lines meet: along a length (cut twice), crossing, or touching."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voronoi_tiles.preflight.chords import Chords
+from voronoi_tiles.preflight.pairs import cross, distinct, dot, nearest, runs
+from voronoi_tiles.vector.curves.paths import Paths
+
+Complexes = NDArray[np.complex128]
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+OVERLAP: Final = 40.0
+"""From which length on lines that run along each other are cut twice; in tolerances. Two lines that part at an angle of
+a degree and a half stay within one tolerance for as long."""
+
+MOST: Final = 0.9
+"""The same as a share of the shorter path, for those that are short altogether."""
+
+AROUND: Final = 4.0
+"""How far from a meeting place it is seen which way the lines go on; in tolerances."""
+
+_PARALLEL: Final = np.sin(np.radians(15.0))
+
+
+@dataclass(frozen=True, eq=False)
+class Contacts:
+    """Pairs of chords that are within the tolerance.
+
+    `one` and `two` are the chords, `at_one` and `at_two` the lengths along their paths where they are nearest, `point`
+    that place and `distance` how near. Along path one they run along each other from `low` to `high`, the same length
+    where they only meet.
+    """
+
+    one: Ints
+    two: Ints
+    at_one: Floats
+    at_two: Floats
+    point: Complexes
+    distance: Floats
+    low: Floats
+    high: Floats
+
+    def take(self, which: Ints | Bools) -> Contacts:
+        """Some of the pairs."""
+        return Contacts(*(getattr(self, column.name)[which] for column in fields(self)))
+
+
+class Meeting(NamedTuple):
+    """A place where two paths meet: `length` is how far they run along each other, 0 where they do not."""
+
+    place: complex
+    paths: tuple[int, int]
+    pieces: tuple[int, int]
+    length: float
+
+
+def find_contacts(chords: Chords, tolerance: float) -> Contacts:
+    """All pairs of chords within the tolerance, except neighbours on a path that do not turn back."""
+    found = []
+    for first, second in chords.pairs(tolerance):
+        near = nearest(chords, first, second)
+        close = near.distance <= tolerance
+        one, two = first[close], second[close]
+        at_one = chords.before[one] + near.share_one[close] * chords.lengths[one]
+        at_two = chords.before[two] + near.share_two[close] * chords.lengths[two]
+        low, high = run_beside(chords, one, two, tolerance)
+        found.append(
+            Contacts(
+                one,
+                two,
+                at_one,
+                at_two,
+                near.one[close],
+                near.distance[close],
+                np.where(high > low, chords.before[one] + low, at_one),
+                np.where(high > low, chords.before[one] + high, at_one),
+            )
+        )
+    found.append(_turning_back(chords, tolerance))
+    return Contacts(*(np.concatenate([getattr(part, column.name) for part in found]) for column in fields(Contacts)))
+
+
+def _turning_back(chords: Chords, tolerance: float) -> Contacts:
+    """The neighbours on a path of which the second goes back over the first."""
+    one = np.arange(len(chords.start))
+    two = chords.next(one)
+    one, two = one[two >= 0], two[two >= 0]
+    way = dot(chords.end[one] - chords.start[one], chords.end[two] - chords.start[two])
+    back = (way < 0.0) & (one != two)
+    one, two = one[back], two[back]
+    low, high = run_beside(chords, one, two, tolerance)
+    over = high > low
+    one, two, low, high = one[over], two[over], low[over], high[over]
+    return Contacts(
+        one,
+        two,
+        chords.before[one] + chords.lengths[one],
+        chords.before[two],
+        chords.end[one],
+        np.zeros(len(one)),
+        chords.before[one] + low,
+        chords.before[one] + high,
+    )
+
+
+def run_beside(chords: Chords, one: Ints, two: Ints, tolerance: float) -> tuple[Floats, Floats]:
+    """From where to where along the first chord the second runs beside it, within the tolerance."""
+    a, b, c, d = chords.start[one], chords.end[one], chords.start[two], chords.end[two]
+    length, other = chords.lengths[one], chords.lengths[two]
+    along = (b - a) / np.where(length > 0, length, 1.0)
+    begin, end = dot(c - a, along), dot(d - a, along)
+    beside, beside_end = cross(along, c - a), cross(along, d - a)
+    low, high = np.maximum(np.minimum(begin, end), 0.0), np.minimum(np.maximum(begin, end), length)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slope = (beside_end - beside) / (end - begin)
+        bounds = np.sort(np.stack(((-tolerance - beside) / slope, (tolerance - beside) / slope)) + begin, axis=0)
+    level = np.abs(beside_end - beside) <= 1e-9 * tolerance
+    low = np.where(level, low, np.maximum(low, np.nan_to_num(bounds[0], nan=0.0)))
+    high = np.where(level, high, np.minimum(high, np.nan_to_num(bounds[1], nan=0.0)))
+    none = np.abs(beside_end - beside) > _PARALLEL * other
+    none |= level & (np.abs(beside) > tolerance)
+    return low, np.where(none, low, high)
+
+
+def overlaps(chords: Chords, contacts: Contacts, tolerance: float) -> tuple[list[Meeting], Bools]:
+    """Where paths run along each other, and which contacts belong to that."""
+    path_one, path_two = chords.path[contacts.one], chords.path[contacts.two]
+    order, begins = runs(path_one, path_two, contacts.low, contacts.high, AROUND * tolerance)
+    part = np.zeros(len(order), np.bool_)
+    if not len(order):
+        return [], part
+    low, high = contacts.low[order], contacts.high[order]
+    # What only meets beside a run makes it no longer.
+    width = np.where(high > low, high, -np.inf)
+    first = np.minimum.reduceat(np.where(high > low, low, np.inf), begins)
+    last = np.maximum.reduceat(width, begins)
+    runs_along = last > first
+    length = np.zeros(len(begins))
+    length[runs_along] = last[runs_along] - first[runs_along]
+    one, two = path_one[order][begins], path_two[order][begins]
+    shorter = np.minimum(chords.total[one], chords.total[two])
+    long = (length >= OVERLAP * tolerance) | ((length >= MOST * shorter) & (length > AROUND * tolerance))
+    group = np.repeat(np.arange(len(begins)), np.diff(np.append(begins, len(order))))
+    part[order] = long[group]
+    which = np.flatnonzero(long)
+    middle = np.zeros(len(begins))
+    middle[long] = (first[long] + last[long]) / 2
+    places, _ = chords.along(one[which], middle[which])
+    # The pieces are those of the contact that is nearest to the middle.
+    off = np.abs((low + high) / 2 - middle[group])
+    best = np.lexsort((off, group))[begins]
+    chosen = contacts.take(order[best][which])
+    return [
+        Meeting(complex(place), (int(k), int(m)), (int(chords.piece[i]), int(chords.piece[j])), float(far))
+        for place, k, m, i, j, far in zip(
+            places, one[which], two[which], chosen.one, chosen.two, length[which], strict=True
+        )
+    ], part
+
+
+def crossings(
+    chords: Chords, paths: Paths, contacts: Contacts, tolerance: float
+) -> tuple[list[Meeting], list[Meeting]]:
+    """Where paths cross, and where they touch and part on the same side.
+
+    Not where one of them ends, and not at a point that both have as a node: there lines are joined. Lines that pass
+    there from one side of the other to the other side cross.
+    """
+    path_one, path_two = chords.path[contacts.one], chords.path[contacts.two]
+    order, begins = runs(path_one, path_two, contacts.at_one, contacts.at_one, AROUND * tolerance)
+    if not len(order):
+        return [], []
+    group = np.repeat(np.arange(len(begins)), np.diff(np.append(begins, len(order))))
+    best = order[np.lexsort((contacts.distance[order], group))[begins]]
+    chosen = contacts.take(best)
+    one, two = path_one[best], path_two[best]
+    away_one = chords.apart(path_one[order], chosen.at_one[group], contacts.at_one[order])
+    away_two = chords.apart(path_two[order], chosen.at_two[group], contacts.at_two[order])
+    reach = AROUND * tolerance
+    sides = []
+    inside = np.ones(len(best), np.bool_)
+    for path, at, away in ((one, chosen.at_one, away_one), (two, chosen.at_two, away_two)):
+        for least, sign in ((np.minimum, -1.0), (np.maximum, 1.0)):
+            point, on = chords.along(path, at + least.reduceat(away, begins) + sign * reach)
+            sides.append(point)
+            inside &= on
+    # A sharp corner is near to itself, too.
+    own = np.where(one == two, np.abs(chords.apart(one, chosen.at_one, chosen.at_two)), np.inf)
+    narrow = np.minimum.reduceat(
+        np.where(
+            (path_one == path_two)[order],
+            np.abs(chords.apart(path_one[order], contacts.at_one[order], contacts.at_two[order])),
+            np.inf,
+        ),
+        begins,
+    )
+    inside &= np.minimum(own, narrow) > 2 * reach
+    joined = _at_node(chords, paths, chosen.one, chosen.point, tolerance) & _at_node(
+        chords, paths, chosen.two, chosen.point, tolerance
+    )
+    before, after, other, beyond = (side - chosen.point for side in sides)
+    sweep = np.mod(np.angle(after * before.conj()), 2 * np.pi)
+    within = [np.mod(np.angle(way * before.conj()), 2 * np.pi) < sweep for way in (other, beyond)]
+    crossed = within[0] != within[1]
+    kept = inside & ~joined
+    return tuple(  # type: ignore[return-value]
+        _distinct(chords, chosen, np.flatnonzero(kept & side), reach) for side in (crossed, ~crossed)
+    )
+
+
+def _at_node(chords: Chords, paths: Paths, chord: Ints, point: Complexes, tolerance: float) -> Bools:
+    """Whether points on chords are at an end of their piece."""
+    piece = chords.piece[chord]
+    off = np.minimum(np.abs(paths.start[piece] - point), np.abs(paths.end[piece] - point))
+    return np.asarray(off <= 2 * tolerance, np.bool_)
+
+
+def _distinct(chords: Chords, chosen: Contacts, which: Ints, reach: float) -> list[Meeting]:
+    """Meetings, each place of two paths once."""
+    some = chosen.take(which)
+    pairs = list(zip(chords.path[some.one].tolist(), chords.path[some.two].tolist(), strict=True))
+    pieces = list(zip(chords.piece[some.one].tolist(), chords.piece[some.two].tolist(), strict=True))
+    return [Meeting(complex(some.point[k]), pairs[k], pieces[k], 0.0) for k in distinct(pairs, some.point, 2 * reach)]

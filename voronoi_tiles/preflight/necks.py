@@ -1,0 +1,158 @@
+"""Necks: places where two cut lines face each other across less than a limit."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from voronoi_tiles.preflight.chords import Chords, lines
+from voronoi_tiles.preflight.contacts import run_beside
+from voronoi_tiles.preflight.pairs import Nearest, distinct, dot, nearest, runs
+from voronoi_tiles.vector.curves.paths import ranges
+
+Complexes = NDArray[np.complex128]
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+_APPROACH: Final = 1e-6
+"""By how much of its length a line may come nearer to be still parallel; no unit. Rounding leaves 1e-10."""
+
+
+class Neck(NamedTuple):
+    """A narrow place: its middle, its width, the paths and chords on both sides, and whether material is between."""
+
+    place: complex
+    width: float
+    paths: tuple[int, int]
+    chords: tuple[int, int]
+    material: bool
+
+
+class _Facing(NamedTuple):
+    """Pairs of chords, and where they are nearest."""
+
+    one: Ints
+    two: Ints
+    near: Nearest
+
+    def take(self, which: Bools) -> _Facing:
+        """Some of the pairs."""
+        return _Facing(self.one[which], self.two[which], self.near.take(which))
+
+
+def find_necks(chords: Chords, touching: float, limit: float) -> list[Neck]:
+    """Where lines face each other across less than `limit` and more than `touching`, each narrow place once.
+
+    A place is narrow where the distance between two lines is at its least, or stays the same: no line that leaves
+    either point comes nearer to the other one. So a corner, however sharp, is none. Between lines there is material
+    inside a piece; where lines share points, as in files that cut every edge once, and beside open ones, everywhere.
+    """
+    joints = _Joints(chords)
+    found = []
+    for one, two in chords.pairs(limit):
+        near = nearest(chords, one, two)
+        some = _Facing(one, two, near).take((near.distance < limit) & (near.distance > touching))
+        some = some.take(joints.is_least(some.one, some.near.share_one, some.near.one, some.near.two))
+        some = some.take(joints.is_least(some.two, some.near.share_two, some.near.two, some.near.one))
+        found.append(some.take(_see_each_other(chords, some.near)))
+    one, two = (np.concatenate([part[k] for part in found]) for k in (0, 1))
+    if not len(one):
+        return []
+    near = Nearest.concatenate([part.near for part in found])
+    return _narrowest(chords, one, two, near, limit, joints.shared)
+
+
+def _narrowest(chords: Chords, one: Ints, two: Ints, near: Nearest, limit: float, shared: bool) -> list[Neck]:
+    """The least of each run of narrow places."""
+    at = chords.before[one] + near.share_one * chords.lengths[one]
+    low, high = run_beside(chords, one, two, limit)
+    beside = high > low
+    low, high = (np.where(beside, chords.before[one] + bound, at) for bound in (low, high))
+    order, begins = runs(chords.path[one], chords.path[two], low, high, limit)
+    group = np.repeat(np.arange(len(begins)), np.diff(np.append(begins, len(order))))
+    best = order[np.lexsort((near.distance[order], group))[begins]]
+    middle = (near.one[best] + near.two[best]) / 2
+    material = np.ones(len(middle), np.bool_) if shared else _is_material(chords, middle)
+    necks = [
+        Neck(
+            complex(place),
+            float(near.distance[k]),
+            (int(chords.path[one[k]]), int(chords.path[two[k]])),
+            (int(one[k]), int(two[k])),
+            bool(solid),
+        )
+        for k, place, solid in zip(best.tolist(), middle, material, strict=True)
+    ]
+    necks.sort(key=lambda neck: neck.width)
+    places = np.array([neck.place for neck in necks])
+    return [necks[k] for k in sorted(distinct([neck.paths for neck in necks], places, limit))]
+
+
+class _Joints:
+    """The chords that leave each point where chords meet, whatever paths they are of."""
+
+    def __init__(self, chords: Chords) -> None:
+        self._chords = chords
+        points = np.concatenate((chords.start, chords.end))
+        # Points that are equal to a nanometre are one; lines that are joined have the same bits, or a writer's digits.
+        grid = np.round(np.stack((points.real, points.imag), axis=1) / 1e-6)
+        _, joint = np.unique(grid, axis=0, return_inverse=True)
+        joint = joint.ravel()
+        self._of_start, self._of_end = joint[: len(chords.start)], joint[len(chords.start) :]
+        way = chords.end - chords.start
+        unit = way / np.where(chords.lengths > 0, chords.lengths, 1.0)
+        leaving = np.concatenate((unit, -unit))
+        path = np.tile(chords.path, 2)
+        order = np.argsort(joint, kind="stable")
+        same = joint[order][1:] == joint[order][:-1]
+        self.shared = bool((same & (path[order][1:] != path[order][:-1])).any())
+        """Whether different paths share a point."""
+        self._ways = leaving[order]
+        self._counts = np.bincount(joint)
+        self._first = np.cumsum(self._counts) - self._counts
+
+    def is_least(self, chord: Ints, share: Floats, point: Complexes, other: Complexes) -> Bools:
+        """Whether no line that leaves a point comes nearer to the other one."""
+        result = np.ones(len(chord), np.bool_)
+        ends = np.flatnonzero((share == 0.0) | (share == 1.0))
+        if not len(ends):
+            return result
+        joint = np.where(share[ends] == 0.0, self._of_start[chord[ends]], self._of_end[chord[ends]])
+        counts = self._counts[joint]
+        ways = self._ways[ranges(self._first[joint], counts)]
+        towards = other[ends] - point[ends]
+        towards = towards / np.abs(towards)
+        nearer = dot(ways, np.repeat(towards, counts)) > _APPROACH
+        begins = np.cumsum(counts) - counts
+        # A loose end is no neck, but an end that should have met something.
+        result[ends] = ~np.logical_or.reduceat(nearer, begins) & (counts > 1)
+        return result
+
+
+def _see_each_other(chords: Chords, near: Nearest) -> Bools:
+    """Whether no other line is between the two points."""
+    seen = np.ones(len(near.one), np.bool_)
+    if not len(seen):
+        return seen
+    inner = 1e-3 * (near.two - near.one)
+    between = lines(near.one + inner, near.two - inner)
+    blocked, _ = chords.tree.query(between, predicate="intersects")
+    seen[blocked] = False
+    return seen
+
+
+def _is_material(chords: Chords, place: Complexes) -> Bools:
+    """Whether places are inside a piece, within an odd number of the rings; beside lines that are no rings all is."""
+    rings = np.flatnonzero(np.diff(chords.first) >= 3)
+    if not chords.ring.all() or not len(rings):
+        return np.ones(len(place), np.bool_)
+    counts = np.diff(chords.first)[rings]
+    which = ranges(chords.first[rings], counts)
+    points = np.stack((chords.start[which].real, chords.start[which].imag), axis=1)
+    polygons = shapely.polygons(shapely.linearrings(points, indices=np.repeat(np.arange(len(rings)), counts)))
+    inside, _ = shapely.STRtree(polygons).query(shapely.points(place.real, place.imag), predicate="within")
+    return np.asarray(np.bincount(inside, minlength=len(place)) % 2 == 1, np.bool_)
