@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from itertools import pairwise
 
 import numpy as np
@@ -11,6 +12,7 @@ from hypothesis import strategies as st
 from sheets import Sheet, check_joints, circle, period
 
 from voronoi_tiles.vector.curves.paths import Complexes, Ints, Paths
+from voronoi_tiles.vector.sheet import tour
 from voronoi_tiles.vector.sheet.region import Region
 from voronoi_tiles.vector.sheet.strands import Strands
 from voronoi_tiles.vector.sheet.tour import short_tour
@@ -159,14 +161,14 @@ def way(start: Complexes, end: Complexes, order: Ints, turned: list[bool]) -> fl
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 17, 200])
-def test_a_tour_goes_to_the_nearest_end(count: int) -> None:
+def test_a_tour_begins_as_one_that_goes_to_the_nearest_end(count: int) -> None:
     """As a plain search over all ends does; strokes that are long and short, open and closed."""
     rng = np.random.default_rng(count)
     for spread in (0.01, 0.1, 1.0):
         start = rng.uniform(0, 1, count) + 1j * rng.uniform(0, 1, count)
         end = start + spread * (rng.standard_normal(count) + 1j * rng.standard_normal(count))
         end = np.where(rng.uniform(0, 1, count) < 0.3, start, end)
-        order, turned = short_tour(start, end)
+        order, turned = tour.nearest_first(start, end)
         wanted, _ = nearest_first(start, end)
         assert order.tolist() == wanted
         assert not turned[start[order] == end[order]].any()
@@ -180,9 +182,41 @@ def test_a_tour_takes_every_stroke_once(strokes: list[tuple[int, int, int, int]]
     """On a small grid, where many ends coincide; to each next one by a nearest end."""
     start = np.array([complex(a, b) for a, b, _, _ in strokes])
     end = np.array([complex(c, d) for _, _, c, d in strokes])
-    order, turned = short_tour(start.astype(np.complex128), end.astype(np.complex128))
+    order, turned = tour.nearest_first(start.astype(np.complex128), end.astype(np.complex128))
     assert sorted(order.tolist()) == list(range(len(strokes)))
     first, last = np.where(turned, end[order], start[order]), np.where(turned, start[order], end[order])
     for k in range(len(strokes) - 1):
         rest = np.concatenate((start[order[k + 1 :]], end[order[k + 1 :]]))
-        assert abs(first[k + 1] - last[k]) == np.abs(rest - last[k]).min()
+        assert abs(first[k + 1] - last[k]) <= np.abs(rest - last[k]).min() + 1e-12
+
+
+@SETTINGS
+@given(st.lists(st.tuples(*[st.integers(0, 5)] * 4), max_size=40))
+def test_a_tour_is_never_longer_than_by_nearest_ends(strokes: list[tuple[int, int, int, int]]) -> None:
+    """Every stroke once, closed ones forwards, and no way longer than without the reversals."""
+    start = np.array([complex(a, b) for a, b, _, _ in strokes], np.complex128)
+    end = np.array([complex(c, d) for _, _, c, d in strokes], np.complex128)
+    order, turned = short_tour(start, end)
+    assert sorted(order.tolist()) == list(range(len(strokes)))
+    assert not turned[start[order] == end[order]].any()
+    first, back = tour.nearest_first(start, end)
+    assert way(start, end, order, turned.tolist()) <= way(start, end, first, back.tolist()) + 1e-9
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_tour_is_nearly_the_shortest(seed: int) -> None:
+    """Seven closed strokes in all orders that begin alike: the tour is within a fifth of the shortest of them."""
+    place = np.random.default_rng(seed).uniform(0, 1, 14).view(np.complex128)
+    order, _ = short_tour(place, place)
+    forwards = [False] * len(place)
+    rest = order[1:].tolist()
+    least = min(way(place, place, np.array([order[0], *turn]), forwards) for turn in itertools.permutations(rest))
+    assert way(place, place, order, forwards) <= 1.2 * least
+
+
+def test_reversals_shorten_a_large_tour() -> None:
+    """Among a thousand random places the tour is within 15 percent of what the shortest one is expected to be."""
+    place = np.random.default_rng(5).uniform(0, 1, 2000).view(np.complex128)
+    order, _ = short_tour(place, place)
+    expected = 0.7124 * np.sqrt(len(place))  # Beardwood, Halton, Hammersley 1959; Johnson, McGeoch 1996
+    assert way(place, place, order, [False] * len(place)) < 1.15 * expected
