@@ -16,8 +16,10 @@ import pytest
 from click.testing import CliRunner
 
 import voronoi_tiles as vt
+from voronoi_tiles import Design, Job
 from voronoi_tiles.commands.preflight import preflight as command
 from voronoi_tiles.drawings.dxf import dxf_drawing
+from voronoi_tiles.drawings.recipe import job_of, tab_width
 from voronoi_tiles.drawings.svg import svg_drawing
 from voronoi_tiles.errors import DesignError
 from voronoi_tiles.preflight import Finding, Limits, PreflightReport, judge, preflight, report_text
@@ -326,3 +328,41 @@ def test_command_line(tmp_path: Path) -> None:
     ):
         assert run(command, [str(good), *options]).exit_code == 2
     assert run(command, [str(good), "-o", str(good)]).exit_code == 2
+
+
+def test_tabs_are_no_gaps(tmp_path: Path) -> None:
+    """Bridges of the width that is named, or that a file of our own names, are remarks; others are still gaps."""
+    sides = "<path d='M10.2 10H30'/><path d='M30 10.4V30'/><path d='M30 30H10V10.4'/>"
+    gaps = judged(sides)
+    assert not gaps.passed
+    assert any("--tabs 0.4mm" in finding.remedy for finding in gaps.findings)
+    tabbed = judged(sides, limits=Limits(tabs=0.4))
+    kinds = {finding.kind: finding.severity for finding in tabbed.findings}
+    assert kinds["tab"] == "info"
+    assert [finding.value for finding in tabbed.findings if finding.kind == "tab"] == [pytest.approx(0.4)]
+    assert not tabbed.passed  # the other gap is not as wide
+    design = Path(__file__).parents[1] / "examples" / "p4-key.toml"
+    for form in ("svg", "dxf"):
+        target = tmp_path / f"sheet.{form}"
+        job = Job(sheet=(300.0, 200.0), margin=5.0, kerf=0.15, tabs=0.25)
+        Design.load(design).tessellate().export(target, job=job)
+        report = preflight(target)
+        assert report.passed
+        assert {finding.kind for finding in report.findings if finding.severity != "info"} <= {"short"}
+        assert not preflight(target, limits=Limits(tabs=0.3)).passed
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        b"",
+        b'<vt:recipe job="{&quot;tabs&quot;: &quot;wide&quot;}" />',
+        b'<vt:recipe job="{broken" />',
+        b'<vt:recipe job="[1, 2]" />',
+        b'999\nrecipe {"job": 3}\n',
+        b"999\nrecipe " + b"[" * 100_000,
+    ],
+)
+def test_a_broken_recipe_is_none(data: bytes) -> None:
+    """It only says what is meant: a file is judged without it."""
+    assert tab_width(job_of(data)) == 0.0

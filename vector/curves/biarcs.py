@@ -112,8 +112,8 @@ def _arranged(paths: Paths, corner: float) -> tuple[Paths, Bools]:
     full = np.flatnonzero(counts)
     shift = np.zeros(len(paths), np.intp)
     if len(full):
-        corner = np.where(smooth, counts[owner], number)
-        shift[full] = np.minimum.reduceat(corner, begin[full]) % counts[full]
+        place = np.where(smooth, counts[owner], number)
+        shift[full] = np.minimum.reduceat(place, begin[full]) % counts[full]
     order = begin[owner] + (number + shift[owner]) % counts[owner]
     begins = ~smooth[order]
     begins[begin[full]] = True

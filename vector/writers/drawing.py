@@ -20,8 +20,8 @@ class Layer:
 
     `paths` are in millimetres from the page's lower left corner, y up. Item k, one object of the file, are the paths
     from `items[k]` up to, not including, `items[k + 1]` (intp). `labels`, one for each item, name them; empty where
-    they have no names. `colour` is "#rrggbb", `stroke` the width to draw it with, in millimetres. With `filled` the target
-    takes what is filled, not what is drawn, for this work.
+    they have no names. `colour` is "#rrggbb", `stroke` the width to draw it with, in millimetres. With `filled` the
+    target takes what is filled, not what is drawn, for this work.
     """
 
     name: str

@@ -23,6 +23,11 @@ def _read_length(_context: click.Context, _parameter: click.Parameter, text: str
     return length
 
 
+def _read_optional(context: click.Context, parameter: click.Parameter, text: str | None) -> float | None:
+    """Read a length that may be left out."""
+    return None if text is None else _read_length(context, parameter, text)
+
+
 def _read_tolerance(context: click.Context, parameter: click.Parameter, text: str) -> float:
     """Read a length that is greater than a nanometre."""
     length = _read_length(context, parameter, text)
@@ -63,6 +68,12 @@ def _read_tolerance(context: click.Context, parameter: click.Parameter, text: st
     help="Lines and ends that are nearer are one [default: 0.005mm].",
 )
 @click.option(
+    "--tabs",
+    metavar="LENGTH",
+    callback=_read_optional,
+    help="Gaps of this width are tabs [default: what a file of our own says].",
+)
+@click.option(
     "--layer",
     "layers",
     multiple=True,
@@ -71,7 +82,14 @@ def _read_tolerance(context: click.Context, parameter: click.Parameter, text: st
     "[default: all but those named engrave, score, ...].",
 )
 def preflight(
-    file: str, as_json: bool, output: str | None, neck: float, feature: float, tolerance: float, layers: tuple[str, ...]
+    file: str,
+    as_json: bool,
+    output: str | None,
+    neck: float,
+    feature: float,
+    tolerance: float,
+    tabs: float | None,
+    layers: tuple[str, ...],
 ) -> None:
     """Find what would spoil the cut of an SVG or DXF file: open, doubled and crossing lines, wrong size, thin necks.
 
@@ -84,7 +102,7 @@ def preflight(
 
     _refuse_output(file, output)
     try:
-        limits = Limits(tolerance=tolerance, neck=neck, feature=feature)
+        limits = Limits(tolerance=tolerance, neck=neck, feature=feature, tabs=tabs)
         report = find(file, limits=limits, layers=layers)
         if output is not None:
             from voronoi_tiles.preflight.marked import marked_svg

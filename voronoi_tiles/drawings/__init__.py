@@ -7,8 +7,10 @@ outside the file is opened, and sizes, depths and numbers of elements are limite
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 
 from voronoi_tiles.drawings.model import DrawingError, ReadDrawing, Shape, load_bytes
+from voronoi_tiles.drawings.recipe import job_of
 
 __all__ = ["DrawingError", "ReadDrawing", "Shape", "read_drawing"]
 
@@ -27,9 +29,9 @@ def read_drawing(path: str | os.PathLike[str]) -> ReadDrawing:
     if is_xml or suffix in {".svg", ".svgz"}:
         from voronoi_tiles.drawings.svg import svg_drawing
 
-        return svg_drawing(data, shown)
+        return replace(svg_drawing(data, shown), job=job_of(data))
     if suffix == ".dxf" or head.startswith((b"0", b"999", b"AutoCAD Binary DXF")):
         from voronoi_tiles.drawings.dxf import dxf_drawing
 
-        return dxf_drawing(data, shown)
+        return replace(dxf_drawing(data, shown), job=job_of(data))
     raise DrawingError("neither an SVG nor a DXF file", file=shown, remedy="Give it the suffix .svg or .dxf if it is.")

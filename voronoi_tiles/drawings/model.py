@@ -10,7 +10,7 @@ import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import BinaryIO, Final
+from typing import Any, BinaryIO, Final
 
 from voronoi_tiles.errors import DesignError
 from voronoi_tiles.vector.curves.paths import Paths
@@ -68,7 +68,8 @@ class ReadDrawing:
     `format` is "svg" or "dxf". `width` and `height` of the page are in millimetres, None where the file has no page.
     `unit` is the unit as the file declares it, "" where it declares none; with `unit_known` false the size is a guess:
     by CSS 96 user units to the inch (SVG), or millimetres (DXF). `ignored` counts what was left out, by the name of its
-    element; `clones` counts what was drawn through references (use, INSERT).
+    element; `clones` counts what was drawn through references (use, INSERT). `job` is what a file of our own says of
+    its job, empty for all others.
     """
 
     format: str
@@ -79,6 +80,7 @@ class ReadDrawing:
     shapes: tuple[Shape, ...]
     ignored: Mapping[str, int] = field(default_factory=dict)
     clones: int = 0
+    job: Mapping[str, Any] = field(default_factory=dict)
 
 
 def load_bytes(name: str) -> bytes:

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Collection
+from dataclasses import replace
 
 import numpy as np
 
 from voronoi_tiles.drawings import DrawingError, ReadDrawing, read_drawing
+from voronoi_tiles.drawings.recipe import tab_width
 from voronoi_tiles.preflight.lines import line_findings
 from voronoi_tiles.preflight.page import page_findings
 from voronoi_tiles.preflight.report import DEFAULT_LIMITS, Finding, LayerUse, Limits, PreflightReport, report_text
@@ -38,6 +40,8 @@ def judge(
     drawing: ReadDrawing, file: str, *, limits: Limits = DEFAULT_LIMITS, layers: Collection[str] = ()
 ) -> PreflightReport:
     """Find what would spoil the cut of a drawing that was read; `file` is its name in the report."""
+    if limits.tabs is None:
+        limits = replace(limits, tabs=tab_width(drawing.job))
     cut = cut_shapes(drawing, layers)
     uses = layer_uses(drawing, cut)
     drawn = Paths.concatenate([shape.paths for shape in drawing.shapes])

@@ -18,6 +18,9 @@ from voronoi_tiles.preflight.subject import Subject
 SLIT: Final = 3.0
 """An open path is an open contour when its ends are nearer than its length over this, else a slit; no unit."""
 
+TAB_SHARE: Final = 0.05
+"""How far the width of a gap may be from that of a tab, relative to it: lines bend across it."""
+
 NECK_ACCURACY: Final = 0.005
 """How far the chords between which necks are measured lie from the curves; relative to the limit."""
 
@@ -40,13 +43,14 @@ def line_findings(subject: Subject, limits: Limits) -> Iterator[Finding]:
 def _ends(subject: Subject, limits: Limits) -> Iterator[Finding]:
     """Ends that do not meet, short of another line or with nothing near."""
     chords = subject.chords
-    ends = find_ends(chords, limits.tolerance, limits.gap)
+    tabs = limits.tabs or 0.0
+    ends = find_ends(chords, limits.tolerance, max(limits.gap, (1 + TAB_SHARE) * tabs))
     named: set[tuple[int, int]] = set()
     wide: set[int] = set()
     for k in np.flatnonzero(ends.free).tolist():
         path = int(ends.path[k])
         if math.isfinite(ends.distance[k]):
-            finding = _gap(subject, ends, k, named)
+            finding = _gap(subject, ends, k, named, tabs)
             if finding is not None:
                 yield finding
             continue
@@ -78,7 +82,7 @@ def _ends(subject: Subject, limits: Limits) -> Iterator[Finding]:
             )
 
 
-def _gap(subject: Subject, ends: Ends, k: int, named: set[tuple[int, int]]) -> Finding | None:
+def _gap(subject: Subject, ends: Ends, k: int, named: set[tuple[int, int]], tabs: float) -> Finding | None:
     """The gap between an end and the nearest line; None where it was named from its other side."""
     path, other = int(ends.path[k]), int(subject.chords.path[ends.chord[k]])
     near = complex(ends.near[k])
@@ -87,14 +91,20 @@ def _gap(subject: Subject, ends: Ends, k: int, named: set[tuple[int, int]]) -> F
     if key in named:
         return None
     named.add(key)
+    place = subject.place((complex(ends.point[k]) + near) / 2)
+    width = float(ends.distance[k])
+    if tabs > 0.0 and abs(width - tabs) <= TAB_SHARE * tabs:
+        return Finding(
+            "tab", "info", f"tab of {width:.4g} mm", "Break it out by hand.", place, width, subject.sources(path, other)
+        )
     what = "two ends" if facing else "an end and the line that it should meet"
     return Finding(
         "gap",
         "error",
-        f"gap of {ends.distance[k]:.4g} mm between {what}",
-        "Join them: the piece would hang on what is not cut.",
-        subject.place((complex(ends.point[k]) + near) / 2),
-        float(ends.distance[k]),
+        f"gap of {width:.4g} mm between {what}",
+        f"Join them: the piece would hang on what is not cut. If they are tabs: --tabs {width:.3g}mm.",
+        place,
+        width,
         subject.sources(path, other),
     )
 

@@ -23,7 +23,7 @@ class Limits:
 
     Lines nearer than `tolerance` are one place; ends nearer than `gap` should have met; material narrower than `neck`
     and contours smaller than `feature` break or burn; pieces shorter than `shortest` are rubbish; corners sharper than
-    `corner` burn.
+    `corner` burn. Gaps as wide as `tabs` are bridges that are meant; None takes what a file of our own says.
     """
 
     tolerance: float = 0.005
@@ -32,6 +32,7 @@ class Limits:
     feature: float = 1.0
     shortest: float = 0.01
     corner: float = 20.0
+    tabs: float | None = None
 
 
 DEFAULT_LIMITS: Final = Limits()
@@ -161,7 +162,7 @@ def report_text(report: PreflightReport) -> str:
         lines.append(f"drawing   {_size(x1 - x0, y1 - y0)} from ({x0:.6g}, {y0:.6g}) to ({x1:.6g}, {y1:.6g})")
     shortest = "" if report.shortest is None else f", the shortest {report.shortest:.4g} mm"
     lines += [
-        f"cut       {report.length:.6g} mm, {report.pieces:,} pieces{shortest}, {report.nodes:,} nodes",
+        f"cut       {report.length:.6g} mm, {report.pieces:,} segments{shortest}, {report.nodes:,} nodes",
         f"places    in mm, y {'down from the upper left corner' if drawing.format == 'svg' else 'up'}",
         "",
     ]
@@ -176,7 +177,7 @@ def report_text(report: PreflightReport) -> str:
         )
         for use in report.layers
     ]
-    lines += _columns([("layer", "colour", "objects", "pieces", "mm", ""), *rows])
+    lines += _columns([("layer", "colour", "objects", "segments", "mm", ""), *rows])
     for group in grouped(report.findings):
         first = group[0]
         lines += ["", f"{first.severity.upper()}  {first.kind}: {len(group):,} found" if len(group) > 1 else ""]
