@@ -36,7 +36,7 @@ def test_every_preset_is_whole(name: str) -> None:
 @pytest.mark.parametrize(
     ("name", "cut", "engrave", "stroke"),
     [
-        ("plain", "#000000", "#000000", 0.025),
+        ("plain", "#000000", "#ff0000", 0.025),
         ("lightburn", "#000000", "#ff0000", 0.025),
         ("redcut", "#ff0000", "#000000", 0.025),
         ("ponoko", "#0000ff", "#ff0000", 0.01),
