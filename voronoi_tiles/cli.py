@@ -27,6 +27,7 @@ from voronoi_tiles.commands.common import (
     PATH,
     PROGRAM,
     explain,
+    refuse_existing,
     refuse_output,
     report_error,
     say,
@@ -37,7 +38,6 @@ from voronoi_tiles.commands.export import export
 from voronoi_tiles.commands.fabrication import coupon, report, template
 from voronoi_tiles.commands.options import Command, with_renderer
 from voronoi_tiles.commands.preflight import preflight
-from voronoi_tiles.errors import OutputError
 
 if TYPE_CHECKING:
     from voronoi_tiles.raster.render import Choice, Method
@@ -252,8 +252,7 @@ def new(group: str, output: str) -> None:
     if group not in GROUP_NAMES:
         raise click.BadParameter(f"unknown group {group!r}. Use one of {' '.join(GROUP_NAMES)}.", param_hint="GROUP")
     stream = output == STDOUT or is_special(output)
-    if not stream and os.path.lexists(output):
-        raise OutputError(f"{output} exists already", path=output, remedy="Choose another name, or remove it first.")
+    refuse_existing(output)
     write_whole(output, starter_text(group, None if stream else output).encode())
 
 

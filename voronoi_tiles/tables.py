@@ -74,7 +74,7 @@ def report_text(figures: dict[str, Any]) -> str:
             f"{pieces['turned_over']:,} turned over",
             "colours": f"{figures['colours']} suffice for the whole tessellation",
             "cut": f"{cut['length'] / 1000:.3f} m, {cut['pierces']:,} pierces, {cut['travel'] / 1000:.3f} m of travel",
-            "curves": f"{figures['curves']}{accuracy}; the shortest piece is {figures['shortest_piece']:.3g} mm",
+            "curves": f"{figures['curves']}{accuracy}; the shortest segment is {figures['shortest_piece']:.3g} mm",
             "time": f"{figures['time'] / 60:.1f} min, acceleration not counted",
         }
     )

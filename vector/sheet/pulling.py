@@ -3,70 +3,164 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import Final
+from dataclasses import dataclass, replace
+from typing import Any, Final
 
 import numpy as np
 
 from voronoi_tiles.vector.curves.paths import CUBIC, LINE, Complexes, Paths
 from voronoi_tiles.vector.sheet.period import Period
 
-_STEPS: Final = 64
-"""Spreads that are tried between none and one that is surely enough; a count."""
+_DIRECTIONS: Final = 12
+"""Directions of the greater stretch that are tried; a count."""
+
+_RATIOS: Final = (1.0, 0.6, 0.35, 0.15, 0.0)
+"""Lesser stretches that are tried, as shares of the greater one."""
+
+_GROWTH: Final = 1.1
+"""From one stretch that is tried to the next; a factor."""
+
+_FIRST: Final = 0.3
+"""The first stretch that is tried moves tiles by this share of the gap."""
+
+_FARTHEST: Final = 64.0
+"""Largest stretch that is tried; a factor."""
+
+_COARSE: Final = 0.02
+"""How far the contours by which stretches are chosen may lie from the true ones; a share of the gap."""
 
 _BISECTIONS: Final = 40
 
 
-def spread(contours: Sequence[Paths], centres: Complexes, basis: Complexes, gap: float) -> float:
-    """The factor by which the places of tiles have to be spread, so that contours are `gap` apart.
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A symmetric linear map of the plane, z -> `p` z + `q` conj(z): it stretches along one line, and across it."""
 
-    `contours` are those of the tiles of one period, as LINE pieces, `centres` the points that are spread, `basis`
-    the lattice vectors. Every copy moves as a whole, from its centre c to s c. Tiles that are hooked into each other
-    may meet again farther out: s is the least factor from which on, in steps of a sixty-fourth of the range, none do.
+    p: float
+    q: complex
+
+    @classmethod
+    def along(cls, direction: float, along: float, across: float) -> Stretch:
+        """Stretch by 1 + `along` in a direction (radians), and by 1 + `across` at right angles to it."""
+        return cls(1.0 + (along + across) / 2, (along - across) / 2 * complex(np.exp(2j * direction)))
+
+    def __call__(self, z: Complexes) -> Complexes:
+        """The images of points."""
+        return np.asarray(self.p * z + self.q * z.conj())
+
+    def inverse(self, z: complex) -> complex:
+        """The point with this image."""
+        return (self.p * z - self.q * z.conjugate()) / self.area
+
+    @property
+    def area(self) -> float:
+        """By how much areas grow."""
+        return self.p**2 - abs(self.q) ** 2
+
+    @property
+    def is_identity(self) -> bool:
+        """Whether nothing moves."""
+        return self.p == 1.0 and self.q == 0.0
+
+
+UNSTRETCHED: Final = Stretch(1.0, 0j)
+
+
+def spread(contours: Sequence[Paths], centres: Complexes, basis: Complexes, gap: float) -> Stretch:
+    """The stretch of the places of tiles after which contours are `gap` apart: of those tried, the one with least room.
+
+    `contours` are those of the tiles of one period, as LINE pieces, `centres` the points that are stretched, `basis`
+    the lattice vectors. Every copy moves as a whole. Tiles that are hooked into each other come apart sooner in one
+    direction than in another: stretches in twelve directions, with five ratios of the stretch across to that along,
+    are tried, each with the least size that parts all tiles, in steps of a tenth. Raises ValueError for tiles that
+    none of them parts: those in a hole of another.
     """
     import shapely
-    import shapely.affinity
 
-    shapes = [_shape(contour) for contour in contours]
-    boxes = np.array([shape.bounds for shape in shapes])
-    extent = float(np.hypot(boxes[:, 2] - boxes[:, 0], boxes[:, 3] - boxes[:, 1]).max())
-    pairs = _pairs(boxes, basis, 2 * extent + gap)
-    moves = [(one, two, complex(step), complex(centres[two] + step - centres[one])) for one, two, step in pairs]
-    least = min(abs(apart) for *_, apart in moves)
+    shapes = np.array([_shape(contour) for contour in contours])
+    if _Layout(shapes, centres, basis, gap).clear(UNSTRETCHED):
+        return UNSTRETCHED
+    coarse = _Layout(shapely.simplify(shapes, _COARSE * gap), centres, basis, gap)
+    best: tuple[float, float, float, float] | None = None
+    for ratio in _RATIOS:
+        for direction in np.pi * np.arange(_DIRECTIONS if ratio < 1.0 else 1) / _DIRECTIONS:
+            size = coarse.least(float(direction), ratio, np.inf if best is None else best[0])
+            if size is not None:
+                best = ((1 + size) * (1 + ratio * size), float(direction), ratio, size)
+    if best is None:
+        raise ValueError("a tile lies within another, and cannot be pulled out")
+    _, direction, ratio, size = best
+    return _Layout(shapes, centres, basis, gap).fitted(direction, ratio, size)
 
-    def clear(factor: float) -> bool:
-        for one, two, step, apart in moves:
-            shift = step + (factor - 1.0) * apart
-            x0, y0, x1, y1 = boxes[two] + np.array([shift.real, shift.imag, shift.real, shift.imag])
-            a0, b0, a1, b1 = boxes[one]
-            if max(x0 - a1, a0 - x1, y0 - b1, b0 - y1) >= gap:
-                continue
-            other = shapely.affinity.translate(shapes[two], shift.real, shift.imag)
-            if shapely.distance(shapes[one], other) < gap:
+
+class _Layout:
+    """The tiles of a layout that is stretched: which of them are nearer than the gap."""
+
+    def __init__(self, shapes: Any, centres: Complexes, basis: Complexes, gap: float) -> None:
+        self.shapes = shapes
+        self.gap = gap
+        self.boxes = np.array([shape.bounds for shape in shapes])
+        across = np.hypot(self.boxes[:, 2] - self.boxes[:, 0], self.boxes[:, 3] - self.boxes[:, 1])
+        self.extent = float(across.max())
+        pairs = _pairs(self.boxes, basis, 2 * self.extent + gap)
+        self.one = np.array([one for one, _, _ in pairs])
+        self.two = np.array([two for _, two, _ in pairs])
+        self.step = np.array([step for _, _, step in pairs])
+        self.apart = centres[self.two] + self.step - centres[self.one]
+        self.last = 0
+
+    def clear(self, stretch: Stretch) -> bool:
+        """Whether all contours are the gap apart."""
+        import shapely
+        import shapely.affinity
+
+        shift = self.step + stretch(self.apart) - self.apart
+        here, there = self.boxes[self.one], self.boxes[self.two]
+        x, y = shift.real, shift.imag
+        free = np.maximum(there[:, 0] + x - here[:, 2], here[:, 0] - there[:, 2] - x)
+        free = np.maximum(free, np.maximum(there[:, 1] + y - here[:, 3], here[:, 1] - there[:, 3] - y))
+        near = np.flatnonzero(free < self.gap).tolist()
+        # What was too near last time is likely to be so again.
+        for k in sorted(near, key=lambda k: k != self.last):
+            moved = shapely.affinity.translate(self.shapes[self.two[k]], x[k], y[k])
+            if shapely.distance(self.shapes[self.one[k]], moved) < self.gap:
+                self.last = k
                 return False
         return True
 
-    enough = 1.0 + (extent + gap) / least
-    factors = np.linspace(1.0, enough, _STEPS + 1)
-    last = next((k for k in range(_STEPS, -1, -1) if not clear(float(factors[k]))), -1)
-    if last < 0:
-        return 1.0
-    low, high = float(factors[last]), float(factors[min(last + 1, _STEPS)])
-    for _ in range(_BISECTIONS):
-        middle = (low + high) / 2
-        low, high = (low, middle) if clear(middle) else (middle, high)
-    return high
+    def least(self, direction: float, ratio: float, room: float) -> float | None:
+        """The first size of a stretch, in steps, that parts all tiles in less than this room; None for none."""
+        size = _FIRST * self.gap / float(np.abs(self.apart).max())
+        while size < _FARTHEST and (1 + size) * (1 + ratio * size) < room:
+            if self.clear(Stretch.along(direction, size, ratio * size)):
+                return size
+            size *= _GROWTH
+        return None
+
+    def fitted(self, direction: float, ratio: float, size: float) -> Stretch:
+        """The least stretch of a kind that parts all tiles, near a size that nearly does."""
+        high = size
+        while not self.clear(Stretch.along(direction, high, ratio * high)):
+            high *= 1 + (_GROWTH - 1) / 10
+        low = size / _GROWTH
+        for _ in range(_BISECTIONS):
+            middle = (low + high) / 2
+            if self.clear(Stretch.along(direction, middle, ratio * middle)):
+                high = middle
+            else:
+                low = middle
+        return Stretch.along(direction, high, ratio * high)
 
 
-def pulled_apart(period: Period, centres: Complexes, about: complex, factor: float) -> Period:
-    """The period of a layout that is spread: the centre c of each tile stands at `about` + `factor` (c - `about`).
+def pulled_apart(period: Period, centres: Complexes, about: complex, stretch: Stretch) -> Period:
+    """The period of a layout that is spread: the centre c of each tile stands at `about` + `stretch`(c - `about`).
 
     Tile and lattice vector still name the same copy; but no two tiles share a side or a vertex any more.
     """
     rings = period.rings
     ring_of = np.repeat(np.arange(len(rings.offsets) - 1), np.diff(rings.offsets))
     tile = np.repeat(np.arange(len(period.site)), np.diff(rings.tiles))[ring_of]
-    shift = (factor - 1.0) * (centres - about)
+    shift = stretch(centres - about) - (centres - about)
     sides = period.sides.take(rings.side)
     steps, away = np.repeat(rings.step, sides.counts, axis=0), np.repeat(shift[tile], sides.counts)
     # The first and last point of a side are those of its vertices, wherever it stands.
@@ -80,7 +174,7 @@ def pulled_apart(period: Period, centres: Complexes, about: complex, factor: flo
     control[sides.kind != CUBIC, 1] = 0
     return replace(
         period,
-        basis=factor * period.basis,
+        basis=stretch(period.basis),
         vertex=period.at(period.vertex[ends], places)[first] + np.repeat(shift[tile], 2)[first],
         start=start,
         end=end,
@@ -92,7 +186,7 @@ def pulled_apart(period: Period, centres: Complexes, about: complex, factor: flo
     )
 
 
-def _shape(contour: Paths) -> object:
+def _shape(contour: Paths) -> Any:
     """The filled shape of rings of lines, the outer one first of each part."""
     import shapely
 

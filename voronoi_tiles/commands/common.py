@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from voronoi_tiles.errors import VoronoiTilesError
+from voronoi_tiles.errors import OutputError, VoronoiTilesError
 
 if TYPE_CHECKING:
     from voronoi_tiles.tiling import Tiling
@@ -82,6 +82,14 @@ def refuse_output(source: str, output: str | None, suffixes: tuple[str, ...]) ->
         raise click.UsageError(f"{output} is no name of such a file: give it the suffix {' or '.join(suffixes)}.")
     if source != "-" and os.path.realpath(output) == os.path.realpath(source):
         raise click.UsageError(f"{output} is what is read, and would be overwritten.")
+
+
+def refuse_existing(output: str) -> None:
+    """Refuse to overwrite a file that people work on."""
+    from voronoi_tiles.files import STDOUT, is_special
+
+    if output != STDOUT and not is_special(output) and os.path.lexists(output):
+        raise OutputError(f"{output} exists already", path=output, remedy="Choose another name, or remove it first.")
 
 
 def shown(design: str) -> str:

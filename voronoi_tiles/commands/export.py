@@ -86,15 +86,22 @@ def export(
 
 def _write(tiling: Tiling, target: str, form: str, job: Job | None, check: CheckReport | None) -> list[str]:
     """Write one design, or its files, one for each colour; say what there is to say."""
-    if job is None or job.colours != "files":
+    if job is None or job.colours != "files" or form == "json":
         return [*tiling.write(target, form, job=job, check=check), f"wrote {target}"]
     from voronoi_tiles.fabrication import colour_names
+    from voronoi_tiles.files import writing
 
-    lines = []
     path = Path(target)
-    for number, name in colour_names(tiling, job):
-        part = str(path.with_name(f"{path.stem}-{name}{path.suffix}"))
-        lines += [*tiling.write(part, form, job=replace(job, only_colour=number), check=check), f"wrote {part}"]
+    # All of them before the first is written: a job that cannot be done leaves nothing.
+    products = {
+        str(path.with_name(f"{path.stem}-{name}{path.suffix}")): tiling.make(replace(job, only_colour=number), form)
+        for number, name in colour_names(tiling, job, form)
+    }
+    lines = []
+    for part, product in products.items():
+        with writing(part) as file:
+            (product if check is None else product.with_evidence(tiling.evidence(check))).write(file)
+        lines += [*product.notes, f"wrote {part}"]
     return lines
 
 

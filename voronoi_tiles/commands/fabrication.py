@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from voronoi_tiles.commands.common import PATH, refuse_output, report_error, say, tessellate
+from voronoi_tiles.commands.common import PATH, refuse_existing, refuse_output, report_error, say, tessellate
 from voronoi_tiles.commands.options import LENGTH, with_job
 from voronoi_tiles.errors import DesignError
 
 if TYPE_CHECKING:
     from voronoi_tiles.fabrication.job import Job
+    from voronoi_tiles.tiling import Tile, Tiling
     from voronoi_tiles.vector.writers.drawing import Drawing
 
 _DRAWINGS = (".svg", ".dxf", ".pdf", ".lbrn2")
@@ -56,7 +58,7 @@ def report(
     speeds = {work: speed for work, speed in given.items() if speed is not None}
     try:
         tiling = tessellate(design)
-        product = tiling.make(job or Job())
+        product = tiling.make(_on_layers(job or Job()))
         figures = report_figures(
             tiling, product, speeds=speeds, pierce_s=PIERCE_S if pierce_time is None else pierce_time
         )
@@ -86,7 +88,7 @@ def coupon(output: str, kerfs: str, thickness: float, plug: float | None, preset
     """
     from voronoi_tiles.coupon import PLUG_MM, kerf_range
     from voronoi_tiles.coupon import coupon as draw
-    from voronoi_tiles.fabrication.making import recoloured
+    from voronoi_tiles.fabrication.writing import recoloured
 
     refuse_output("-", output, _DRAWINGS)
     try:
@@ -107,17 +109,16 @@ def coupon(output: str, kerfs: str, thickness: float, plug: float | None, preset
 def template(design: str, output: str, site: str | None) -> None:
     """Write a page to draw a site's art on, and say what to write into the design.
 
-    The tile and the site's strokes are on a layer "guide"; draw in the layer "engrave", or in one called "score".
+    The tile and the site's strokes are on a layer "guide"; draw in the layer "engrave", or in one called "score". An
+    existing file is not overwritten.
     """
     from voronoi_tiles.fabrication.template import art_template
 
     refuse_output(design, output, (".svg",))
+    refuse_existing(output)
     try:
         tiling = tessellate(design)
-        names = [tile.site.name for tile in tiling.tiles]
-        if site is not None and site not in names:
-            raise DesignError(f'there is no site "{site}"', remedy=f"Sites are {', '.join(names)}.")
-        tile = tiling.tiles[0 if site is None else names.index(site)]
+        tile = _tile_of(tiling, site)
         drawing, corner = art_template(tiling, tile)
         _write(drawing, output, "svg")
     except Exception as error:
@@ -126,9 +127,22 @@ def template(design: str, output: str, site: str | None) -> None:
     say(f'for [[site]] "{tile.site.name}": art = {{ file = "{Path(output).name}", translate = {place} }}')
 
 
+def _on_layers(job: Job) -> Job:
+    """The job in one drawing: what goes into a file of its own is on a layer of its own."""
+    return replace(job, colours="layers") if job.colours == "files" else job
+
+
+def _tile_of(tiling: Tiling, site: str | None) -> Tile:
+    """The tile of a site by its name, without one the first."""
+    names = [tile.site.name for tile in tiling.tiles]
+    if site is not None and site not in names:
+        raise DesignError(f'there is no site "{site}"', remedy=f"Sites are {', '.join(names)}.")
+    return tiling.tiles[0 if site is None else names.index(site)]
+
+
 def _write(drawing: Drawing, output: str, form: str) -> None:
     """Write a drawing that is no tiling's."""
-    from voronoi_tiles.fabrication.making import write_drawing
+    from voronoi_tiles.fabrication.writing import write_drawing
     from voronoi_tiles.files import STDOUT, writing
 
     with writing(output) as file:

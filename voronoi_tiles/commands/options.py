@@ -27,7 +27,7 @@ def with_renderer(command: Command) -> Command:
     )(command)
 
 
-class Length(click.ParamType):
+class Length(click.ParamType[float]):
     """A length such as 3mm, 2.5cm or 0.5in; a plain number is millimetres."""
 
     name = "length"
@@ -103,7 +103,12 @@ _OPTIONS: tuple[tuple[tuple[str, ...], dict[str, Any]], ...] = (
     (("--rotate",), {"type": float, "metavar": "DEGREES", "help": "Turn the tiles counter-clockwise."}),
     (
         ("--offset",),
-        {"metavar": "X,Y", "callback": _read_offset, "help": "Move the design's origin from the middle of the sheet."},
+        {
+            "metavar": "X,Y",
+            "callback": _read_offset,
+            "help": "Move the design's origin from the middle of the sheet [default: to where most whole tiles fit, "
+            "or not at all with --fit clip].",
+        },
     ),
     (
         ("--edges",),
@@ -136,15 +141,15 @@ _OPTIONS: tuple[tuple[tuple[str, ...], dict[str, Any]], ...] = (
         ("--curves",),
         {
             "type": click.Choice(("exact", "arc", "spline", "polyline")),
-            "help": "Exact curves, circular arcs, cubic splines or chords [default: as the preset says for the format].",
+            "help": "Exact curves, circular arcs, cubic splines or chords [default: as the preset says].",
         },
     ),
     (
         ("--preset",),
         {
             "metavar": "NAME|FILE",
-            "help": "Colours, layers and curves for a target: plain, lightburn, redcut, ponoko, boxes, glowforge, cnc, or "
-            "a .toml file [default: plain].",
+            "help": "Colours, layers and curves for a target: plain, lightburn, redcut, ponoko, boxes, glowforge, cnc, "
+            "or a .toml file [default: plain].",
         },
     ),
     (("--labels",), {"type": click.Choice(("number", "site")), "help": "Engrave a label on every piece."}),

@@ -15,14 +15,14 @@ def bridged(
 ) -> tuple[Paths, Ints, Ints, Complexes]:
     """Leave bridges in strands: the strands, the nodes where they start and end, and where the nodes are.
 
-    `paths`, `first` and `last` are the strands `chosen` of all. The longest sides come first; a side that is shorter than
-    four bridges has none.
+    `paths`, `first` and `last` are the strands `chosen` of all. The longest sides come first; a side that is shorter
+    than four bridges has none.
     """
-    length = np.bincount(paths.owner, paths.lengths, len(paths))
+    length = np.asarray(np.bincount(paths.owner, paths.lengths, len(paths)), np.float64)
     bridge = _sides_with_bridge(strands, chosen, length, 4 * width)
     cut = np.flatnonzero(bridge)
     half = (length[cut] - width) / 2
-    before = stretches(paths, cut, 0 * half, half)
+    before = stretches(paths, cut, np.zeros(len(cut)), half)
     after = stretches(paths, cut, half + width, length[cut])
     kept = np.flatnonzero(~bridge)
     loose = len(node) + np.arange(2 * len(cut))

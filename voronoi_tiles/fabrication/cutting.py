@@ -22,7 +22,7 @@ from voronoi_tiles.vector.sheet.trails import find_trails, joined
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """The cuts of one layer: `suffix` is added to what the preset calls its role; `colour` is a number of the palette."""
+    """The cuts of one layer: `suffix` is added to the name of its role; `colour` is a number of the palette."""
 
     role: Role
     suffix: str
@@ -87,7 +87,8 @@ def cut_pieces(contours: Contours, colouring: Colouring, job: Job) -> list[Cut]:
                 continue
             paths = toured(contours.paths.take(picked))
             if job.tabs > 0.0:
-                paths = _tabbed(paths, job.tabs)
+                # The beam takes half a kerf from either end of a bridge.
+                paths = _tabbed(paths, job.tabs + job.kerf)
             suffix = "" if group is None else f"-{group + 1}" if group >= 0 else "-frame"
             cuts.append(Cut(role, suffix, group, paths))
     return cuts

@@ -71,9 +71,9 @@ def fewer_arcs(rings: Paths, accuracy: float) -> Paths:
 
 
 def _round_corners(rings: Paths, accuracy: float) -> Bools:
-    """Tell which arcs turn like a corner, and rise so far above their chords that none could be part of a longer one."""
+    """Tell which arcs turn like a corner, and rise too far above their chords to be parts of longer ones."""
     arcs = np.flatnonzero(rings.kind == ARC)
     radius, turn = rings.arc_radius_and_turn(arcs)
     corners = np.zeros(len(rings.kind), np.bool_)
-    corners[arcs] = (np.abs(turn) > JOINT) & (radius * (1 - np.cos(turn / 2)) > 4 * accuracy)
+    corners[arcs] = (np.abs(turn) > JOINT) & (radius * (1 - np.cos(turn / 2)) > accuracy)
     return corners

@@ -6,7 +6,8 @@ import math
 from dataclasses import asdict, dataclass
 from typing import Any, Literal, get_args
 
-from voronoi_tiles.errors import VoronoiTilesError
+from voronoi_tiles.errors import DesignError, VoronoiTilesError
+from voronoi_tiles.lengths import parse_length, parse_size
 
 Fit = Literal["whole", "clip", "frame"]
 Edges = Literal["once", "pieces"]
@@ -47,25 +48,28 @@ class Job:
     `sheet` is its width and height, or the path of a drawing whose closed paths bound it; without it one of each tile
     is made. `margin` stays free inside its edge (without a sheet, around the tiles). `fit`: whole tiles only, tiles
     clipped at the edge, or whole tiles and the frame around them. The design's origin lies in the middle of
-    the sheet, turned by `rotate` counter-clockwise and moved by `offset`. `edges`: every shared edge cut once,
+    the sheet, turned by `rotate` counter-clockwise and moved by `offset`; None moves whole tiles to where most of them
+    fit, and clipped ones not at all. `edges`: every shared edge cut once,
     or every tile a closed contour of its own; None takes once for sheets and pieces without, or where an option needs
     them. `gap` is the least distance between contours, for which pieces are pulled apart (None: none, but
     with a kerf APART_MM or twice the kerf, lest a cut hurts the next piece); `kerf` the width of the cut, half of which
     contours keep from the pieces; `fillet` the radius of corners; `tabs` the width of the bridges that hold
     pieces. `curves` (None: what the preset wants for the format) are the exact curves, or arcs, splines or
-    polylines within `accuracy`. `preset` is the name of a fabrication preset, or a TOML file. `labels` of
-    `label_height` number the pieces; `marks` are for aligning, `bar` is 100 mm long. `colours` puts each colour of a
-    proper colouring on a layer, or into a file, of its own; `only_colour` leaves out all others, -1 all but a frame.
+    polylines within `accuracy` (SVG has arcs as cubic curves, a nanometre off). `preset` is the name of a fabrication
+    preset, or a TOML file. `labels` of `label_height` number the pieces; `marks` are for aligning, `bar` is 100 mm
+    long. `colours` puts each colour of a proper colouring on a layer, or into a file, of its own; `only_colour` leaves
+    out all others, -1 all but a frame.
     `art` of sites is drawn whole, clipped to the tile, or not at all.
 
-    Raises JobError for values that cannot be, and that contradict each other.
+    Lengths may also be texts with a unit, "0.15mm" or "600x300mm". Raises JobError for values that cannot be, and that
+    contradict each other.
     """
 
     sheet: tuple[float, float] | str | None = None
     margin: float = 0.0
     fit: Fit = "whole"
     rotate: float = 0.0
-    offset: complex = 0j
+    offset: complex | None = None
     edges: Edges | None = None
     gap: float | None = None
     kerf: float = 0.0
@@ -83,6 +87,7 @@ class Job:
     art: Art = "whole"
 
     def __post_init__(self) -> None:
+        self._read_lengths()
         for name, kind in (
             ("fit", Fit),
             ("art", Art),
@@ -98,7 +103,7 @@ class Job:
             value = getattr(self, name) or 0.0
             if not 0.0 <= value <= SHEET_MAX:
                 raise JobError(f"{name} {value:g} mm cannot be", remedy="Give a length of 0 mm or more.")
-        if not (math.isfinite(self.rotate) and abs(self.offset) <= SHEET_MAX):
+        if not (math.isfinite(self.rotate) and abs(self.offset or 0j) <= SHEET_MAX):
             raise JobError("the turn or the offset is not a number, or too large", remedy="Give finite numbers.")
         if not ACCURACY_MIN <= self.accuracy <= 1.0:
             raise JobError(
@@ -142,6 +147,18 @@ class Job:
             for key, value in mine.items()
         }
 
+    def _read_lengths(self) -> None:
+        """Make numbers of lengths that are texts or whole numbers."""
+        for name in ("margin", "gap", "kerf", "fillet", "tabs", "accuracy", "label_height", "rotate"):
+            value = getattr(self, name)
+            if name != "gap" or value is not None:
+                object.__setattr__(self, name, _number(name, value))
+        if self.offset is not None:
+            if isinstance(self.offset, bool) or not isinstance(self.offset, int | float | complex):
+                raise JobError(f"an offset of {self.offset!r} cannot be", remedy="Give a number, 3 - 2j.")
+            object.__setattr__(self, "offset", complex(self.offset))
+        object.__setattr__(self, "sheet", _sheet(self.sheet))
+
     def _needs_pieces(self) -> str | None:
         """Name an option that needs closed pieces."""
         for name in ("kerf", "gap", "fillet"):
@@ -156,6 +173,11 @@ class Job:
                 f"--{name} needs pieces: an edge that is cut once belongs to two of them",
                 remedy=f"Use --edges pieces, or leave --{name} out.",
             )
+        if self.tabs > 0.0 and self.sheet is not None and self.pieces and self.apart is None:
+            raise JobError(
+                "--tabs hold nothing where the contours of two pieces lie on each other",
+                remedy="Pull the pieces apart, --gap 1mm, or use --edges once.",
+            )
         if self.fit == "frame" and self.apart is not None:
             raise JobError(
                 f"--{'gap' if self.gap else 'kerf'} pulls the tiles apart, and --fit frame leaves them no room",
@@ -164,7 +186,7 @@ class Job:
 
     def _check_sheet(self) -> None:
         if self.sheet is None:
-            for name, default in (("fit", "whole"), ("offset", 0j), ("marks", False)):
+            for name, default in (("fit", "whole"), ("offset", None), ("marks", False)):
                 if getattr(self, name) != default:
                     raise JobError(f"--{name} is about a sheet, and there is none", remedy="Add --sheet 600x300mm.")
             return
@@ -178,6 +200,32 @@ class Job:
                 f"a margin of {self.margin:g} mm leaves nothing of a sheet of {width:g} x {height:g} mm",
                 remedy="Make the margin smaller, or the sheet larger.",
             )
+
+
+def _number(name: str, value: object) -> float:
+    """Read a length, or an angle, that is a number or a text. Raises JobError."""
+    try:
+        if isinstance(value, str):
+            return parse_length(value)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise JobError(f"{name} {value!r} cannot be", remedy='Give a number of millimetres, or a text: "0.15mm".')
+        return float(value)
+    except (DesignError, OverflowError) as error:
+        raise JobError(f"{name} {value!r} cannot be", remedy='Give a number of millimetres, or "0.15mm".') from error
+
+
+def _sheet(value: object) -> tuple[float, float] | str | None:
+    """Read a sheet: two numbers, the text of a size, or the name of a drawing. Raises JobError."""
+    remedy = 'Give two numbers of millimetres, "600x300mm", or the name of an SVG or DXF file.'
+    if value is None or (isinstance(value, str) and value.lower().endswith((".svg", ".svgz", ".dxf"))):
+        return value
+    try:
+        if isinstance(value, str):
+            return parse_size(value)
+        width, height = value  # type: ignore[misc] - what is no pair is refused below
+    except (DesignError, TypeError, ValueError) as error:
+        raise JobError(f"a sheet of {value!r} cannot be", remedy=remedy) from error
+    return _number("sheet", width), _number("sheet", height)
 
 
 def _require_one_of(name: str, value: object, allowed: tuple[str, ...]) -> None:

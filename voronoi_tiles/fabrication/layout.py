@@ -5,28 +5,30 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Final
+from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from voronoi_tiles.fabrication.fitting import fewer_arcs
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.vector.contour import Bools, Complexes, Floats, Ints
-from voronoi_tiles.vector.copies import Motion, compose, inverse, reverses_orientation
+from voronoi_tiles.vector.copies import Motion, Placed, compose, inverse, reverses_orientation
 from voronoi_tiles.vector.curves.conversion import to_lines
 from voronoi_tiles.vector.curves.offset import Offset, OffsetError, offset, round_corners
 from voronoi_tiles.vector.curves.paths import Paths, ranges
+from voronoi_tiles.vector.curves.winding import item_winding
+from voronoi_tiles.vector.sheet.best import best_shift
 from voronoi_tiles.vector.sheet.faces import Pieces, clipped_pieces, frame_pieces, ring_areas
 from voronoi_tiles.vector.sheet.orbits import approximated
 from voronoi_tiles.vector.sheet.period import Period, make_period
 from voronoi_tiles.vector.sheet.placement import Placement, place_tiles, tile_boxes
-from voronoi_tiles.vector.sheet.pulling import pulled_apart, spread
+from voronoi_tiles.vector.sheet.pulling import UNSTRETCHED, Stretch, pulled_apart, spread
 from voronoi_tiles.vector.sheet.region import Region
 from voronoi_tiles.vector.sheet.strands import Strands, clipped_strands, whole_strands
 
 if TYPE_CHECKING:
     from voronoi_tiles.tiling import Tiling
-    from voronoi_tiles.vector.tessellation import Placed
 
 FRAME = -1
 """The site of a piece of a frame."""
@@ -82,7 +84,7 @@ class Layout:
     def __init__(
         self, tiling: Tiling, job: Job, sheet: Sheet, fit: Callable[[Paths], Paths] | None, *, refit: bool = True
     ) -> None:
-        """Place the tiles; `fit` replaces the exact curves (in the design's units), `refit` what kerf and fillet leave."""
+        """Place tiles; `fit` replaces the exact curves (in the design's units), `refit` what kerf and fillet leave."""
         tessellation = tiling.tessellation
         self.job = job
         self.refit = refit
@@ -94,20 +96,33 @@ class Layout:
             period = approximated(period, tessellation.action, fit)
         turn = np.deg2rad(job.rotate)
         self.factor = self.design_units * complex(_unit(turn, job.rotate))
-        self.shift = sheet.centre + job.offset if sheet.region is not None else 0j
+        self.shift = sheet.centre + (job.offset or 0j) if sheet.region is not None else 0j
         self.period: Period = period.placed(self.factor, self.shift)
         self.losses: list[str] = []
-        self.spread = 1.0
+        self.spread = UNSTRETCHED
         self._dressed: dict[int, Paths] = {}
-        if job.apart is not None:
+        if job.apart is not None and sheet.region is not None:
             self.spread = self._spread(job.apart)
         self.region = sheet.region
         # The tiles where they are cut: as in the period, unless they are pulled apart.
-        self.spaced = self.period
-        if self.spread != 1.0:
-            self.spaced = pulled_apart(self.period, self._centres(), sheet.centre, self.spread)
+        self.spaced = self._spaced()
+        if sheet.region is not None and job.offset is None and job.fit != "clip":
+            self._move(self.spread.inverse(best_shift(self.spaced, sheet.region)))
         self.placement = self._place(tessellation.placed)
         self.copies = Copies(self.placement.tile, self.placement.step, self.placement.whole, self._pull(self.placement))
+
+    def _spaced(self) -> Period:
+        """The period where it is cut."""
+        if self.spread.is_identity:
+            return self.period
+        return pulled_apart(self.period, self._centres(), self.sheet.centre, self.spread)
+
+    def _move(self, shift: complex) -> None:
+        """Move all tiles on the page."""
+        self.shift += shift
+        self.period = self.period.placed(1.0, shift)
+        self._dressed = {tile: rings.moved(1.0, shift) for tile, rings in self._dressed.items()}
+        self.spaced = self._spaced()
 
     @property
     def site(self) -> Ints:
@@ -144,11 +159,14 @@ class Layout:
         copy, area = whole, self.tile_areas[self.copies.tile[whole]]
         rest = self.rest()
         if rest is not None:
-            done, kept = self._dress_each(rest)
+            done, of = self._dress_each(rest)
+            # What fillets cut in two shares the area that it had.
+            left = piece_areas(done) if len(of) else np.zeros(0)
+            share = left / np.bincount(of, left, len(rest.tile))[of]
             paths = Paths.concatenate([paths, done.paths])
             items = np.concatenate((items, items[-1] + done.items[1:]))
             copy = np.concatenate((copy, done.tile))
-            area = np.append(area, piece_areas(rest)[kept])
+            area = np.append(area, piece_areas(rest)[of] * share)
         return Contours(paths, items, copy, area)
 
     def rest(self) -> Pieces | None:
@@ -253,7 +271,7 @@ class Layout:
     def _whole(self, copies: Ints) -> tuple[Paths, Ints]:
         """The rings of whole tiles, and where each one's begin."""
         tile, step = self.copies.tile[copies], self.copies.step[copies]
-        if not self.job.dressed and self.spread == 1.0:
+        if not self.job.dressed and not self.copies.moved_by.any():
             return self.period.outlines(tile, step)
         bases = [self._base(k) for k in range(len(self.period.site))]
         rings = Paths.concatenate(bases)
@@ -265,17 +283,18 @@ class Layout:
         return _shifted(stamped, items, shift), items
 
     def _dress_each(self, pieces: Pieces) -> tuple[Pieces, Ints]:
-        """Apply fillet and kerf to pieces one by one; also gives which of them are left."""
+        """Apply fillet and kerf to pieces one by one; also gives of which of them each of the pieces now is."""
         if not self.job.dressed:
             return pieces, np.arange(len(pieces.tile))
-        done = [
-            self._dress(pieces.paths.take(np.arange(a, b)), whole=False)
-            for a, b in zip(pieces.items[:-1].tolist(), pieces.items[1:].tolist(), strict=True)
-        ]
-        counts = np.array([len(rings) for rings in done])
-        kept = np.flatnonzero(counts)
-        items = np.append(0, np.cumsum(counts[kept])).astype(np.intp)
-        return Pieces(self._refitted(Paths.concatenate(done)), items, pieces.tile[kept]), kept
+        done: list[Paths] = []
+        of: list[int] = []
+        for k, (a, b) in enumerate(pairwise(pieces.items.tolist())):
+            parts = _parts(self._dress(pieces.paths.take(np.arange(a, b)), whole=False))
+            done += parts
+            of += [k] * len(parts)
+        items = np.append(0, np.cumsum([len(rings) for rings in done])).astype(np.intp)
+        owner = np.array(of, np.intp)
+        return Pieces(self._refitted(Paths.concatenate(done)), items, pieces.tile[owner]), owner
 
     def _refitted(self, rings: Paths) -> Paths:
         """Replace the many short arcs that kerf and fillet leave by the fewest within what is left of the accuracy."""
@@ -289,18 +308,43 @@ class Layout:
             result.append(complex((low_x + high_x) / 2, (low_y + high_y) / 2))
         return np.array(result)
 
-    def _spread(self, apart: float) -> float:
+    def _spread(self, apart: float) -> Stretch:
         """How far the layout is spread for the gap."""
         fine = self.job.accuracy / 8
         contours = [to_lines(self._base(tile), accuracy=fine) for tile in range(len(self.period.site))]
-        return spread(contours, self._centres(), self.period.basis, apart + 2 * fine)
+        try:
+            return spread(contours, self._centres(), self.period.basis, apart + 2 * fine)
+        except ValueError as error:
+            raise JobError(str(error), remedy="Use --edges once, or leave --sheet out: pieces lie in a row.") from error
+
+    def _row(self, placement: Placement, apart: float) -> Complexes:
+        """How far tiles are moved so that their boxes stand beside each other, from where the first one is."""
+        right, moves = None, []
+        for tile, step in zip(placement.tile.tolist(), placement.step, strict=True):
+            low_x, _, high_x, _ = self._base(tile).bounds
+            here = float(self.period.at(np.zeros(1, np.complex128), step[None])[0].real)
+            moves.append(0.0 if right is None else right + apart - (low_x + here))
+            right = high_x + here + moves[-1]
+        return np.array(moves, np.complex128)
 
     def _pull(self, placement: Placement) -> Complexes:
-        """How far each tile is pulled."""
-        if self.spread == 1.0:
+        """How far each tile is pulled; without a sheet, into a row."""
+        if self.region is None and self.job.apart is not None:
+            return self._row(placement, self.job.apart)
+        if self.spread.is_identity:
             return np.zeros(len(placement.tile), np.complex128)
         place = self.period.at(self._centres()[placement.tile], placement.step)
-        return np.asarray((self.spread - 1.0) * (place - self.sheet.centre))
+        away = place - self.sheet.centre
+        return self.spread(away) - away
+
+
+def _parts(rings: Paths) -> list[Paths]:
+    """The parts that rings bound: an outer one each, and the holes in it."""
+    areas = ring_areas(rings)
+    outer, holes = np.flatnonzero(areas > 0), np.flatnonzero(areas <= 0)
+    shells = rings.take(outer)
+    inside = item_winding(shells, shells.offsets, rings.start[rings.offsets[:-1]][holes]) > 0
+    return [rings.take(np.append(one, holes[held])) for one, held in zip(outer, inside, strict=True)]
 
 
 def piece_areas(pieces: Pieces) -> Floats:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from io import RawIOBase
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
@@ -12,24 +13,24 @@ import numpy as np
 from voronoi_tiles import __version__
 from voronoi_tiles.colouring import palette
 from voronoi_tiles.fabrication.colouring import Colouring, colour_tiles
+from voronoi_tiles.fabrication.counting import Pieces, contour_pieces, cut_free
+from voronoi_tiles.fabrication.cutting import Cut, cut_once, cut_pieces, toured
 from voronoi_tiles.fabrication.engraving import Engraving, engrave
-from voronoi_tiles.fabrication.job import ACCURACY_MM, Job, JobError
 from voronoi_tiles.fabrication.fitting import curve_fit
+from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, Sheet
 from voronoi_tiles.fabrication.sheets import read_sheet
-from voronoi_tiles.presets import FORMATS as FILE_FORMATS
+from voronoi_tiles.fabrication.writing import CUBIC_ACCURACY, FORMATS, write_drawing
 from voronoi_tiles.presets import Format, Preset, Role, load_preset
+from voronoi_tiles.vector.contour import Bools
+from voronoi_tiles.vector.curves.biarcs import to_arcs
 from voronoi_tiles.vector.curves.conversion import to_cubics, to_lines
-from voronoi_tiles.vector.curves.paths import ARC, Bools, Floats, Ints, Paths, ranges
-from voronoi_tiles.vector.curves.tabs import with_tabs
-from voronoi_tiles.vector.sheet.faces import ring_areas
-from voronoi_tiles.vector.sheet.strands import OUTSIDE
-from voronoi_tiles.vector.sheet.tour import short_tour
-from voronoi_tiles.vector.sheet.trails import find_trails, joined
+from voronoi_tiles.vector.curves.paths import Paths, ranges
 from voronoi_tiles.vector.writers.drawing import Drawing, Layer, Work
 
 if TYPE_CHECKING:
     from voronoi_tiles.tiling import Tiling
+
 
 @dataclass(frozen=True, eq=False)
 class Product:
@@ -51,7 +52,7 @@ class Product:
         recipe = {**self.drawing.recipe, "evidence": json.dumps(evidence, sort_keys=True)}
         return replace(self, drawing=replace(self.drawing, recipe=recipe))
 
-    def write(self, file: BinaryIO) -> None:
+    def write(self, file: BinaryIO | RawIOBase) -> None:
         """Write the drawing."""
         write_drawing(self.drawing, file, self.form, curves=self.curves, accuracy=self.accuracy)
 
@@ -63,7 +64,12 @@ def make(tiling: Tiling, job: Job, file_format: str = "svg") -> Product:
     """
     if file_format not in FORMATS:
         raise JobError(f"no drawing can be made as {file_format!r}", remedy=f"Use one of {', '.join(FORMATS)}.")
-    form: Format = file_format  # type: ignore[assignment] - it is one of them
+    if job.colours == "files" and job.only_colour is None:
+        raise JobError(
+            "a file for each colour is several drawings, and one is asked for",
+            remedy="Make one for each of colour_names, with only_colour, or put the colours on layers.",
+        )
+    form: Format = file_format
     preset = load_preset(job.preset)
     preset.require(form)
     curves = _curves(job, preset, form)
@@ -73,26 +79,28 @@ def make(tiling: Tiling, job: Job, file_format: str = "svg") -> Product:
     colouring = colour_tiles(layout)
     if job.pieces:
         contours = _of_colour(layout.contours(), colouring, job)
-        cuts = _cut_pieces(layout, contours, colouring, job)
-        pieces = _pieces(layout, contours, colouring)
+        cuts = cut_pieces(contours, colouring, job)
+        pieces = contour_pieces(layout, contours, colouring)
     else:
-        cuts = [_Cut("cut", "cut", None, _cut_once(layout, job))]
+        cuts = [Cut("cut", "", None, cut_once(layout, job))]
         contours = None
-        pieces = _tiles(layout, colouring)
-    engraving = engrave(tiling, layout, contours, sheet, _shown(colouring, layout, job))
-    convert = _converter(curves, rest)
-    layers = _layers(preset, form, job, cuts, engraving, convert)
+        pieces = cut_free(layout, colouring)
+    engraving = engrave(tiling, layout, contours, sheet, _shown(colouring, layout, job), fills=preset.fill_engraving)
+    layers = _layers(preset, form, job, cuts, engraving, _converter(curves, rest))
     drawing = _page(layers, sheet, job, tiling)
     notes = tuple(dict.fromkeys((*layout.losses, *engraving.notes)))
     return Product(form, drawing, pieces, colouring.count, notes, curves, job.accuracy)
 
 
-def colour_names(tiling: Tiling, job: Job) -> list[tuple[int, str]]:
+def colour_names(tiling: Tiling, job: Job, file_format: Format = "svg") -> list[tuple[int, str]]:
     """Give the colours that a job has pieces of, each with a name for its file; FRAME for the frame."""
-    layout = Layout(tiling, job, read_sheet(job), None)
+    # As the files are made: where most tiles fit may depend on the curves.
+    curves = _curves(job, load_preset(job.preset), file_format)
+    fit, _ = curve_fit(job, curves, tiling.design.unit_mm)
+    layout = Layout(tiling, job, read_sheet(job), fit, refit=curves != "polyline")
     colouring = colour_tiles(layout)
     found = np.unique(colouring.of_copies(np.arange(len(layout.copies.tile)))).tolist()
-    if layout.region is not None and job.fit == "frame":
+    if job.fit == "frame" and layout.rest() is not None:
         found.append(FRAME)
     return [(number, "frame" if number == FRAME else str(number + 1)) for number in found]
 
@@ -102,6 +110,11 @@ def _of_colour(contours: Contours, colouring: Colouring, job: Job) -> Contours:
     if job.only_colour is None:
         return contours
     chosen = np.flatnonzero(colouring.of_copies(contours.copy) == job.only_colour)
+    if not len(chosen):
+        raise JobError(
+            f"no piece has the colour {job.only_colour + 1}",
+            remedy=f"The tessellation has {colouring.count} colours; colour_names says which of them a job has.",
+        )
     rings = ranges(contours.items[chosen], np.diff(contours.items)[chosen])
     items = np.append(0, np.cumsum(np.diff(contours.items)[chosen])).astype(np.intp)
     return Contours(contours.paths.take(rings), items, contours.copy[chosen], contours.area[chosen])
@@ -126,42 +139,40 @@ def _curves(job: Job, preset: Preset, form: Format) -> str:
 
 def _converter(curves: str, accuracy: float) -> Callable[[Paths], Paths]:
     """What is still to be done to paths so that they hold only what the file takes."""
-    from voronoi_tiles.vector.curves.biarcs import to_arcs
-
-    if curves == "polyline":
-        return lambda paths: to_lines(paths, accuracy=accuracy)
-    if curves == "arc":
-        return lambda paths: to_arcs(paths, accuracy=accuracy)
-    if curves == "spline":
-        return lambda paths: to_cubics(paths, accuracy=_CUBIC_ACCURACY)
-    return lambda paths: paths
+    match curves:
+        case "polyline":
+            return lambda paths: to_lines(paths, accuracy=accuracy)
+        case "arc":
+            return lambda paths: to_arcs(paths, accuracy=accuracy)
+        case "spline":
+            return lambda paths: to_cubics(paths, accuracy=CUBIC_ACCURACY)
+        case _:
+            return lambda paths: paths
 
 
 def _layers(
-    preset: Preset, form: Format, job: Job, cuts: list[_Cut], engraving: Engraving, convert: Callable[[Paths], Paths]
+    preset: Preset, form: Format, job: Job, cuts: list[Cut], engraving: Engraving, convert: Callable[[Paths], Paths]
 ) -> list[Layer]:
     """The layers in the order of work: engraving, scores, cuts inside, cuts around."""
     stroke = preset.stroke_width(job.kerf)
+
+    def layer(role: Role, work: Work, paths: Paths) -> Layer:
+        """A layer as the preset calls and colours it."""
+        return Layer.of_paths(preset.layer_name(role, form), work, preset.colours[role], stroke, paths)
+
     layers = []
-    drawn: tuple[tuple[Role, Work, Paths], ...] = (
-        ("engrave", "engrave", engraving.engraved),
-        ("score", "score", engraving.scored),
-    )
-    for role, work, paths in drawn:
-        if len(paths):
-            layers.append(
-                Layer.of_paths(
-                    preset.layer_name(role, form), work, preset.colours[role], stroke, convert(_toured(paths))
-                )
-            )
+    if len(engraving.filled):
+        filled = layer("engrave", "engrave", convert(engraving.filled))
+        layers.append(replace(filled, items=engraving.items, filled=True))
+    if len(engraving.engraved):
+        layers.append(layer("engrave", "engrave", convert(toured(engraving.engraved))))
+    if len(engraving.scored):
+        layers.append(layer("score", "score", convert(toured(engraving.scored))))
     for cut in cuts:
-        name = preset.layer_name(cut.role, form)
-        colour = preset.colours[cut.role]
-        if cut.colour is not None:
-            name = f"{name}{cut.name.removeprefix(cut.role)}"
-            if cut.colour >= 0 and cut.role == "cut":
-                colour = _palette(preset, cut.colour)
-        layers.append(Layer.of_paths(name, "cut", colour, stroke, convert(cut.paths)))
+        plain = layer(cut.role, "cut", convert(cut.paths))
+        coloured = cut.colour is not None and cut.colour >= 0 and cut.role == "cut"
+        colour = _palette(preset, cut.colour) if cut.colour is not None and coloured else plain.colour
+        layers.append(replace(plain, name=plain.name + cut.suffix, colour=colour))
     return layers
 
 
@@ -182,18 +193,7 @@ def _page(layers: list[Layer], sheet: Sheet, job: Job, tiling: Tiling) -> Drawin
         low, high = boxes[:, :2].min(axis=0) - job.margin, boxes[:, 2:].max(axis=0) + job.margin
         shift = -complex(*low.tolist())
         width, height = (high - low).tolist()
-        layers = [
-            Layer(
-                layer.name,
-                layer.work,
-                layer.colour,
-                layer.stroke,
-                layer.paths.moved(1.0, shift),
-                layer.items,
-                layer.labels,
-            )
-            for layer in layers
-        ]
+        layers = [replace(layer, paths=layer.paths.moved(1.0, shift)) for layer in layers]
     design = tiling.design
     recipe = {
         "program": "voronoi-tiles",

@@ -31,7 +31,7 @@ def report_figures(
     """
     speed = {**SPEEDS, **(speeds or {})}
     drawing, pieces = product.drawing, product.pieces
-    layers = []
+    layers: list[dict[str, Any]] = []
     before = 0j
     for layer in drawing.layers:
         paths = layer.paths

@@ -6,15 +6,18 @@ import numpy as np
 
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.layout import Sheet
+from voronoi_tiles.fabrication.rings import oriented, simple
 from voronoi_tiles.vector.curves.biarcs import to_arcs
 from voronoi_tiles.vector.curves.offset import OffsetError, offset
-from voronoi_tiles.vector.curves.paths import Ints, Paths
-from voronoi_tiles.vector.curves.winding import item_winding
-from voronoi_tiles.vector.sheet.faces import ring_areas
+from voronoi_tiles.vector.curves.paths import Paths
 from voronoi_tiles.vector.sheet.region import Region
 
 _CLOSED = 1e-3
 """How far apart the ends of a path may be that is meant to be closed; millimetres."""
+
+
+_RINGS_MAX = 1000
+"""Most closed paths that bound a sheet; a count. More are a drawing, and no sheet."""
 
 
 def read_sheet(job: Job) -> Sheet:
@@ -46,7 +49,16 @@ def _drawn_sheet(name: str, job: Job) -> Sheet:
             f"{name} has no closed path",
             remedy="Draw the sheet's outline as a closed path, or give its size: 600x300mm.",
         )
-    border = _oriented(to_arcs(closed, accuracy=job.accuracy / 2))
+    if len(closed) > _RINGS_MAX:
+        raise JobError(f"{name} has {len(closed)} closed paths", remedy=f"Bound a sheet by {_RINGS_MAX} at most.")
+    border = oriented(to_arcs(closed, accuracy=job.accuracy / 2))
+    if not len(border):
+        raise JobError(f"the closed paths of {name} enclose nothing, or cross themselves", remedy="Draw one outline.")
+    if not simple(border):
+        raise JobError(
+            f"the closed paths of {name} cross or touch themselves or each other",
+            remedy="Leave only the sheet's outline and its holes (Path > Union in Inkscape).",
+        )
     low_x, low_y, high_x, high_y = border.bounds
     page = drawing.width is not None and drawing.height is not None
     if not page:
@@ -76,18 +88,3 @@ def _closed_rings(paths: Paths) -> Paths:
     chosen.end[chosen.offsets[1:] - 1] = chosen.start[chosen.offsets[:-1]]
     chosen.closed[:] = True
     return chosen
-
-
-def _oriented(rings: Paths) -> Paths:
-    """Turn rings so that those inside an even number of others run counter-clockwise, all others clockwise."""
-    areas = ring_areas(rings)
-    rings = rings.take(np.flatnonzero(areas != 0))
-    areas = areas[areas != 0]
-    points = rings.start[rings.offsets[:-1]]
-    inside = np.abs(item_winding(rings, rings.offsets, points)) % 2
-    np.fill_diagonal(inside, 0)
-    depth: Ints = inside.sum(axis=0)
-    turn = (areas > 0) != (depth % 2 == 0)
-    turned = rings.reversed(turn)
-    order = np.argsort(depth % 2, kind="stable")
-    return turned.take(order)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from voronoi_tiles.fabrication.engraving import GUIDE
+from voronoi_tiles.fabrication.art import GUIDE, outline_paths
 from voronoi_tiles.vector.curves.paths import Paths
 from voronoi_tiles.vector.writers.drawing import Drawing, Layer
 
@@ -20,20 +20,12 @@ _ENGRAVE: Final = "engrave"
 
 
 def art_template(tiling: Tiling, tile: Tile) -> tuple[Drawing, complex]:
-    """Give a page with a site's tile and strokes on the layer "guide", which art leaves out, and an empty layer "engrave".
+    """Give a page with a site's tile and strokes on the layer "guide", which is no art, and an empty layer "engrave".
 
     Also gives what `translate` the art needs in the design, in its units, to lie where it was drawn.
     """
     unit = tiling.design.unit_mm
-    outline = tile.outline
-    paths = Paths(
-        start=outline.start * unit,
-        end=outline.end * unit,
-        control=np.column_stack((np.where(outline.curved, outline.control * unit, 0), np.zeros(len(outline)))),
-        kind=outline.curved.astype(np.uint8),
-        offsets=outline.ring_offsets,
-        closed=np.ones(len(outline.ring_offsets) - 1, np.bool_),
-    )
+    paths = outline_paths(tiling, tiling.tiles.index(tile), unit)
     elements = tile.site.elements
     ends = (elements[:, [0, 2]] + 1j * elements[:, [1, 3]]) * unit
     strokes = Paths.polylines([line for line in ends if line[0] != line[1]])

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import BinaryIO
+from io import RawIOBase
+from typing import BinaryIO, Literal, cast, get_args
 
 from voronoi_tiles.fabrication.job import ACCURACY_MM
 from voronoi_tiles.presets import FORMATS as FILE_FORMATS
@@ -14,32 +15,36 @@ from voronoi_tiles.vector.writers.drawing import Drawing
 
 FORMATS: tuple[Format, ...] = FILE_FORMATS
 
+DxfCurves = Literal["arc", "spline", "polyline"]
+
 CUBIC_ACCURACY = 1e-6
 """How far a cubic curve may be from a circular arc that it stands for; millimetres: what files hold anyway."""
 
 
 def write_drawing(
-    drawing: Drawing, file: BinaryIO, form: str, *, curves: str = "arc", accuracy: float = ACCURACY_MM
+    drawing: Drawing, file: BinaryIO | RawIOBase, form: str, *, curves: str = "arc", accuracy: float = ACCURACY_MM
 ) -> None:
     """Write a drawing as one of FORMATS; DXF with these curves. Raises ValueError for another format."""
+    # Writers only write, portions of bytes.
+    out = cast("BinaryIO", file)
     match form:
         case "svg":
             from voronoi_tiles.vector.writers.svgpage import write_svg
 
-            write_svg(_without_arcs(drawing), file)
+            write_svg(_without_arcs(drawing), out)
         case "dxf":
             from voronoi_tiles.vector.writers.dxf import write_dxf
 
-            assert curves in ("arc", "spline", "polyline")
-            write_dxf(drawing, file, curves=curves, accuracy=accuracy)
+            assert curves in get_args(DxfCurves)
+            write_dxf(drawing, out, curves=cast("DxfCurves", curves), accuracy=accuracy)
         case "pdf":
             from voronoi_tiles.vector.writers.pdf import write_pdf
 
-            write_pdf(drawing, file)
+            write_pdf(drawing, out)
         case "lbrn2":
             from voronoi_tiles.vector.writers.lbrn2 import write_lbrn2
 
-            write_lbrn2(drawing, file)
+            write_lbrn2(drawing, out)
         case _:
             raise ValueError(f"no drawing can be written as {form!r}: use one of {', '.join(FORMATS)}")
 
@@ -49,13 +54,15 @@ def recoloured(drawing: Drawing, preset_name: str, form: str) -> Drawing:
 
     Raises DesignError where the preset is broken or does not read the format.
     """
+    assert form in FORMATS
+    file_format = form
     preset = load_preset(preset_name)
-    preset.require(form)  # type: ignore[arg-type] - one of FORMATS
+    preset.require(file_format)
     roles: dict[str, Role] = {"engrave": "engrave", "inside": "inner", "cut": "cut"}
     layers = []
     for layer in drawing.layers:
         role = roles[layer.name]
-        name = preset.layer_name(role, form)  # type: ignore[arg-type] - same
+        name = preset.layer_name(role, file_format)
         layers.append(replace(layer, name=name, colour=preset.colours[role], stroke=preset.stroke_width()))
     return replace(drawing, layers=tuple(layers))
 
