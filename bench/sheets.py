@@ -138,6 +138,9 @@ def main() -> None:
                 seconds, memory = fastest(command, options.runs)
                 size = target.stat().st_size / 1e6
                 rows.append((form, edges, f"{tiles:,}", f"{seconds:.2f}", f"{memory:.0f}", f"{size:.1f}"))
+                if form in {"svg", "dxf"} and edges == "once":
+                    seconds, memory = fastest(["preflight", str(target)], 1)
+                    rows.append((f"preflight {form}", edges, f"{tiles:,}", f"{seconds:.2f}", f"{memory:.0f}", ""))
         # The peers come last: what this process takes in memory would count as its children's.
         for form, edges, count, *figures in rows:
             other = peer(form, edges, designs[int(count.replace(",", ""))], Path(folder)) if count else ""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
@@ -420,12 +419,3 @@ def test_too_many_chords_are_refused() -> None:
     """An accuracy that would fill the memory is an error before it does."""
     with pytest.raises(ValueError, match=f"{COUNT_MAX}"):
         to_lines(Paths.concatenate([chain(PARABOLA)] * 100), accuracy=1e-9)
-
-
-def test_many_runs_are_fast() -> None:
-    """A thousand curves in runs of 20 take some tenths of a second; the limit leaves room for a busy machine."""
-    many = Paths.concatenate([smooth_side(seed, 20, 2.0) for seed in range(50)])
-    to_arcs(many, accuracy=0.005)
-    begin = time.process_time()
-    to_arcs(many, accuracy=0.005)
-    assert time.process_time() - begin < 2.0

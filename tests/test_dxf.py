@@ -317,18 +317,3 @@ def test_the_comparison_sees_a_wrong_curve() -> None:
     assert cad.deviation(cad.sampled(paths.moved(1, 0.02)), right) > 0.01
     assert cad.deviation(cad.sampled(cad.as_lines(paths)), right) > 0.1
     assert cad.deviation([*right, *cad.sampled(cad.ring(LINE))], right) > 1
-
-
-def test_time_is_linear_and_short() -> None:
-    """10,000 closed polylines of 30 arcs are written within three seconds, the tenth part in no more than its share."""
-    one = cad.ring(ARC, count=30)
-
-    def seconds(count: int) -> float:
-        paths = Paths.concatenate([one] * count)
-        begin = time.perf_counter()
-        written(one_layer(paths), "arc")
-        return time.perf_counter() - begin
-
-    small, large = min(seconds(1000) for _ in range(2)), seconds(10_000)
-    assert large < 3
-    assert large < 25 * small
