@@ -74,7 +74,7 @@ def test_art_moves_with_every_copy(tmp_path: Path, name: str) -> None:
     # The page's lower left corner lies on the origin; y runs up.
     art = np.array([2 + 17j, 9 + 16j, 5 + 8j]) * np.exp(1j * np.pi / 6) / tiles.design.unit_mm + 4 + 7j
     images = [image for image, _ in on_copies(tiles, art, size).values()]
-    product = tiles.make(Job(sheet=size))
+    product = tiles.make(Job(sheet=size, offset=0j))
     lines = shapely.multilinestrings(lines_of(work(product, "engrave")))
     check_copies(lines, images)
     if tiles.design.group.name != "p1":
@@ -110,7 +110,7 @@ def test_clipped_art_stays_inside_its_tile(tmp_path: Path, fit: str) -> None:
     body = f'<path d="M -60 3 L 90 4" {STROKE}/><circle cx="{z.real}" cy="{20 - z.imag}" r="0.2" {STROKE}/>'
     tiles = drawn(tmp_path, body)
     size = (150.0, 150.0)
-    product = tiles.make(Job(sheet=size, art="clip", fit=fit))
+    product = tiles.make(Job(sheet=size, offset=0j, art="clip", fit=fit))
     lines = shapely.multilinestrings(lines_of(work(product, "engrave")))
     art = np.array([-60 + 17j, 90 + 16j]) * np.exp(1j * np.pi / 6) + 4 + 7j
     inside = [
@@ -126,7 +126,7 @@ def test_clipped_art_stays_inside_its_tile(tmp_path: Path, fit: str) -> None:
     else:
         assert sum(line.length for line in straight) > sum(inside)
         assert shapely.box(-1e-6, -1e-6, 150 + 1e-6, 150 + 1e-6).covers(lines)
-    free = shapely.multilinestrings(lines_of(work(tiles.make(Job(sheet=size)), "engrave")))
+    free = shapely.multilinestrings(lines_of(work(tiles.make(Job(sheet=size, offset=0j)), "engrave")))
     assert free.length > 1.5 * lines.length
 
 
@@ -222,7 +222,7 @@ def test_what_is_drawn_on_the_template_lands_on_the_tile(tmp_path: Path, name: s
     (tmp_path / "d.toml").write_text(source.replace("[[site]]\n", f"[[site]]\n{art}", 1))
     tiles = Design.load(tmp_path / "d.toml").tessellate()
     size = (8 * abs(corner) * unit + 150, 8 * abs(corner) * unit + 150)
-    product = tiles.make(Job(sheet=size))
+    product = tiles.make(Job(sheet=size, offset=0j))
     lines = shapely.multilinestrings(lines_of(work(product, "engrave")))
     here = shapely.LineString(xy(points + complex(*size) / 2))
     assert float(shapely.distance(lines, dense(here)).max()) < 1e-6

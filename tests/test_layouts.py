@@ -220,7 +220,6 @@ def least_gap(shapes: list[Any]) -> float:
     ("name", "job", "wanted"),
     [
         ("p1-leaf", {"gap": 2.0}, 2.0),
-        ("p4-hook", {"gap": 1.5, "kerf": 0.2}, 1.5),
         ("pg-wave", {"kerf": 0.2}, 1.0),
         ("p3-puzzle", {"kerf": 0.8}, 1.6),
         ("p6-rosette", {"gap": 3.0, "fillet": 0.3}, 3.0),

@@ -77,7 +77,7 @@ def _touching(edges: list[tuple[float, float]], places: list[Floats], reach: flo
     shifts = shifts[np.abs(shifts) <= reach]
     if len(shifts) > _PLACES:
         shifts = np.append(shifts[np.linspace(0, len(shifts) - 1, _PLACES).astype(np.intp)], 0.0)
-    return shifts
+    return np.asarray(shifts, np.float64)
 
 
 def _best_of_grid(period: Period, region: Region) -> complex:

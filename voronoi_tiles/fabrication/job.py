@@ -214,7 +214,7 @@ def _number(name: str, value: object) -> float:
         raise JobError(f"{name} {value!r} cannot be", remedy='Give a number of millimetres, or "0.15mm".') from error
 
 
-def _sheet(value: object) -> tuple[float, float] | str | None:
+def _sheet(value: Any) -> tuple[float, float] | str | None:
     """Read a sheet: two numbers, the text of a size, or the name of a drawing. Raises JobError."""
     remedy = 'Give two numbers of millimetres, "600x300mm", or the name of an SVG or DXF file.'
     if value is None or (isinstance(value, str) and value.lower().endswith((".svg", ".svgz", ".dxf"))):
@@ -222,7 +222,7 @@ def _sheet(value: object) -> tuple[float, float] | str | None:
     try:
         if isinstance(value, str):
             return parse_size(value)
-        width, height = value  # type: ignore[misc] - what is no pair is refused below
+        width, height = value
     except (DesignError, TypeError, ValueError) as error:
         raise JobError(f"a sheet of {value!r} cannot be", remedy=remedy) from error
     return _number("sheet", width), _number("sheet", height)

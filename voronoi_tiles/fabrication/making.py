@@ -62,14 +62,12 @@ def make(tiling: Tiling, job: Job, file_format: str = "svg") -> Product:
 
     Raises JobError where the job cannot be done, DesignError where the preset or the sheet's drawing is broken.
     """
-    if file_format not in FORMATS:
-        raise JobError(f"no drawing can be made as {file_format!r}", remedy=f"Use one of {', '.join(FORMATS)}.")
+    form = _format(file_format)
     if job.colours == "files" and job.only_colour is None:
         raise JobError(
             "a file for each colour is several drawings, and one is asked for",
             remedy="Make one for each of colour_names, with only_colour, or put the colours on layers.",
         )
-    form: Format = file_format
     preset = load_preset(job.preset)
     preset.require(form)
     curves = _curves(job, preset, form)
@@ -92,10 +90,17 @@ def make(tiling: Tiling, job: Job, file_format: str = "svg") -> Product:
     return Product(form, drawing, pieces, colouring.count, notes, curves, job.accuracy)
 
 
-def colour_names(tiling: Tiling, job: Job, file_format: Format = "svg") -> list[tuple[int, str]]:
+def _format(name: str) -> Format:
+    """The format of drawings that has this name. Raises JobError where none has."""
+    if name not in FORMATS:
+        raise JobError(f"no drawing can be made as {name!r}", remedy=f"Use one of {', '.join(FORMATS)}.")
+    return name
+
+
+def colour_names(tiling: Tiling, job: Job, file_format: str = "svg") -> list[tuple[int, str]]:
     """Give the colours that a job has pieces of, each with a name for its file; FRAME for the frame."""
     # As the files are made: where most tiles fit may depend on the curves.
-    curves = _curves(job, load_preset(job.preset), file_format)
+    curves = _curves(job, load_preset(job.preset), _format(file_format))
     fit, _ = curve_fit(job, curves, tiling.design.unit_mm)
     layout = Layout(tiling, job, read_sheet(job), fit, refit=curves != "polyline")
     colouring = colour_tiles(layout)
