@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import shutil
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,8 +15,10 @@ import pytest
 from conftest import CommandLine
 from cutting import RINGS, SQUARES
 
-from voronoi_tiles import cli
+from voronoi_tiles import Design, Job, cli
 from voronoi_tiles.drawings import read_drawing
+from voronoi_tiles.preflight import preflight
+from voronoi_tiles.starters import starter_text
 
 EXAMPLES = Path(__file__).parent.parent / "examples"
 WAVE = str(EXAMPLES / "pg-wave.toml")
@@ -78,7 +81,7 @@ def test_every_format_the_same_bytes_twice(here: Path, call: Call, form: str, vo
     options = ["--sheet", "140x90mm", "--margin", "8mm", "--kerf", "0.2", "--labels", "number", "--colours", "layers"]
     first = call("export", "squares.toml", "-o", f"a.{form}", *options, "--bar", "--marks")
     assert first.exit_code == 0, first.stderr
-    assert first.stderr == f"wrote a.{form}\n"
+    assert first.stderr.startswith(f"wrote a.{form}: 15 pieces, ")
     second = voronoi_tiles("export", "squares.toml", "-o", f"b.{form}", *options, "--bar", "--marks", cwd=here)
     assert second.returncode == 0, second.stderr
     assert (here / f"a.{form}").read_bytes() == (here / f"b.{form}").read_bytes()
@@ -138,7 +141,8 @@ def test_a_file_for_each_colour(here: Path, call: Call) -> None:
     assert result.exit_code == 0, result.stderr
     names = sorted(path.name for path in here.glob("w-*.svg"))
     assert names == ["w-1.svg", "w-2.svg", "w-frame.svg"]
-    assert result.stderr.splitlines() == [f"wrote {name}" for name in names]
+    wrote = [line.split(":")[0] for line in result.stderr.splitlines() if line.startswith("wrote")]
+    assert wrote == [f"wrote {name}" for name in names]
     pieces = [len(read_drawing(here / name).shapes) for name in names]
     assert sorted(pieces[:2]) == [8, 8]
     before = set(here.rglob("*"))
@@ -299,3 +303,78 @@ def test_broken_oracle_of_refusals(here: Path, call: Call) -> None:
     before: set[Any] = set(here.rglob("*"))
     with pytest.raises(AssertionError):
         check_refused(call("export", "squares.toml", "-o", "a.svg", "--kerf", "0.2"), here, before, "kerf")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("--sheet", "1e5x1e5"), "11,111,111 tiles"),
+        (("--sheet", "1e-9x1e-9"), "0.1 to 100,000 mm"),
+        (("--sheet", "far.svg", "--fit", "clip"), "far.svg are 200 x 200 mm, from (1e+09"),
+        (("--sheet", "dot.svg", "--fit", "clip"), "0.1 to 100,000 mm"),
+        (("--label-height", "0.1mm"), "0.5 to 1000 mm"),
+        (("--sheet", "20x20", "--fit", "clip", "--kerf", "8"), "no tile fits on the sheet"),
+    ],
+)
+def test_sheets_beyond_all_measure(
+    voronoi_tiles: CommandLine, tmp_path: Path, arguments: tuple[str, ...], words: str
+) -> None:
+    """They are refused at once, whatever they would take."""
+    head = '<svg xmlns="http://www.w3.org/2000/svg" width="100mm" height="100mm" viewBox="0 0 100 100"><path d="'
+    (tmp_path / "far.svg").write_text(f'{head}M1e9 1e9h200v200h-200Z"/></svg>')
+    (tmp_path / "dot.svg").write_text(f'{head}M1 1h1e-9v1e-9h-1e-9Z"/></svg>')
+    done = voronoi_tiles("export", str(EXAMPLES / "p4-hook.toml"), "-o", "o.svg", *arguments, cwd=tmp_path)
+    assert done.returncode == 2
+    assert words in done.stderr
+    assert len(done.stderr.splitlines()) == 1
+    assert not (tmp_path / "o.svg").exists()
+
+
+def test_what_a_job_reads_is_not_overwritten(voronoi_tiles: CommandLine, tmp_path: Path) -> None:
+    """The sheet's drawing, the preset, the art: each stays, and so does the last of several files that is a folder."""
+    (tmp_path / "sheet.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="200mm" viewBox="0 0 200 200">'
+        '<path d="M5 5h190v190h-190Z"/></svg>'
+    )
+    (tmp_path / "mine.toml").write_text('extends = "lightburn"\n')
+    for name in ("swallow.toml", "swallow.svg"):
+        shutil.copy(EXAMPLES / "art" / name, tmp_path)
+    (tmp_path / "w-2.svg").mkdir()
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()}
+    for arguments in (
+        ("-o", "sheet.svg", "--sheet", "sheet.svg"),
+        ("-o", "mine.toml", "--format", "svg", "--preset", "mine.toml"),
+        ("-o", "swallow.svg", "--sheet", "200x200"),
+        ("-o", "w.svg", "--sheet", "200x200", "--colours", "files"),
+    ):
+        done = voronoi_tiles("export", "swallow.toml", *arguments, cwd=tmp_path)
+        assert done.returncode == 2, done.stderr
+    assert {path.name: path.read_bytes() for path in tmp_path.iterdir() if path.is_file()} == before
+
+
+@pytest.mark.parametrize("group", ["pm", "pmm", "pmg", "cmm", "p4m", "p6m"])
+@pytest.mark.parametrize("fit", ["whole", "clip", "frame"])
+def test_mirrors_along_the_border_are_cut_once(tmp_path: Path, group: str, fit: str) -> None:
+    """Where tiles lie along the edge of the sheet, the preflight finds nothing that is cut twice."""
+    target = tmp_path / "sheet.svg"
+    tiling = Design.loads(starter_text(group)).tessellate()
+    tiling.export(target, job=Job(sheet=(150.0, 110.0), fit=fit, edges="once", offset=0j))  # type: ignore[arg-type]
+    assert preflight(target).passed
+
+
+def test_what_is_no_path_in_art_is_named(voronoi_tiles: CommandLine, tmp_path: Path) -> None:
+    """Texts are not engraved; the export says so."""
+    art = (EXAMPLES / "art" / "swallow.svg").read_text().replace("</svg>", "<text>swallow</text></svg>")
+    (tmp_path / "swallow.svg").write_text(art)
+    shutil.copy(EXAMPLES / "art" / "swallow.toml", tmp_path)
+    done = voronoi_tiles("export", "swallow.toml", "-o", "o.svg", "--sheet", "200x200", cwd=tmp_path)
+    assert done.returncode == 0
+    assert "text (1)" in done.stderr
+
+
+@pytest.mark.parametrize("value", ["nan", "inf", "0", "1e9"])
+def test_speeds_are_numbers(voronoi_tiles: CommandLine, tmp_path: Path, value: str) -> None:
+    """The report's JSON has no room for others."""
+    done = voronoi_tiles("report", str(EXAMPLES / "p4-hook.toml"), "--cut-speed", value, cwd=tmp_path)
+    assert done.returncode == 2
+    assert not done.stdout

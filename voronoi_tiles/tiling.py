@@ -207,11 +207,11 @@ class Tiling:
 
     def write(
         self, path: str | os.PathLike[str], file_format: str, *, job: Job | None, check: CheckReport | None = None
-    ) -> tuple[str, ...]:
-        """Write a file whole or not at all; what was lost to kerf or fillet is returned in sentences.
+    ) -> Product | None:
+        """Write a file whole or not at all; give the product that was written.
 
-        Without a job SVG and JSON hold the exact tiles where they lie in the plane. Raises JobError for a job that
-        cannot be done, or that comes with JSON.
+        Without a job SVG and JSON hold the exact tiles where they lie in the plane, and there is no product. Raises
+        JobError for a job that cannot be done, or that comes with JSON.
         """
         from voronoi_tiles.fabrication import Job, JobError
 
@@ -220,7 +220,7 @@ class Tiling:
         drawn = any(art is not None for art in self.design.art)
         if job is None and (file_format == "json" or (file_format == "svg" and not drawn)):
             write_whole(path, self.text(file_format, check).encode())
-            return ()
+            return None
         if file_format == "json":
             raise JobError(
                 "a JSON document holds the exact outlines of one of each tile, and no sheet",
@@ -231,7 +231,7 @@ class Tiling:
             product = product.with_evidence(self.evidence(check))
         with writing(path) as file:
             product.write(file)
-        return product.notes
+        return product
 
     def export(
         self,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Sequence
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -13,6 +14,7 @@ import click
 
 from voronoi_tiles.commands.common import PATH, report_error, say, tessellate
 from voronoi_tiles.commands.options import with_job, with_renderer
+from voronoi_tiles.errors import OutputError
 
 if TYPE_CHECKING:
     from voronoi_tiles.crosscheck import CheckReport
@@ -57,13 +59,13 @@ def export(
     DESIGN is a TOML or JSON file, or - for standard input. Lengths are millimetres unless they say cm or in. With
     several designs the good ones are written, the bad ones named, and the exit code is the worst.
     """
-    from voronoi_tiles.files import STDOUT
+    from voronoi_tiles.files import STDOUT, is_special
     from voronoi_tiles.tiling import require
 
     if not check and (renderer != "auto" or device is not None):
         raise click.UsageError("--renderer and --device say how to check: add --check.")
     targets = _targets(designs, output, file_format)
-    if job is not None and job.colours == "files" and output == STDOUT:
+    if job is not None and job.colours == "files" and (output == STDOUT or is_special(output)):
         raise click.UsageError("Several files need a name that they can begin with: -o sheet.svg.")
     worst = 0
     for design, (target, target_format) in zip(designs, targets, strict=True):
@@ -87,7 +89,9 @@ def export(
 def _write(tiling: Tiling, target: str, form: str, job: Job | None, check: CheckReport | None) -> list[str]:
     """Write one design, or its files, one for each colour; say what there is to say."""
     if job is None or job.colours != "files" or form == "json":
-        return [*tiling.write(target, form, job=job, check=check), f"wrote {target}"]
+        _refuse_inputs(tiling, job, [target])
+        product = tiling.write(target, form, job=job, check=check)
+        return [f"wrote {target}"] if product is None else [*product.notes, f"wrote {target}: {product.summary()}"]
     from voronoi_tiles.fabrication import colour_names
     from voronoi_tiles.files import writing
 
@@ -97,12 +101,29 @@ def _write(tiling: Tiling, target: str, form: str, job: Job | None, check: Check
         str(path.with_name(f"{path.stem}-{name}{path.suffix}")): tiling.make(replace(job, only_colour=number), form)
         for number, name in colour_names(tiling, job, form)
     }
+    _refuse_inputs(tiling, job, list(products))
     lines = []
-    for part, product in products.items():
-        with writing(part) as file:
+    # No file takes its place before all are written.
+    with ExitStack() as stack:
+        for part, product in products.items():
+            file = stack.enter_context(writing(part))
             (product if check is None else product.with_evidence(tiling.evidence(check))).write(file)
-        lines += [*product.notes, f"wrote {part}"]
+            lines += [*product.notes, f"wrote {part}: {product.summary()}"]
     return lines
+
+
+def _refuse_inputs(tiling: Tiling, job: Job | None, targets: Sequence[str]) -> None:
+    """Refuse to overwrite what a job is made from: the sheet's drawing, the preset, the art."""
+    design = tiling.design
+    read = [os.path.join(design.folder, art.file) for art in design.art if art is not None]  # noqa: PTH118 - any name
+    if job is not None:
+        read += [name for name in (job.sheet, job.preset) if isinstance(name, str)]
+    known = {os.path.realpath(name) for name in read}
+    for target in targets:
+        if os.path.realpath(target) in known:
+            raise OutputError(
+                f"{target} is read for this job, and would be overwritten", path=target, remedy="Choose another name."
+            )
 
 
 def _targets(designs: Sequence[str], output: str, file_format: str | None) -> list[tuple[str, str]]:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -18,7 +19,21 @@ if TYPE_CHECKING:
     from voronoi_tiles.vector.writers.drawing import Drawing
 
 _DRAWINGS = (".svg", ".dxf", ".pdf", ".lbrn2")
-_SPEED = click.FloatRange(min=0.0, min_open=True)
+
+
+class _Figure(click.FloatRange):
+    """A number in a range, and no other."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Read a number; what is none is refused as one that is out of range."""
+        number = super().convert(value, param, ctx)
+        if not math.isfinite(number):
+            self.fail(f"{value!r} is no number in the range {self._describe_range()}.", param, ctx)
+        return float(number)
+
+
+_SPEED = _Figure(min=0.001, max=1e6)
+_TIME = _Figure(min=0.0, max=3600.0)
 
 
 @click.command()
@@ -30,7 +45,7 @@ _SPEED = click.FloatRange(min=0.0, min_open=True)
 @click.option("--travel-speed", type=_SPEED, metavar="MM/S", help="Speed between two cuts [default: 200].")
 @click.option(
     "--pierce-time",
-    type=click.FloatRange(min=0.0),
+    type=_TIME,
     metavar="S",
     help="Time for each pierce, in seconds [default: 0.3].",
 )

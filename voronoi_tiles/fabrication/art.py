@@ -12,7 +12,8 @@ import numpy as np
 from voronoi_tiles.design import Art
 from voronoi_tiles.errors import DesignError
 from voronoi_tiles.fabrication.fitting import side_arcs
-from voronoi_tiles.fabrication.layout import Layout
+from voronoi_tiles.fabrication.job import SHEET_MAX
+from voronoi_tiles.fabrication.layout import PIECES_MAX, Layout
 from voronoi_tiles.fabrication.rings import oriented, simple
 from voronoi_tiles.vector.contour import Bools, Complexes, Ints
 from voronoi_tiles.vector.curves.biarcs import to_arcs
@@ -32,12 +33,16 @@ GUIDE: Final = "guide"
 
 @dataclass(frozen=True, eq=False)
 class Works:
-    """Art by what is done with it; shape k that is filled are the closed paths from items[k] up to items[k + 1]."""
+    """Art by what is done with it; shape k that is filled are the closed paths from items[k] up to items[k + 1].
+
+    `left_out` says in sentences what of the drawings is no path, and is not there.
+    """
 
     engraved: Paths
     scored: Paths
     filled: Paths
     items: Ints
+    left_out: tuple[str, ...] = ()
 
     @classmethod
     def joined(cls, parts: list[Works]) -> Works:
@@ -48,6 +53,7 @@ class Works:
             Paths.concatenate([part.scored for part in parts]),
             Paths.concatenate([part.filled for part in parts]),
             np.append(0, np.cumsum(np.concatenate(counts)) if counts else []).astype(np.intp),
+            tuple(dict.fromkeys(line for part in parts for line in part.left_out)),
         )
 
     def moved(self, factor: complex, shift: complex, *, conj: bool = False) -> Works:
@@ -72,11 +78,12 @@ class Works:
             _clipped_lines(self.scored, region, accuracy),
             Paths.concatenate(filled),
             np.array(items, np.intp),
+            self.left_out,
         )
 
     def _changed(self, change: Callable[[Paths], Paths], items: Ints) -> Works:
         """The same with all paths changed."""
-        return Works(change(self.engraved), change(self.scored), change(self.filled), items)
+        return Works(change(self.engraved), change(self.scored), change(self.filled), items, self.left_out)
 
 
 def draw_art(tiling: Tiling, layout: Layout, shown: Bools, *, fills: bool) -> Works:
@@ -90,6 +97,7 @@ def draw_art(tiling: Tiling, layout: Layout, shown: Bools, *, fills: bool) -> Wo
         if art is None or job.art == "none":
             continue
         drawn = read_art(art, design.folder, site, design.unit_mm, fills=fills)
+        _refuse_excess(drawn, layout, site, art)
         try:
             if job.art == "clip":
                 accuracy = job.accuracy / 2 / design.unit_mm
@@ -104,6 +112,22 @@ def draw_art(tiling: Tiling, layout: Layout, shown: Bools, *, fills: bool) -> Wo
                 remedy="Unite its shapes (Path > Union in Inkscape), or use --art whole.",
             ) from error
     return Works.joined(parts)
+
+
+def _refuse_excess(drawn: Works, layout: Layout, site: int, art: Art) -> None:
+    """Refuse art that is too large, or too much on so many tiles."""
+    parts = [paths for paths in (drawn.engraved, drawn.scored, drawn.filled) if len(paths.start)]
+    many = int(np.count_nonzero(layout.site == site)) * sum(len(paths.start) for paths in parts)
+    reach = max((float(np.abs(paths.bounds).max()) for paths in parts), default=0.0) * layout.design_units
+    if many > PIECES_MAX or reach > SHEET_MAX:
+        far = reach > SHEET_MAX
+        what = f"reaches {reach:.3g} mm from the design's origin" if far else f"has {many:,} lines on all tiles"
+        raise DesignError(
+            f"the art {what}",
+            file=art.file,
+            key=f"site[{site}].art",
+            remedy=f"Draw at most {PIECES_MAX:,} lines in all, within {SHEET_MAX:,.0f} mm, or use --art none.",
+        )
 
 
 def read_art(art: Art, folder: str, site: int, unit_mm: float, *, fills: bool) -> Works:
@@ -134,7 +158,9 @@ def read_art(art: Art, folder: str, site: int, unit_mm: float, *, fills: bool) -
             lines[work].append(shape.paths)
     items = np.append(0, np.cumsum([len(paths) for paths in filled])).astype(np.intp)
     engraved, scored = Paths.concatenate(lines["engrave"]), Paths.concatenate(lines["score"])
-    works = Works(engraved, scored, Paths.concatenate(filled), items)
+    what = ", ".join(f"{name} ({count:,})" for name, count in sorted(drawing.ignored.items()))
+    left_out = (f"{art.file}: left out what is no path: {what}; convert texts to paths",) if what else ()
+    works = Works(engraved, scored, Paths.concatenate(filled), items, left_out)
     return works.moved(art.placement.scale * unit_at(art.placement.rotate) / unit_mm, art.placement.translate)
 
 

@@ -32,7 +32,7 @@ class Cut:
 
 def cut_once(layout: Layout, job: Job) -> Paths:
     """Every line once: what lies between tiles in the fewest trails, then the rings around them."""
-    strands = layout.strands()
+    strands = layout.lines()
     outer = (strands.left == OUTSIDE) | (strands.right == OUTSIDE) | strands.border
     inner = np.flatnonzero(~outer)
     paths, first, last, node = strands.paths.take(inner), strands.first[inner], strands.last[inner], strands.node
@@ -46,14 +46,12 @@ def cut_once(layout: Layout, job: Job) -> Paths:
 
 
 def _outer_rings(layout: Layout, strands: Strands, outer: Bools) -> Paths:
-    """The rings around the tiles, closed, in a short order; with a frame, that around the frame as the last."""
-    if layout.region is not None and layout.job.fit == "clip":
-        return toured(layout.region.border)
-    kept = np.flatnonzero(outer)
+    """The rings around the tiles, closed, in a short order; the border of the sheet comes last."""
+    kept = np.flatnonzero(outer & ~strands.border)
     rings = joined(strands.paths.take(kept), find_trails(strands.first[kept], strands.last[kept], strands.node))
-    if layout.region is not None and layout.job.fit == "frame":
-        return Paths.concatenate([toured(rings), layout.region.border])
-    return toured(rings)
+    if layout.region is None or layout.job.fit == "whole":
+        return toured(rings)
+    return Paths.concatenate([toured(rings), toured(layout.region.border)])
 
 
 def toured(paths: Paths) -> Paths:

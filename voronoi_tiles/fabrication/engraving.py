@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from voronoi_tiles.fabrication.art import draw_art
-from voronoi_tiles.fabrication.job import Job, JobError
+from voronoi_tiles.fabrication.job import LABEL_MIN, Job, JobError
 from voronoi_tiles.fabrication.layout import Contours, Layout, Sheet
 from voronoi_tiles.lettering import fitting_height, label_position, place_labels, printable
 from voronoi_tiles.marks import BAR_MM, bar_height, reference_bar, registration_marks
@@ -18,9 +18,6 @@ from voronoi_tiles.vector.curves.paths import Paths
 
 if TYPE_CHECKING:
     from voronoi_tiles.tiling import Tiling
-
-LABEL_MIN: Final = 0.5
-"""Smallest height of a label that is drawn; millimetres. What is smaller nobody reads."""
 
 _ROOM: Final = 0.9
 """The part of the room in a tile that a label takes."""
@@ -62,7 +59,7 @@ def engrave(
     job = layout.job
     art = draw_art(tiling, layout, shown, fills=fills)
     lines: list[Paths] = []
-    notes: list[str] = []
+    notes: list[str] = list(art.left_out)
     if job.labels != "none":
         labels, small = _labels(tiling, layout, contours if contours is not None else layout.contours())
         lines.append(labels)

@@ -26,7 +26,13 @@ APART_MM = 1.0
 """How far contours with a kerf are kept apart where the caller does not say; millimetres: no sliver is left to burn."""
 
 SHEET_MAX = 100_000.0
-"""Largest side of a sheet; millimetres."""
+"""Largest side of a sheet, and largest length of an option; millimetres."""
+
+SHEET_MIN = 0.1
+"""Smallest side of a sheet; millimetres."""
+
+LABEL_MIN = 0.5
+"""Smallest height of a label; millimetres. What is smaller nobody reads."""
 
 
 class JobError(VoronoiTilesError, ValueError):
@@ -102,7 +108,7 @@ class Job:
         for name in ("margin", "gap", "kerf", "fillet", "tabs"):
             value = getattr(self, name) or 0.0
             if not 0.0 <= value <= SHEET_MAX:
-                raise JobError(f"{name} {value:g} mm cannot be", remedy="Give a length of 0 mm or more.")
+                raise JobError(f"{name} {value:g} mm cannot be", remedy=f"Give a length from 0 to {SHEET_MAX:,.0f} mm.")
         if not (math.isfinite(self.rotate) and abs(self.offset or 0j) <= SHEET_MAX):
             raise JobError("the turn or the offset is not a number, or too large", remedy="Give finite numbers.")
         if not ACCURACY_MIN <= self.accuracy <= 1.0:
@@ -110,8 +116,19 @@ class Job:
                 f"an accuracy of {self.accuracy:g} mm cannot be",
                 remedy=f"Give one from {ACCURACY_MIN:g} to 1 mm; the default is {ACCURACY_MM:g} mm.",
             )
-        if not 0.1 <= self.label_height <= 1000.0:
-            raise JobError(f"labels of {self.label_height:g} mm cannot be", remedy="Give a height from 0.1 to 1000 mm.")
+        if not LABEL_MIN <= self.label_height <= 1000.0:
+            raise JobError(
+                f"labels of {self.label_height:g} mm cannot be", remedy=f"Give a height from {LABEL_MIN:g} to 1000 mm."
+            )
+        for name in ("marks", "bar"):
+            if not isinstance(getattr(self, name), bool):
+                raise JobError(f"{name} {getattr(self, name)!r} cannot be", remedy="Use True or False.")
+        if not isinstance(self.preset, str):
+            raise JobError(f"a preset {self.preset!r} cannot be", remedy="Give a name, or the path of a TOML file.")
+        if self.only_colour is not None and (
+            isinstance(self.only_colour, bool) or not isinstance(self.only_colour, int)
+        ):
+            raise JobError(f"a colour {self.only_colour!r} cannot be", remedy="Give its number, from 0.")
         self._check_sheet()
         self._check_edges()
 
@@ -193,8 +210,11 @@ class Job:
         if isinstance(self.sheet, str):
             return
         width, height = self.sheet
-        if not (0.0 < width <= SHEET_MAX and 0.0 < height <= SHEET_MAX):
-            raise JobError(f"a sheet of {width:g} x {height:g} mm cannot be", remedy="Write --sheet 600x300mm.")
+        if not (SHEET_MIN <= width <= SHEET_MAX and SHEET_MIN <= height <= SHEET_MAX):
+            raise JobError(
+                f"a sheet of {width:g} x {height:g} mm cannot be",
+                remedy=f"Write --sheet 600x300mm, with sides from {SHEET_MIN:g} to {SHEET_MAX:,.0f} mm.",
+            )
         if 2.0 * self.margin >= min(width, height):
             raise JobError(
                 f"a margin of {self.margin:g} mm leaves nothing of a sheet of {width:g} x {height:g} mm",

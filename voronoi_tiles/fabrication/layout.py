@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -32,6 +32,12 @@ if TYPE_CHECKING:
 
 FRAME = -1
 """The site of a piece of a frame."""
+
+TILES_MAX: Final = 100_000
+"""Most tiles of a sheet; a count. They take about ten seconds."""
+
+PIECES_MAX: Final = 4_000_000
+"""Most edges of all tiles of a sheet, and most lines of art; counts. They take about 1.5 GB."""
 
 _LOSSES = {
     "ring": "a piece vanishes",
@@ -98,6 +104,8 @@ class Layout:
         self.factor = self.design_units * complex(_unit(turn, job.rotate))
         self.shift = sheet.centre + (job.offset or 0j) if sheet.region is not None else 0j
         self.period: Period = period.placed(self.factor, self.shift)
+        if sheet.region is not None:
+            self._refuse_crowd(sheet.region)
         self.losses: list[str] = []
         self.spread = UNSTRETCHED
         self._dressed: dict[int, Paths] = {}
@@ -110,6 +118,19 @@ class Layout:
             self._move(self.spread.inverse(best_shift(self.spaced, sheet.region)))
         self.placement = self._place(tessellation.placed)
         self.copies = Copies(self.placement.tile, self.placement.step, self.placement.whole, self._pull(self.placement))
+
+    def _refuse_crowd(self, region: Region) -> None:
+        """Refuse a sheet that would hold more than memory does."""
+        left, bottom, right, top = region.bounds
+        a, b = (complex(vector) for vector in self.period.basis)
+        cells = (right - left) * (top - bottom) / abs(a.real * b.imag - a.imag * b.real)
+        tiles, pieces = cells * len(self.period.site), cells * 2 * len(self.period.sides.start)
+        if tiles > TILES_MAX or pieces > PIECES_MAX:
+            raise JobError(
+                f"the sheet would hold about {tiles:,.0f} tiles of {pieces / tiles:,.0f} edges each",
+                remedy=f"Take a smaller sheet or a larger design: {TILES_MAX:,} tiles, and {PIECES_MAX:,} edges of "
+                "tiles, are the most.",
+            )
 
     def _spaced(self) -> Period:
         """The period where it is cut."""
@@ -151,6 +172,12 @@ class Layout:
         if self.region is not None and self.job.fit == "clip":
             return clipped_strands(self.spaced, self.placement, self.region)
         return whole_strands(self.spaced, self.placement)
+
+    def lines(self) -> Strands:
+        """The lines of the sheet and its border, each once: where tiles lie along the border, it is the border's."""
+        if self.region is not None and self.job.fit == "frame":
+            return clipped_strands(self.spaced, self.placement, self.region)
+        return self.strands()
 
     def contours(self) -> Contours:
         """The closed contours of all pieces, kerf, fillets and gaps applied."""
@@ -201,9 +228,10 @@ class Layout:
         if not len(placement.tile):
             rings, items = self.period.outlines(np.zeros(1, np.intp), np.zeros((1, 2), np.intp))
             x0, y0, x1, y1 = tile_boxes(rings, items)[0].tolist()
+            other = ", or --fit clip" if self.job.fit != "clip" else ""
             raise JobError(
-                f"no whole tile fits on the sheet: one takes {x1 - x0:.4g} x {y1 - y0:.4g} mm",
-                remedy="Take a larger sheet, a smaller margin, another --offset or --rotate, or --fit clip.",
+                f"no {'whole ' if other else ''}tile fits on the sheet: one takes {x1 - x0:.4g} x {y1 - y0:.4g} mm",
+                remedy=f"Take a larger sheet, a smaller margin, another --offset or --rotate{other}.",
             )
         return placement
 

@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from io import RawIOBase
+from math import fsum
 from typing import TYPE_CHECKING, Any, BinaryIO
 
 import numpy as np
@@ -52,6 +53,17 @@ class Product:
         recipe = {**self.drawing.recipe, "evidence": json.dumps(evidence, sort_keys=True)}
         return replace(self, drawing=replace(self.drawing, recipe=recipe))
 
+    def summary(self) -> str:
+        """Say in a line what it comes to."""
+        cuts = [layer.paths for layer in self.drawing.layers if layer.work == "cut"]
+        length = fsum(float(paths.lengths.sum()) for paths in cuts) / 1000
+        count, area = len(self.pieces.site), self.drawing.width * self.drawing.height
+        used = fsum(self.pieces.area[self.pieces.site != FRAME].tolist()) / area
+        return (
+            f"{count:,} piece{'s' * (count != 1)}, {used:.1%} of {self.drawing.width:.5g} x "
+            f"{self.drawing.height:.5g} mm, {length:.3g} m of cuts in {sum(map(len, cuts)):,} paths"
+        )
+
     def write(self, file: BinaryIO | RawIOBase) -> None:
         """Write the drawing."""
         write_drawing(self.drawing, file, self.form, curves=self.curves, accuracy=self.accuracy)
@@ -86,7 +98,7 @@ def make(tiling: Tiling, job: Job, file_format: str = "svg") -> Product:
     engraving = engrave(tiling, layout, contours, sheet, _shown(colouring, layout, job), fills=preset.fill_engraving)
     layers = _layers(preset, form, job, cuts, engraving, _converter(curves, rest))
     drawing = _page(layers, sheet, job, tiling)
-    notes = tuple(dict.fromkeys((*layout.losses, *engraving.notes)))
+    notes = tuple(dict.fromkeys((*layout.losses, *engraving.notes, *_doubled(layout, job))))
     return Product(form, drawing, pieces, colouring.count, notes, curves, job.accuracy)
 
 
@@ -95,6 +107,13 @@ def _format(name: str) -> Format:
     if name not in FORMATS:
         raise JobError(f"no drawing can be made as {name!r}", remedy=f"Use one of {', '.join(FORMATS)}.")
     return name
+
+
+def _doubled(layout: Layout, job: Job) -> list[str]:
+    """Say that neighbours' contours lie on each other, where they do."""
+    if not job.pieces or job.apart is not None or len(layout.copies.tile) < 2 or job.sheet is None:
+        return []
+    return ["neighbouring contours lie on each other, and are cut twice: --edges once, or --gap 1mm, avoids it"]
 
 
 def colour_names(tiling: Tiling, job: Job, file_format: str = "svg") -> list[tuple[int, str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from voronoi_tiles.fabrication.job import Job, JobError
+from voronoi_tiles.fabrication.job import SHEET_MAX, SHEET_MIN, Job, JobError
 from voronoi_tiles.fabrication.layout import Sheet
 from voronoi_tiles.fabrication.rings import oriented, simple
 from voronoi_tiles.vector.curves.biarcs import to_arcs
@@ -15,6 +15,9 @@ from voronoi_tiles.vector.sheet.region import Region
 _CLOSED = 1e-3
 """How far apart the ends of a path may be that is meant to be closed; millimetres."""
 
+
+_PIECES_MAX = 50_000
+"""Most lines and curves that bound a sheet; a count."""
 
 _RINGS_MAX = 1000
 """Most closed paths that bound a sheet; a count. More are a drawing, and no sheet."""
@@ -31,7 +34,10 @@ def read_sheet(job: Job) -> Sheet:
         width, height = job.sheet
         m = job.margin + job.kerf / 2
         if 2 * m >= min(width, height):
-            raise JobError("the margin and the kerf leave nothing of the sheet", remedy="Make the margin smaller.")
+            raise JobError(
+                f"a kerf of {job.kerf:g} mm leaves nothing of a sheet of {width:g} x {height:g} mm",
+                remedy="Take a larger sheet, or a smaller margin or kerf.",
+            )
         region = Region.rectangle(m, m, width - m, height - m)
         return Sheet(width, height, region, complex(width, height) / 2)
     return _drawn_sheet(job.sheet, job)
@@ -44,6 +50,8 @@ def _drawn_sheet(name: str, job: Job) -> Sheet:
     drawing = read_drawing(name)
     rings = Paths.concatenate([shape.paths for shape in drawing.shapes])
     closed = _closed_rings(rings)
+    if len(closed):
+        _refuse_size(name, closed)
     if not len(closed):
         raise JobError(
             f"{name} has no closed path",
@@ -77,6 +85,23 @@ def _drawn_sheet(name: str, job: Job) -> Sheet:
             raise JobError(f"a margin of {margin:g} mm leaves nothing of {name}", remedy="Use a smaller --margin.")
     left, bottom, right, top = border.bounds
     return Sheet(width, height, Region(border), complex(left + right, bottom + top) / 2)
+
+
+def _refuse_size(name: str, closed: Paths) -> None:
+    """Refuse outlines that are no sheet's by their size, or their number of lines."""
+    left, bottom, right, top = closed.bounds
+    size = max(right - left, top - bottom, abs(left), abs(bottom), abs(right), abs(top))
+    if size > SHEET_MAX or min(right - left, top - bottom) < SHEET_MIN:
+        raise JobError(
+            f"the closed paths of {name} are {right - left:.4g} x {top - bottom:.4g} mm, "
+            f"from ({left:.4g}, {bottom:.4g})",
+            remedy=f"Draw a sheet of {SHEET_MIN:g} to {SHEET_MAX:,.0f} mm, on its page; is its unit right?",
+        )
+    if len(closed.start) > _PIECES_MAX:
+        raise JobError(
+            f"the closed paths of {name} have {len(closed.start):,} lines and curves",
+            remedy=f"Simplify them: {_PIECES_MAX:,} are the most.",
+        )
 
 
 def _closed_rings(paths: Paths) -> Paths:
