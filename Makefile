@@ -47,7 +47,7 @@ demo: $(INSTALLED)
 	@echo "The .png files beside them show how their copies fill the plane; sheet.svg and sheet.dxf are sheets of them."
 
 test: $(INSTALLED_DEV)
-	$(VENV)/bin/python -m pytest $(PYTEST)
+	$(VENV)/bin/python -m pytest -n auto --dist loadfile $(PYTEST)
 
 lint: $(INSTALLED_DEV)
 	$(VENV)/bin/ruff check .

@@ -74,10 +74,15 @@ def engrave(
 
 
 def _labels(tiling: Tiling, layout: Layout, contours: Contours) -> tuple[Paths, int]:
-    """A label in every piece of a tile, and how many pieces are too small for one."""
+    """A label in every piece of a tile, and how many pieces are too small for one.
+
+    Numbers run as one reads: from left to right, line by line from above; lines are half a tile high.
+    """
     job = layout.job
     place, room = _label_places(layout, contours)
     pieces = np.flatnonzero(contours.copy >= 0)
+    line = np.round(-place[pieces].imag / (0.5 * float(np.sqrt(np.median(layout.tile_areas)))))
+    pieces = pieces[np.lexsort((place[pieces].real, line))]
     names = [printable(site.name) for site in tiling.design.sites]
     sites = layout.site[contours.copy[pieces]]
     texts = [str(k + 1) if job.labels == "number" else names[sites[k]] for k in range(len(pieces))]
