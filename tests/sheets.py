@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from voronoi_tiles.design import Design
 from voronoi_tiles.starters import starter_text
 from voronoi_tiles.tiling import Tiling
+from voronoi_tiles.vector.curves.areas import ring_areas
 from voronoi_tiles.vector.curves.paths import ARC, CUBIC, LINE, QUAD, Complexes, Floats, Ints, Paths
-from voronoi_tiles.vector.sheet.faces import Pieces, clipped_pieces, frame_pieces, ring_areas
+from voronoi_tiles.vector.sheet.faces import Pieces, clipped_pieces, frame_pieces
 from voronoi_tiles.vector.sheet.period import Period, make_period
 from voronoi_tiles.vector.sheet.placement import Placement, place_tiles
 from voronoi_tiles.vector.sheet.region import Region

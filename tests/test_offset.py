@@ -16,12 +16,12 @@ from hypothesis import strategies as st
 
 import voronoi_tiles
 import voronoi_tiles.vector.curves.offset as offset_module
+from voronoi_tiles.vector.curves.areas import ring_areas as areas
 from voronoi_tiles.vector.curves.arrangement import Arrangement
 from voronoi_tiles.vector.curves.biarcs import to_arcs
 from voronoi_tiles.vector.curves.offset import OffsetError, offset, round_corners
 from voronoi_tiles.vector.curves.paths import ARC, LINE, QUAD, Complexes, Floats, Paths
 from voronoi_tiles.vector.curves.pieces import tangent_at
-from voronoi_tiles.vector.curves.rings import areas
 from voronoi_tiles.vector.outline import Outline
 
 EXAMPLES = sorted((Path(__file__).parent.parent / "examples").glob("*.toml"))

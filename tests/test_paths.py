@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import mpmath
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from sheets import check_joints, circle, points_on
 
+from voronoi_tiles.vector.curves.areas import ring_areas
 from voronoi_tiles.vector.curves.paths import ARC, CUBIC, LINE, QUAD, Complexes, Floats, Paths, moved, ranges
 
 SETTINGS = settings(max_examples=100, deadline=None, derandomize=True)
@@ -237,3 +239,20 @@ def test_an_arc_may_be_flat() -> None:
     radius, turn = flat.arc_radius_and_turn(np.array([0]))
     assert radius[0] == np.inf
     assert turn[0] == 0.0
+
+
+@pytest.mark.parametrize("turn", [1e-9, 1e-3, 0.1, 0.39, 0.41, 1.0, 3.0, 3.14159, 4.5, 6.0])
+@pytest.mark.parametrize("side", [1, -1])
+def test_the_area_of_a_segment_of_a_disc(turn: float, side: int) -> None:
+    """Between an arc and its chord, flat or nearly a whole circle, with all digits."""
+    with mpmath.workdps(40):
+        t = mpmath.mpf(turn)
+        wanted = side * (t - mpmath.sin(t)) / 2
+        a, b, middle = (mpmath.expj(side * part) for part in (0, t, t / 2))
+        # About the middle of the chord and in chords, so that the flattest one keeps its digits in float64.
+        size = abs(b - a)
+        start, end, through = (complex((z - (a + b) / 2) / size) for z in (a, b, middle))
+        area = float(wanted / size**2)
+    ends, kinds = np.array([start, end]), np.array([ARC, LINE], np.uint8)
+    both = Paths(ends, ends[::-1], np.array([[through, 0], [0, 0]]), kinds, np.array([0, 2]), np.ones(1, bool))
+    assert ring_areas(both)[0] == pytest.approx(area, rel=1e-9 if turn < 1e-6 else 1e-13)

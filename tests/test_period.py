@@ -10,8 +10,8 @@ import pytest
 from sheets import NAMES, check_joints, engine, flattened, period, points_on, tiling
 
 from voronoi_tiles.vector.copies import compose, to_operation, translation
+from voronoi_tiles.vector.curves.areas import ring_areas
 from voronoi_tiles.vector.curves.paths import ARC, CUBIC, Complexes, Ints, Paths, moved
-from voronoi_tiles.vector.sheet.faces import ring_areas
 from voronoi_tiles.vector.sheet.orbits import approximated, find_orbits
 from voronoi_tiles.vector.sheet.period import Period
 

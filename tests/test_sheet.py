@@ -28,9 +28,9 @@ from sheets import (
     shape,
 )
 
+from voronoi_tiles.vector.curves.areas import ring_areas
 from voronoi_tiles.vector.curves.paths import ARC, CUBIC, LINE, QUAD, Paths
 from voronoi_tiles.vector.curves.winding import winding
-from voronoi_tiles.vector.sheet.faces import ring_areas
 from voronoi_tiles.vector.sheet.period import Period
 from voronoi_tiles.vector.sheet.placement import Placement, tile_boxes
 from voronoi_tiles.vector.sheet.region import Region

@@ -13,12 +13,13 @@ import numpy as np
 
 from voronoi_tiles.errors import VoronoiTilesError
 from voronoi_tiles.tolerance import EPSILON
+from voronoi_tiles.vector.curves.areas import ring_areas
 from voronoi_tiles.vector.curves.arrangement import Arrangement, arrangement, without_doubles
 from voronoi_tiles.vector.curves.losses import Lost, losses
 from voronoi_tiles.vector.curves.paths import ARC, LINE, Bools, Complexes, Floats, Ints, Paths
 from voronoi_tiles.vector.curves.pieces import Circles, boxes, point_at
 from voronoi_tiles.vector.curves.raw_offset import Join, RawOffset, next_pieces, raw_offset, straightened
-from voronoi_tiles.vector.curves.rings import areas, built, chained, without_dead_ends
+from voronoi_tiles.vector.curves.rings import built, chained, without_dead_ends
 
 OFFSET_ULPS: Final = 256.0
 """How far an offset may be from its distance; ulps of the largest coordinate: some ten rounded operations, and
@@ -133,7 +134,7 @@ class _Attempt:
         except LookupError as error:
             raise OffsetError("the offset has a ring that does not close", middle[error.args[0]]) from None
         paths, pieces = built(parts, raw.paths, rings, self.tolerance / 64)
-        solid = np.abs(areas(paths)) > 4 * self.tolerance * np.bincount(paths.owner, paths.lengths, len(paths))
+        solid = np.abs(ring_areas(paths)) > 4 * self.tolerance * np.bincount(paths.owner, paths.lengths, len(paths))
         paths, pieces = paths.take(np.flatnonzero(solid)), pieces[solid[paths.owner]]
         rings = [ring for ring, real in zip(rings, solid, strict=True) if real]
         self._verify(paths, raw.mitred[pieces])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from voronoi_tiles.vector.curves.arrangement import Arrangement
-from voronoi_tiles.vector.curves.paths import ARC, Bools, Floats, Ints, Paths
+from voronoi_tiles.vector.curves.paths import Bools, Ints, Paths
 from voronoi_tiles.vector.curves.pieces import point_at, split, tangent_at
 from voronoi_tiles.vector.curves.raw_offset import straightened
 
@@ -121,22 +121,3 @@ def built(parts: Arrangement, paths: Paths, rings: list[Ints], tolerance: float)
         closed=np.ones(len(rings), np.bool_),
     )
     return straightened(whole, tolerance), parts.piece[first]
-
-
-def areas(paths: Paths) -> Floats:
-    """The area on the left of each closed path of LINEs and ARCs; < 0 where it runs clockwise."""
-    # About a point of each path, so that far coordinates cost no digits.
-    origin = paths.start[paths.offsets[:-1]][paths.owner]
-    area = ((paths.start - origin).conj() * (paths.end - origin)).imag / 2
-    arcs = np.flatnonzero(paths.kind == ARC)
-    if len(arcs):
-        radius, turn = paths.arc_radius_and_turn(arcs)
-        area[arcs] += radius**2 * _less_sine(turn) / 2
-    return np.asarray(np.bincount(paths.owner, area, len(paths)), np.float64)
-
-
-def _less_sine(angle: Floats) -> Floats:
-    """angle - sin(angle), by its series where they cancel."""
-    square = angle * angle
-    series = angle * square / 6 * (1 - square / 20 * (1 - square / 42 * (1 - square / 72)))
-    return np.where(np.abs(angle) < 0.3, series, angle - np.sin(angle))

@@ -7,7 +7,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from voronoi_tiles.vector.curves.paths import ARC, QUAD, Floats, Ints, Paths
+from voronoi_tiles.vector.curves.areas import ring_areas
+from voronoi_tiles.vector.curves.paths import Ints, Paths
 from voronoi_tiles.vector.curves.pieces import point_at, tangent_at
 from voronoi_tiles.vector.curves.winding import item_winding, winding
 from voronoi_tiles.vector.sheet.region import Region, beside_border
@@ -91,22 +92,6 @@ def _grouped(paths: Paths, owner: Ints) -> Pieces:
     order = [ring for k in outer.tolist() for ring in (k, *holes[k])]
     items = np.append(0, np.cumsum([1 + len(holes[k]) for k in outer.tolist()])).astype(np.intp)
     return Pieces(paths.take(np.array(order, np.intp)), items, owner[outer])
-
-
-def ring_areas(paths: Paths) -> Floats:
-    """The area that each closed path encloses: > 0 counter-clockwise; lines, arcs and quadratic curves."""
-    a, b = paths.start, paths.end
-    origin = a[paths.offsets[:-1]][paths.owner]
-    a, b = a - origin, b - origin
-    area = (a.real * b.imag - a.imag * b.real) / 2
-    bent = np.flatnonzero(paths.kind == QUAD)
-    chord, arm = b[bent] - a[bent], paths.control[bent, 0] - origin[bent] - a[bent]
-    area[bent] += (arm.real * chord.imag - arm.imag * chord.real) / 3
-    arcs = np.flatnonzero(paths.kind == ARC)
-    if len(arcs):
-        radius, turn = paths.arc_radius_and_turn(arcs)
-        area[arcs] += radius**2 * (turn - np.sin(turn)) / 2
-    return np.asarray(np.add.reduceat(area, paths.offsets[:-1]) if len(paths) else np.zeros(0), np.float64)
 
 
 class _Tracer:

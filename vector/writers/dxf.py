@@ -17,8 +17,8 @@ from typing import Any, BinaryIO, Final, Literal
 
 import numpy as np
 
-from voronoi_tiles.vector.curves.cubics import to_cubics
 from voronoi_tiles.vector.curves.paths import ARC, CUBIC, LINE, QUAD, Complexes, Floats, Ints, Paths
+from voronoi_tiles.vector.writers.cubics import all_cubic
 from voronoi_tiles.vector.writers.decimals import decimals
 from voronoi_tiles.vector.writers.drawing import Drawing, Layer
 
@@ -129,7 +129,7 @@ def _splines(paths: Paths, layer: str) -> list[str]:
 
 def _curved_splines(paths: Paths) -> list[str]:
     """SPLINE entities without their heads: the cubic pieces with knots 0 0 0 0 1 1 1 2 2 2 ... n n n n."""
-    cubics = to_cubics(paths, accuracy=GRID_MM, lines=True)  # no arc is left that could be approximated
+    cubics = all_cubic(paths)
     points = np.stack((cubics.start, *cubics.control.T), axis=1).ravel()
     ends = cubics.end[cubics.offsets[1:] - 1]
     rows = _points(points)

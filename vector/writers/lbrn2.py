@@ -15,8 +15,8 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
-from voronoi_tiles.vector.curves.cubics import cubic_blocks
 from voronoi_tiles.vector.curves.paths import CUBIC, Complexes, Paths
+from voronoi_tiles.vector.writers.cubics import cubic_blocks
 from voronoi_tiles.vector.writers.decimals import WIDTH, decimals
 from voronoi_tiles.vector.writers.drawing import Drawing, Layer
 

@@ -14,8 +14,8 @@ from typing import BinaryIO, Final
 
 import numpy as np
 
-from voronoi_tiles.vector.curves.cubics import cubic_blocks
 from voronoi_tiles.vector.curves.paths import CUBIC, Paths
+from voronoi_tiles.vector.writers.cubics import cubic_blocks
 from voronoi_tiles.vector.writers.decimals import PLACES, WIDTH, decimals
 from voronoi_tiles.vector.writers.drawing import Drawing, Layer
 

@@ -12,9 +12,9 @@ from voronoi_tiles.fabrication.colouring import Colouring
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.layout import Contours, Layout
 from voronoi_tiles.presets import Role
+from voronoi_tiles.vector.curves.areas import ring_areas
 from voronoi_tiles.vector.curves.paths import Bools, Paths
 from voronoi_tiles.vector.curves.tabs import with_tabs
-from voronoi_tiles.vector.sheet.faces import ring_areas
 from voronoi_tiles.vector.sheet.strands import OUTSIDE, Strands
 from voronoi_tiles.vector.sheet.tour import short_tour
 from voronoi_tiles.vector.sheet.trails import find_trails, joined

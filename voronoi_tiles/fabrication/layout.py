@@ -14,12 +14,13 @@ from voronoi_tiles.fabrication.fitting import fewer_arcs
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.vector.contour import Bools, Complexes, Floats, Ints
 from voronoi_tiles.vector.copies import Motion, Placed, compose, inverse, reverses_orientation
+from voronoi_tiles.vector.curves.areas import ring_areas
 from voronoi_tiles.vector.curves.conversion import to_lines
 from voronoi_tiles.vector.curves.offset import Offset, OffsetError, offset, round_corners
 from voronoi_tiles.vector.curves.paths import Paths, ranges
 from voronoi_tiles.vector.curves.winding import item_winding
 from voronoi_tiles.vector.sheet.best import best_shift
-from voronoi_tiles.vector.sheet.faces import Pieces, clipped_pieces, frame_pieces, ring_areas
+from voronoi_tiles.vector.sheet.faces import Pieces, clipped_pieces, frame_pieces
 from voronoi_tiles.vector.sheet.orbits import approximated
 from voronoi_tiles.vector.sheet.period import Period, make_period
 from voronoi_tiles.vector.sheet.placement import Placement, place_tiles, tile_boxes

@@ -6,10 +6,10 @@ from typing import Final
 
 import numpy as np
 
+from voronoi_tiles.vector.curves.areas import ring_areas
 from voronoi_tiles.vector.curves.conversion import to_lines
 from voronoi_tiles.vector.curves.paths import Ints, Paths
 from voronoi_tiles.vector.curves.winding import item_winding
-from voronoi_tiles.vector.sheet.faces import ring_areas
 
 _FLAT: Final = 1e-6
 """How far chords are from the paths when these are judged, relative to their extent."""
