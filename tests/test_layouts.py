@@ -340,3 +340,13 @@ def test_holes_and_corners_of_the_frame() -> None:
     assert (once.kind == LINE).all()
     for first, stop in pairwise(once.offsets.tolist()):
         assert (once.start[first + 1 : stop] == once.end[first : stop - 1]).all()
+
+
+def test_slivers_have_no_tabs() -> None:
+    """What the border leaves of a tile may be shorter than its bridges would be: it falls out, and that is said."""
+    product = made("p3-puzzle", sheet=(160.0, 150.0), margin=5.0, fit="clip", gap=1.0, tabs=0.4)
+    paths = Paths.concatenate([layer.paths for layer in product.drawing.layers])
+    lengths = np.bincount(paths.owner, paths.lengths, len(paths))
+    assert paths.closed.any()
+    assert (lengths[paths.closed] < 4 * 0.4).all()
+    assert any(f"{int(paths.closed.sum())} contours are too short for tabs of 0.4 mm" in note for note in product.notes)

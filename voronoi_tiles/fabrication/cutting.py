@@ -63,11 +63,16 @@ def toured(paths: Paths) -> Paths:
 
 
 def _tabbed(paths: Paths, width: float) -> Paths:
-    """Leave bridges in closed paths."""
+    """Leave bridges in closed paths; those that are shorter than four bridges stay closed, if any is longer."""
+    length = np.bincount(paths.owner, paths.lengths, len(paths))
+    long = length >= 4 * width
+    if not long.any():
+        long[:] = True
     try:
-        return with_tabs(paths, width)
+        tabbed = with_tabs(paths.take(np.flatnonzero(long)), width)
     except ValueError as error:
         raise JobError(str(error), remedy="Use narrower --tabs.") from error
+    return Paths.concatenate([tabbed, paths.take(np.flatnonzero(~long))])
 
 
 def cut_pieces(contours: Contours, colouring: Colouring, job: Job) -> list[Cut]:

@@ -98,7 +98,7 @@ def make(tiling: Tiling, job: Job, file_format: str = "svg") -> Product:
     engraving = engrave(tiling, layout, contours, sheet, _shown(colouring, layout, job), fills=preset.fill_engraving)
     layers = _layers(preset, form, job, cuts, engraving, _converter(curves, rest))
     drawing = _page(layers, sheet, job, tiling)
-    notes = tuple(dict.fromkeys((*layout.losses, *engraving.notes, *_doubled(layout, job))))
+    notes = tuple(dict.fromkeys((*layout.losses, *engraving.notes, *_doubled(layout, job), *_untabbed(cuts, job))))
     return Product(form, drawing, pieces, colouring.count, notes, curves, job.accuracy)
 
 
@@ -107,6 +107,12 @@ def _format(name: str) -> Format:
     if name not in FORMATS:
         raise JobError(f"no drawing can be made as {name!r}", remedy=f"Use one of {', '.join(FORMATS)}.")
     return name
+
+
+def _untabbed(cuts: list[Cut], job: Job) -> list[str]:
+    """Say how many pieces are too small for tabs, where there are any."""
+    small = sum(int(cut.paths.closed.sum()) for cut in cuts) if job.tabs > 0.0 and job.pieces else 0
+    return [f"{small:,} contours are too short for tabs of {job.tabs:g} mm, and fall out"] if small else []
 
 
 def _doubled(layout: Layout, job: Job) -> list[str]:
