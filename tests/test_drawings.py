@@ -19,7 +19,7 @@ import svgelements
 
 from voronoi_tiles.drawings import DrawingError, ReadDrawing, read_drawing
 from voronoi_tiles.drawings.colours import parse_colour
-from voronoi_tiles.drawings.dxf import dxf_drawing
+from voronoi_tiles.drawings.dxf import _entity_count, dxf_drawing
 from voronoi_tiles.drawings.svg import svg_drawing
 from voronoi_tiles.errors import DesignError
 from voronoi_tiles.lengths import parse_length, parse_size
@@ -346,6 +346,74 @@ def test_hostile_dxf_gives_one_message(draw: Any) -> None:
     """Blocks in themselves, blocks without end, negative radii."""
     with pytest.raises(DrawingError, match=r"^t\.dxf"):
         dxf(draw)
+
+
+def nested_inserts(document: Any, space: Any) -> None:
+    """Draw blocks of two inserts each, forty deep: a million million of them, which draw one line."""
+    document.blocks.new("B0").add_line((0, 0), (1, 1))
+    for k in range(1, 40):
+        block = document.blocks.new(f"B{k}")
+        for _ in range(2):
+            block.add_blockref(f"B{k - 1}", (0, 0))
+    space.add_blockref("B39", (0, 0))
+
+
+def test_inserts_are_counted_wherever_they_are_visited(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Blocks that draw next to nothing end as well."""
+    monkeypatch.setattr("voronoi_tiles.drawings.dxf.DXF_INSERTS_MAX", 100)
+    with pytest.raises(DrawingError, match="inserts more than 100 blocks"):
+        dxf(nested_inserts)
+    few = dxf(lambda document, space: [space.add_blockref("A", (k, 0)) for k in range(100)] if document else None)
+    assert few.ignored == {"INSERT of nothing": 100}
+
+
+def test_dxf_entities_are_counted_before_they_are_parsed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The values of group code 0, however that is written, and nothing else; too many are refused unread."""
+    assert _entity_count(b"0\nLINE\n 0\r\nEOF\r\n") == 2
+    assert _entity_count(b"00\nLINE\n8\n0\n100\n0\n10\n0\n20\n0.0\n+0\n0\n  0") == 3
+    assert _entity_count(b"x") == 0
+    document = ezdxf.new("R2000")
+    for _ in range(50):
+        document.modelspace().add_line((0, 0), (0, 10))
+    text = io.StringIO()
+    document.write(text)
+    lines = text.getvalue().splitlines()
+    count = sum(int(code) == 0 for code in lines[::2])
+    data = text.getvalue().encode()
+    assert _entity_count(data) == count
+    monkeypatch.setattr("voronoi_tiles.drawings.dxf.ELEMENTS_MAX", count)
+    assert len(dxf_drawing(data, "t.dxf").shapes) == 50
+    monkeypatch.setattr("voronoi_tiles.drawings.dxf.ELEMENTS_MAX", count - 1)
+    with pytest.raises(DrawingError, match=r"^t\.dxf: more than [0-9,]+ entities\. Split"):
+        dxf_drawing(data, "t.dxf")
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_dxf_numbers_that_are_none_are_named(value: float) -> None:
+    """The entity and the attribute, and no word of a conversion."""
+    with pytest.raises(DrawingError, match=r"t\.dxf, ARC [0-9A-F]+: its end angle is (nan|inf), no number"):
+        dxf(lambda _, space: space.add_arc((0, 0), 10, 0, value))
+    with pytest.raises(DrawingError, match=r"t\.dxf, CIRCLE [0-9A-F]+: its center is (nan|inf), no number"):
+        dxf(lambda _, space: space.add_circle((value, 0), 10))
+
+
+def test_elements_and_visits_are_limited(monkeypatch: pytest.MonkeyPatch) -> None:
+    """As many as the limits are read, one more is refused."""
+    monkeypatch.setattr("voronoi_tiles.drawings.tree.ELEMENTS_MAX", 11)
+    assert svg("<g/>" * 10).shapes == ()
+    with pytest.raises(DrawingError, match="more than 11 elements"):
+        svg("<g/>" * 11)
+    monkeypatch.setattr("voronoi_tiles.drawings.svg.VISITS_MAX", 10)
+    body = '<defs><path id="a" d="M0 0h1"/></defs>' + '<use href="#a"/>' * 4
+    assert len(svg(body).shapes) == 4
+    with pytest.raises(DrawingError, match="draws more than 10 elements, clones counted"):
+        svg(body + '<use href="#a"/>')
+
+
+def test_arcs_with_radii_of_next_to_nothing_are_arcs_or_lines() -> None:
+    """A radius that is enlarged to the chord's half is a half circle; one that is 0 but for its name is a line."""
+    for radius, kind in ((1e-9, ARC), (1e-310, LINE), (0.0, LINE)):
+        assert svg(f"<path d='M0 0A{radius} {radius} 0 0 1 3 3'/>").shapes[0].paths.kind.tolist() == [kind]
 
 
 def test_broken_dxf_gives_one_message() -> None:

@@ -12,6 +12,7 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
+import shapely
 from click.testing import CliRunner
 
 import voronoi_tiles as vt
@@ -21,8 +22,10 @@ from voronoi_tiles.drawings.dxf import dxf_drawing
 from voronoi_tiles.drawings.recipe import job_of, tab_width
 from voronoi_tiles.drawings.svg import svg_drawing
 from voronoi_tiles.errors import DesignError
-from voronoi_tiles.preflight import Finding, Limits, PreflightReport, judge, preflight, report_text
+from voronoi_tiles.preflight import Finding, Limits, PreflightReport, judge, preflight, report_text, search
+from voronoi_tiles.preflight.chords import chords_of
 from voronoi_tiles.preflight.marked import marked_svg
+from voronoi_tiles.vector.curves.paths import Paths
 
 NS = 'xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"'
 PAGE = 'width="200mm" height="100mm" viewBox="0 0 200 100"'
@@ -363,3 +366,105 @@ def test_tabs_are_no_gaps(tmp_path: Path) -> None:
 def test_a_broken_recipe_is_none(data: bytes) -> None:
     """It only says what is meant: a file is judged without it."""
     assert tab_width(job_of(data)) == 0.0
+
+
+TANGLE = "".join(f"<path d='M{k} 0 {20 - k} 20'/>" for k in range(20))
+
+
+@pytest.mark.parametrize(
+    ("limit", "body", "limits", "message"),
+    [
+        ("contacts.FOUND_MAX", TANGLE, Limits(), r"^t\.svg: its lines cross .* in more than 2,000,000 places\. Remove"),
+        ("contacts.FOUND_MAX", "<path d='M1 1h1v1z'/>" * 8, Limits(), r"lie on each other in more than"),
+        ("search.CANDIDATES_MAX", TANGLE, Limits(gap=0.0), r"so densely that more than 50 pairs of them"),
+        ("search.CANDIDATES_MAX", "<path d='M1 1h1'/>" * 20, Limits(), r"so densely that more than 50 pairs of them"),
+        ("necks.FOUND_MAX", "<path d='M1 1h1v1zm9 0h1v1z'/>" + TANGLE, Limits(neck=30.0), r"--neck 0\.$"),
+        ("necks._WAYS_MAX", "<path d='M0 0H9V3H5.1V3.2H9V7H0V3.2H4.9V3H0Z'/>", Limits(neck=8.0), r"--neck 0\.$"),
+    ],
+)
+def test_dense_drawings_are_refused(
+    limit: str, body: str, limits: Limits, message: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Too many pairs to compare, or too many that meet, are one message; within the limits there is a report."""
+    path = tmp_path / "t.svg"
+    path.write_text(f"<svg {NS} {PAGE} fill='none' stroke='#ff0000'>{body}</svg>")
+    monkeypatch.chdir(tmp_path)
+    assert preflight("t.svg", limits=limits).pieces > 0
+    monkeypatch.setattr(f"voronoi_tiles.preflight.{limit}", 5 if "FOUND" in limit else 50)
+    if limit == "necks._WAYS_MAX":
+        monkeypatch.setattr(f"voronoi_tiles.preflight.{limit}", 3)
+    with pytest.raises(DesignError, match=message) as caught:
+        preflight("t.svg", limits=limits)
+    assert caught.value.exit_code == 2
+
+
+def test_the_search_misses_no_pair(monkeypatch: pytest.MonkeyPatch) -> None:
+    """In small portions, slices and ways as in large ones: all pairs within the reach, by shapely's distances."""
+    generator = np.random.default_rng(8)
+    body = "".join(
+        f"<path d='M{x} {y}l{u} {v}l{v} {u}'/>"
+        for (x, y), (u, v) in zip(
+            generator.uniform(10, 90, (60, 2)), generator.normal(0, 6, (60, 2)).round(1), strict=True
+        )
+    )
+    drawing = svg_drawing(f"<svg {NS} {PAGE} stroke='red'>{body}</svg>".encode(), "t.svg")
+    chords = chords_of(Paths.concatenate([shape.paths for shape in drawing.shapes]), 0.01, 0.01)
+    segments = [
+        shapely.LineString([(p.real, p.imag), (q.real, q.imag)]) for p, q in zip(chords.start, chords.end, strict=True)
+    ]
+    count = len(segments)
+    for reach in (0.005, 1.0, 10.0):
+        near = {
+            (i, j)
+            for i in range(count)
+            for j in range(i + 1, count)
+            if segments[i].distance(segments[j]) <= reach and not (chords.path[i] == chords.path[j] and j == i + 1)
+        }
+        whole = [pair for one, two in search.pairs(chords, reach) for pair in zip(one, two, strict=True)]
+        monkeypatch.setattr(search, "_PORTION", 7)
+        monkeypatch.setattr(search, "_SLICE", 3)
+        found = [pair for one, two in search.pairs(chords, reach) for pair in zip(one, two, strict=True)]
+        monkeypatch.undo()
+        assert near
+        assert near <= set(found)
+        assert len(set(found)) == len(found)
+        assert set(found) == set(whole)
+        assert len(found) < count * (count - 1) // 2
+
+
+def test_portions_change_no_report(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is found does not depend on how much is looked at at once."""
+    body = "".join(body for body, _ in PLANTED.values())
+    expected = judged(body).findings
+    for name, value in (("search._PORTION", 5), ("search._SLICE", 2), ("necks._WAYS", 3)):
+        monkeypatch.setattr(f"voronoi_tiles.preflight.{name}", value)
+    assert judged(body).findings == expected
+
+
+@pytest.mark.parametrize("transform", ["", "translate(1e9 1e9)", "scale(1e-9)"])
+def test_pieces_of_no_length_warn_of_nothing(transform: str) -> None:
+    """Lines and curves so small that their squares or quotients are no numbers: numpy's warnings are errors here."""
+    tiny = (
+        "L1e-310 5e-324L3e-162 0L10 0A1e-310 1e-310 0 0 1 3 3Q1e-310 5e-324 5e-324 0C0 0 1e-310 0 5e-324 0L5 5L5 10",
+        "L20 10L20 10.001L20 10L0 0L1 10.001Q1e-310 5e-324 5e-324 0",
+        "L0 1L3e-162 1L10 0L5e-324 0Q1e-310 5e-324 5e-324 0",
+    )
+    for data in tiny:
+        judged(f"<g transform='{transform}'><path d='M0 0{data}Z'/><path d='M0 0{data}'/></g>")
+
+
+def test_the_commands_messages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One finding is one; where memory ends it is the drawing that is too large."""
+    path = tmp_path / "t.svg"
+    path.write_text(f"<svg {NS} {PAGE} fill='none' stroke='red'>{PLANTED['bow tie'][0]}</svg>")
+    assert "t.svg: 1 finding would spoil the cut." in CliRunner().invoke(command, [str(path)]).stderr
+    path.write_text(f"<svg {NS} {PAGE} fill='none' stroke='red'>{PLANTED['two circles'][0]}</svg>")
+    assert "t.svg: 2 findings would spoil the cut." in CliRunner().invoke(command, [str(path)]).stderr
+
+    def full(*_arguments: object, **_options: object) -> PreflightReport:
+        raise MemoryError
+
+    monkeypatch.setattr("voronoi_tiles.preflight.preflight", full)
+    result = CliRunner().invoke(command, [str(path)])
+    assert result.exit_code == 2
+    assert "not enough memory for this drawing. Split it" in result.stderr

@@ -49,7 +49,7 @@ def explain(error: BaseException, design: str | None = None) -> tuple[int, str]:
         case click.Abort() | KeyboardInterrupt():
             code, message = EXIT_INTERRUPTED, "Interrupted."
         case MemoryError():
-            remedy = "Allow larger tolerances, or use fewer strokes."
+            remedy = "Allow larger tolerances, or draw less."
             code, message = EXIT_USAGE, f"{start}there is not enough memory for this design. {remedy}"
         case OSError():
             from voronoi_tiles.files import output_error

@@ -6,7 +6,7 @@ import os
 
 import click
 
-from voronoi_tiles.commands.common import report_error, say, shown
+from voronoi_tiles.commands.common import EXIT_USAGE, report_error, say, shown
 from voronoi_tiles.errors import DesignError
 
 
@@ -109,12 +109,16 @@ def preflight(
 
             write_whole(output, marked_svg(report).encode())
             say(f"wrote {output}")
+    except MemoryError as error:
+        say(f"Error: {shown(file)}: there is not enough memory for this drawing. Split it, or simplify its curves.")
+        raise click.exceptions.Exit(EXIT_USAGE) from error
     except Exception as error:
         raise click.exceptions.Exit(report_error(file, error)) from error
     write_whole(STDOUT, (report.json() if as_json else report_text(report)).encode())
     if not report.passed:
         errors = sum(finding.severity == "error" for finding in report.findings)
-        say(f"Error: {shown(file)}: {errors:,} findings would spoil the cut.")
+        findings = "1 finding" if errors == 1 else f"{errors:,} findings"
+        say(f"Error: {shown(file)}: {findings} would spoil the cut.")
         raise click.exceptions.Exit(1)
 
 

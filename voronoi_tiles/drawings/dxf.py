@@ -13,12 +13,15 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+import numpy as np
+
 from voronoi_tiles.drawings.affine import Affine
 from voronoi_tiles.drawings.entities import Tilted, draw_entity
 from voronoi_tiles.drawings.model import (
     DEPTH_MAX,
     DXF_BYTES_MAX,
     DXF_COPIES_MAX,
+    DXF_INSERTS_MAX,
     ELEMENTS_MAX,
     DrawingError,
     ReadDrawing,
@@ -78,6 +81,8 @@ def dxf_drawing(data: bytes, file: str) -> ReadDrawing:
         raise DrawingError("a DWG file, not DXF", file=file, remedy=_REMEDY)
     if len(data) > DXF_BYTES_MAX:
         raise DrawingError(f"larger than {DXF_BYTES_MAX >> 20} MiB", file=file, remedy="Split the drawing.")
+    if _entity_count(data) > ELEMENTS_MAX:
+        raise DrawingError(f"more than {ELEMENTS_MAX:,} entities", file=file, remedy="Split the drawing.")
     try:
         document = _load(data)
         return _Walk(document).drawing()
@@ -91,6 +96,19 @@ def _reason(error: Exception) -> str:
     text = " ".join(str(error).split()).rstrip(".")
     name = type(error).__name__
     return text[:200] if text.startswith(name) else f"{name}{': ' if text else ''}{text[:200]}"
+
+
+def _entity_count(data: bytes) -> int:
+    """How many entities, and table entries, the text of a DXF file has: they are the values of group code 0.
+
+    Counted before they are parsed, which takes thousands of times as long. Codes and values take turns, a line each.
+    """
+    text = np.frombuffer(data, np.uint8)
+    begins = np.append(0, np.flatnonzero(text[:-1] == ord("\n")) + 1)
+    # A code is 0 however it is written: " 0", "00".
+    zero = np.logical_or.reduceat(text == ord("0"), begins)[::2]
+    more = np.logical_or.reduceat((text >= ord("1")) & (text <= ord("9")), begins)[::2]
+    return int(np.count_nonzero(zero & ~more))
 
 
 def _load(data: bytes) -> Drawing:
@@ -174,8 +192,6 @@ class _Walk:
     def _entities(self) -> Iterator[_Visit]:
         """Every visible entity, blocks replaced by what they hold."""
         space = self._document.modelspace()
-        if len(space) > ELEMENTS_MAX:
-            raise DrawingError(f"more than {ELEMENTS_MAX:,} entities", remedy="Split the drawing.")
         for top in space:
             stack = [_Visit(top, "0", _FOREGROUND, (), "")]
             while stack:
@@ -204,6 +220,8 @@ class _Walk:
         if len(visit.blocks) >= DEPTH_MAX:
             raise DrawingError(f"blocks nested more than {DEPTH_MAX:,} deep", remedy="Explode them.")
         self._clones += 1
+        if self._clones > DXF_INSERTS_MAX:
+            raise DrawingError(f"inserts more than {DXF_INSERTS_MAX:,} blocks", remedy="Explode or remove them.")
         places = max(1, insert.mcount)
         self._copies += places * max(1, len(block))
         if self._copies > DXF_COPIES_MAX:

@@ -7,6 +7,7 @@ import math
 from typing import Any, Final
 
 import numpy as np
+from ezdxf.math import Vec2, Vec3
 
 from voronoi_tiles.drawings.affine import Affine
 from voronoi_tiles.drawings.model import CURVE_ACCURACY, DrawingError
@@ -29,6 +30,7 @@ def draw_entity(pen: Pen, entity: Any, to_page: Affine) -> None:
     for what is broken.
     """
     dxf = entity.dxf
+    _check_numbers(dxf)
     match entity.dxftype():
         case "LINE":
             pen.move(_point(dxf.start))
@@ -47,6 +49,15 @@ def draw_entity(pen: Pen, entity: Any, to_page: Affine) -> None:
             _draw_polyline(pen, entity, to_page)
         case _:
             _draw_spline(pen, entity, to_page)
+
+
+def _check_numbers(dxf: Any) -> None:
+    """Refuse what is infinite or no number among the attributes of an entity."""
+    for name, value in dxf.all_existing_dxf_attribs().items():
+        parts = value if isinstance(value, (Vec2, Vec3)) else (value,)
+        for part in parts:
+            if isinstance(part, float) and not math.isfinite(part):
+                raise DrawingError(f"its {name.replace('_', ' ')} is {part}, no number", remedy="Remove it.")
 
 
 def begin_seen(pen: Pen, entity: Any, to_page: Affine) -> None:

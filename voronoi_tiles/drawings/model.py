@@ -18,20 +18,24 @@ from voronoi_tiles.vector.curves.paths import Paths
 BYTES_MAX: Final = 256 * 2**20
 """Largest file; bytes. Checked before it is parsed; for compressed files also after inflating."""
 
-DXF_BYTES_MAX: Final = 96 * 2**20
-"""Largest DXF file; bytes. A text of tags takes some twenty times its size in memory."""
+DXF_BYTES_MAX: Final = 64 * 2**20
+"""Largest DXF file; bytes. Twenty seconds' work; a text of tags takes some ten times its size in memory."""
 
 DEPTH_MAX: Final = 1_000
 """Deepest nesting of groups, clones and blocks; a count. Drawings have some ten."""
 
-ELEMENTS_MAX: Final = 1_000_000
-"""Most elements of a file; a count. A million take about 1 GB."""
+ELEMENTS_MAX: Final = 200_000
+"""Most elements of an SVG file, or entities of a DXF file; a count. Ten seconds' work, and as much again to judge them.
+A sheet of 10,000 tiles has 20,000."""
 
-VISITS_MAX: Final = 1_500_000
+VISITS_MAX: Final = 300_000
 """Most elements that are drawn, each clone counted with all it holds; a count. Nested clones double at every level."""
 
 DXF_COPIES_MAX: Final = 200_000
 """Most entities that blocks draw, each block counted wherever it is inserted; a count. Ten seconds' work."""
+
+DXF_INSERTS_MAX: Final = 30_000
+"""Most INSERTs that are followed, those in blocks counted wherever these are inserted; a count. Five seconds' work."""
 
 PIECES_MAX: Final = 2_000_000
 """Most lines and curves of a drawing; a count. A sheet of 10,000 tiles has half a million."""

@@ -177,7 +177,7 @@ def draw_arc(pen: Pen, rx: float, ry: float, degrees: float, large: bool, sweep:
     start = pen.here
     if start == end:
         return
-    if rx == 0.0 or ry == 0.0:
+    if min(rx, ry) < 1e-100:  # or so near to none that the chord, divided by it, is no number
         pen.line(end)
         return
     turn = rotation(degrees)

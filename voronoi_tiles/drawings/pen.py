@@ -5,6 +5,7 @@ from __future__ import annotations
 import cmath
 import math
 from array import array
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,9 @@ from voronoi_tiles.tolerance import COORDINATE_MAX
 from voronoi_tiles.vector.curves.paths import ARC, CUBIC, LINE, QUAD, Paths
 
 Complexes = NDArray[np.complex128]
+
+_TINY: Final = 1e-100
+"""Coordinates that are smaller are 0, so that squares and quotients of lengths stay numbers; millimetres."""
 
 
 class Pen:
@@ -201,4 +205,6 @@ def _mapped(points: NDArray[np.float64], maps: Complexes) -> Complexes:
         with np.errstate(over="ignore", invalid="ignore"):
             image[k].real = xx * x + xy * y + c.real
             image[k].imag = yx * x + yy * y + c.imag
+    parts = image.view(np.float64)
+    parts[np.abs(parts) < _TINY] = 0.0
     return image

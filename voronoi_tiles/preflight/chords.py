@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
@@ -20,8 +19,6 @@ Bools = NDArray[np.bool_]
 
 CHORDS_MAX: Final = 2_000
 """Most chords of one piece; a count. A circle of a kilometre has them at a tenth of a millimetre."""
-
-_BATCH: Final = 100_000  # chords that are compared with all others at a time
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,6 +49,22 @@ class Chords:
         """The chords by their boxes."""
         return shapely.STRtree(lines(self.start, self.end))
 
+    @cached_property
+    def corners(self) -> tuple[Complexes, Complexes]:
+        """The lower left and the upper right corner of each chord's box."""
+        low, high = np.empty_like(self.start), np.empty_like(self.start)
+        for part in ("real", "imag"):
+            one, other = getattr(self.start, part), getattr(self.end, part)
+            setattr(low, part, np.minimum(one, other))
+            setattr(high, part, np.maximum(one, other))
+        return low, high
+
+    @cached_property
+    def sides(self) -> tuple[Floats, Floats, Floats, Floats]:
+        """The left, right, lower and upper sides of the chords' boxes, each in rising order."""
+        low, high = self.corners
+        return np.sort(low.real), np.sort(high.real), np.sort(low.imag), np.sort(high.imag)
+
     def next(self, chords: Ints) -> Ints:
         """The chord that follows each on its path; -1 after the last one of a path that is no ring."""
         path = self.path[chords]
@@ -71,14 +84,14 @@ class Chords:
         chord = np.searchsorted(self._running, self._base[path] + place, side="right") - 1
         chord = np.clip(chord, self.first[path], self.first[path + 1] - 1)
         length = self.lengths[chord]
-        share = np.clip((place - self.before[chord]) / np.where(length > 0.0, length, 1.0), 0.0, 1.0)
+        share = np.clip((place - self.before[chord]) / np.where(length > 1e-200, length, 1.0), 0.0, 1.0)
         return self.start[chord] + share * (self.end[chord] - self.start[chord]), on
 
     def apart(self, path: Ints, one: Floats, other: Floats) -> Floats:
         """From one length along a path to another, the shorter way round a ring; signed."""
         way = other - one
         total = np.where(self.ring[path] & (self.total[path] > 0), self.total[path], np.inf)
-        with np.errstate(invalid="ignore"):
+        with np.errstate(invalid="ignore", over="ignore"):
             turns = np.where(np.isfinite(total), np.round(way / total), 0.0)
             return way - np.where(turns != 0.0, turns * total, 0.0)
 
@@ -91,28 +104,6 @@ class Chords:
     def _running(self) -> Floats:
         """The length of all chords before each."""
         return self._base[self.path] + self.before
-
-    def pairs(self, reach: float) -> Iterator[tuple[Ints, Ints]]:
-        """All pairs of chords (the first before the second) whose boxes are nearer than `reach`, in batches.
-
-        A chord and the one that follows it on its path are none.
-        """
-        for low in range(0, len(self.start), _BATCH):
-            some = np.arange(low, min(low + _BATCH, len(self.start)))
-            x0, x1 = (
-                np.minimum(self.start[some].real, self.end[some].real),
-                np.maximum(self.start[some].real, self.end[some].real),
-            )
-            y0, y1 = (
-                np.minimum(self.start[some].imag, self.end[some].imag),
-                np.maximum(self.start[some].imag, self.end[some].imag),
-            )
-            one, two = self.tree.query(shapely.box(x0 - reach, y0 - reach, x1 + reach, y1 + reach))
-            one = some[one]
-            ahead = two > one
-            one, two = one[ahead].astype(np.intp), two[ahead].astype(np.intp)
-            apart = (self.next(one) != two) & (self.next(two) != one)
-            yield one[apart], two[apart]
 
 
 def lines(start: Complexes, end: Complexes) -> NDArray[np.object_]:

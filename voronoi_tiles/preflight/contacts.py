@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voronoi_tiles.preflight.chords import Chords
-from voronoi_tiles.preflight.pairs import cross, distinct, dot, nearest, runs
+from voronoi_tiles.preflight.pairs import cross, distinct, divisor, dot, nearest, runs
+from voronoi_tiles.preflight.search import FOUND_MAX, pairs, too_many
 from voronoi_tiles.vector.curves.paths import Paths
 
 Complexes = NDArray[np.complex128]
@@ -63,11 +64,18 @@ class Meeting(NamedTuple):
 
 
 def find_contacts(chords: Chords, tolerance: float) -> Contacts:
-    """All pairs of chords within the tolerance, except neighbours on a path that do not turn back."""
+    """All pairs of chords within the tolerance, except neighbours on a path that do not turn back.
+
+    Raises DrawingError where there are more than FOUND_MAX.
+    """
     found = []
-    for first, second in chords.pairs(tolerance):
+    count = 0
+    for first, second in pairs(chords, tolerance):
         near = nearest(chords, first, second)
         close = near.distance <= tolerance
+        count += int(np.count_nonzero(close))
+        if count > FOUND_MAX:
+            raise too_many("cross or lie on each other")
         one, two = first[close], second[close]
         at_one = chords.before[one] + near.share_one[close] * chords.lengths[one]
         at_two = chords.before[two] + near.share_two[close] * chords.lengths[two]
@@ -115,11 +123,11 @@ def run_beside(chords: Chords, one: Ints, two: Ints, tolerance: float) -> tuple[
     """From where to where along the first chord the second runs beside it, within the tolerance."""
     a, b, c, d = chords.start[one], chords.end[one], chords.start[two], chords.end[two]
     length, other = chords.lengths[one], chords.lengths[two]
-    along = (b - a) / np.where(length > 0, length, 1.0)
+    along = (b - a) / divisor(length)
     begin, end = dot(c - a, along), dot(d - a, along)
     beside, beside_end = cross(along, c - a), cross(along, d - a)
     low, high = np.maximum(np.minimum(begin, end), 0.0), np.minimum(np.maximum(begin, end), length)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         slope = (beside_end - beside) / (end - begin)
         bounds = np.sort(np.stack(((-tolerance - beside) / slope, (tolerance - beside) / slope)) + begin, axis=0)
     level = np.abs(beside_end - beside) <= 1e-9 * tolerance
@@ -207,8 +215,10 @@ def crossings(
         chords, paths, chosen.two, chosen.point, tolerance
     )
     before, after, other, beyond = (side - chosen.point for side in sides)
-    sweep = np.mod(np.angle(after * before.conj()), 2 * np.pi)
-    within = [np.mod(np.angle(way * before.conj()), 2 * np.pi) < sweep for way in (other, beyond)]
+    # A line that goes back over itself may have the same point on both sides: no way has the angle 0.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        sweep = np.mod(np.angle(after * before.conj()), 2 * np.pi)
+        within = [np.mod(np.angle(way * before.conj()), 2 * np.pi) < sweep for way in (other, beyond)]
     crossed = within[0] != within[1]
     kept = inside & ~joined
     return tuple(  # type: ignore[return-value]

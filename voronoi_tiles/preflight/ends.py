@@ -5,11 +5,11 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
+from voronoi_tiles.preflight import search
 from voronoi_tiles.preflight.chords import Chords
-from voronoi_tiles.preflight.pairs import dot
+from voronoi_tiles.preflight.pairs import divisor, dot
 
 Complexes = NDArray[np.complex128]
 Floats = NDArray[np.float64]
@@ -36,28 +36,33 @@ class Ends(NamedTuple):
 def find_ends(chords: Chords, tolerance: float, gap: float) -> Ends:
     """The ends of paths, and what is near to them.
 
-    An end's own path counts only where it comes back: further along it than three gaps, or half of its length.
+    An end's own path counts only where it comes back: further along it than three gaps, or half of its length. Raises
+    DrawingError where too many lines are near to ends.
     """
     open_ = np.flatnonzero(~chords.ring)
     path = np.repeat(open_, 2)
     first, last = chords.first[open_], chords.first[open_ + 1] - 1
     point = np.stack((chords.start[first], chords.end[last]), axis=1).ravel()
     at = np.stack((np.zeros(len(open_)), chords.total[open_]), axis=1).ravel()
-    boxes = shapely.box(point.real - gap, point.imag - gap, point.real + gap, point.imag + gap)
-    end, chord = (side.astype(np.intp) for side in chords.tree.query(boxes))
-    start, way = chords.start[chord], chords.end[chord] - chords.start[chord]
-    length = dot(way, way)
-    share = np.clip(dot(point[end] - start, way) / np.where(length > 0, length, 1.0), 0.0, 1.0)
-    foot = start + share * way
-    distance = np.abs(foot - point[end])
-    own = chords.path[chord] == path[end]
-    along = np.abs(chords.before[chord] + share * chords.lengths[chord] - at[end])
-    far = np.minimum(3 * gap, chords.total[path[end]] / 2)
-    usable = (distance <= gap) & (~own | (along > far))
-    end, chord, foot, distance = end[usable], chord[usable], foot[usable], distance[usable]
-    order = np.lexsort((distance, end))
-    firsts = order[np.flatnonzero(np.append(True, end[order][1:] != end[order][:-1]))] if len(order) else order
     nearest = np.full(len(point), np.inf)
     near, which = point.copy(), np.full(len(point), -1, np.intp)
-    nearest[end[firsts]], near[end[firsts]], which[end[firsts]] = distance[firsts], foot[firsts], chord[firsts]
+    margin = complex(gap, gap)
+    count = 0
+    for end, chord in search.chords_in(chords, point - margin, point + margin):
+        count += len(end)
+        if count > search.CANDIDATES_MAX:
+            raise search.too_dense()
+        start, way = chords.start[chord], chords.end[chord] - chords.start[chord]
+        length = dot(way, way)
+        share = np.clip(dot(point[end] - start, way) / divisor(length), 0.0, 1.0)
+        foot = start + share * way
+        distance = np.abs(foot - point[end])
+        own = chords.path[chord] == path[end]
+        along = np.abs(chords.before[chord] + share * chords.lengths[chord] - at[end])
+        far = np.minimum(3 * gap, chords.total[path[end]] / 2)
+        usable = np.flatnonzero((distance <= gap) & (~own | (along > far)))
+        order = usable[np.lexsort((distance[usable], end[usable]))]
+        ends = end[order]
+        firsts = order[np.append(True, ends[1:] != ends[:-1])] if len(order) else order
+        nearest[end[firsts]], near[end[firsts]], which[end[firsts]] = distance[firsts], foot[firsts], chord[firsts]
     return Ends(point, path, nearest, near, which, nearest > tolerance)

@@ -86,7 +86,9 @@ def _gap(subject: Subject, ends: Ends, k: int, named: set[tuple[int, int]], tabs
     """The gap between an end and the nearest line; None where it was named from its other side."""
     path, other = int(ends.path[k]), int(subject.chords.path[ends.chord[k]])
     near = complex(ends.near[k])
-    facing = [m for m in np.flatnonzero(ends.path == other).tolist() if abs(ends.point[m] - near) < 1e-9 and m != k]
+    # The ends are in the order of their paths.
+    first, after = np.searchsorted(ends.path, (other, other + 1)).tolist()
+    facing = [m for m in range(first, after) if abs(ends.point[m] - near) < 1e-9 and m != k]
     key = (min(k, facing[0]), max(k, facing[0])) if facing else (k, k)
     if key in named:
         return None
@@ -210,7 +212,7 @@ def _corners(subject: Subject, limits: Limits) -> Iterator[Finding]:
     out = chords.end[two[node]] - chords.start[two[node]]
     moving = (np.abs(into) > 0) & (np.abs(out) > 0)
     node, into, out = node[moving], into[moving], out[moving]
-    inner = 180.0 - np.abs(np.degrees(np.angle(out / into)))
+    inner = 180.0 - np.abs(np.degrees(np.angle(out * into.conj())))
     for k in np.flatnonzero(inner < limits.corner).tolist():
         yield Finding(
             "corner",

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from voronoi_tiles.preflight.chords import Chords, lines
 from voronoi_tiles.preflight.contacts import run_beside
-from voronoi_tiles.preflight.pairs import Nearest, distinct, dot, nearest, runs
+from voronoi_tiles.preflight.pairs import Nearest, distinct, divisor, dot, nearest, runs
+from voronoi_tiles.preflight.search import FOUND_MAX, pairs, too_dense, too_many
 from voronoi_tiles.vector.curves.paths import ranges
 
 Complexes = NDArray[np.complex128]
@@ -20,6 +21,11 @@ Bools = NDArray[np.bool_]
 
 _APPROACH: Final = 1e-6
 """By how much of its length a line may come nearer to be still parallel; no unit. Rounding leaves 1e-10."""
+
+_REMEDY: Final = "Split the drawing, or look for narrower necks, or for none: --neck 0."
+
+_WAYS: Final = 4_000_000  # lines that leave points, looked at at once
+_WAYS_MAX: Final = 200_000_000  # and altogether
 
 
 class Neck(NamedTuple):
@@ -50,18 +56,24 @@ def find_necks(chords: Chords, touching: float, limit: float) -> list[Neck]:
     A place is narrow where the distance between two lines is at its least, or stays the same: no line that leaves
     either point comes nearer to the other one. So a corner, however sharp, is none. Between lines there is material
     inside a piece; where lines share points, as in files that cut every edge once, and beside open ones, everywhere.
+    Raises DrawingError where too many chords are so near.
     """
     joints = _Joints(chords)
     found = []
-    for one, two in chords.pairs(limit):
+    count = 0
+    for one, two in pairs(chords, limit, _REMEDY):
         near = nearest(chords, one, two)
         some = _Facing(one, two, near).take((near.distance < limit) & (near.distance > touching))
         some = some.take(joints.is_least(some.one, some.near.share_one, some.near.one, some.near.two))
         some = some.take(joints.is_least(some.two, some.near.share_two, some.near.two, some.near.one))
-        found.append(some.take(_see_each_other(chords, some.near)))
-    one, two = (np.concatenate([part[k] for part in found]) for k in (0, 1))
-    if not len(one):
+        some = some.take(_see_each_other(chords, some.near))
+        count += len(some.one)
+        if count > FOUND_MAX:
+            raise too_many("face each other across a neck", _REMEDY)
+        found.append(some)
+    if not count:
         return []
+    one, two = (np.concatenate([part[k] for part in found]) for k in (0, 1))
     near = Nearest.concatenate([part.near for part in found])
     return _narrowest(chords, one, two, near, limit, joints.shared)
 
@@ -104,7 +116,7 @@ class _Joints:
         joint = joint.ravel()
         self._of_start, self._of_end = joint[: len(chords.start)], joint[len(chords.start) :]
         way = chords.end - chords.start
-        unit = way / np.where(chords.lengths > 0, chords.lengths, 1.0)
+        unit = way / divisor(chords.lengths)
         leaving = np.concatenate((unit, -unit))
         path = np.tile(chords.path, 2)
         order = np.argsort(joint, kind="stable")
@@ -114,6 +126,7 @@ class _Joints:
         self._ways = leaving[order]
         self._counts = np.bincount(joint)
         self._first = np.cumsum(self._counts) - self._counts
+        self._looked = 0
 
     def is_least(self, chord: Ints, share: Floats, point: Complexes, other: Complexes) -> Bools:
         """Whether no line that leaves a point comes nearer to the other one."""
@@ -122,15 +135,22 @@ class _Joints:
         if not len(ends):
             return result
         joint = np.where(share[ends] == 0.0, self._of_start[chord[ends]], self._of_end[chord[ends]])
+        so_far = np.cumsum(self._counts[joint])
+        self._looked += int(so_far[-1])
+        if self._looked > _WAYS_MAX:
+            raise too_dense(_REMEDY)
+        portions = np.flatnonzero(np.diff(so_far // _WAYS)) + 1
+        for some, at in zip(np.split(ends, portions), np.split(joint, portions), strict=True):
+            result[some] = self._is_nearest(at, other[some] - point[some])
+        return result
+
+    def _is_nearest(self, joint: Ints, towards: Complexes) -> Bools:
+        """Whether no line that leaves a joint goes that way."""
         counts = self._counts[joint]
         ways = self._ways[ranges(self._first[joint], counts)]
-        towards = other[ends] - point[ends]
-        towards = towards / np.abs(towards)
-        nearer = dot(ways, np.repeat(towards, counts)) > _APPROACH
-        begins = np.cumsum(counts) - counts
+        nearer = dot(ways, np.repeat(towards / np.abs(towards), counts)) > _APPROACH
         # A loose end is no neck, but an end that should have met something.
-        result[ends] = ~np.logical_or.reduceat(nearer, begins) & (counts > 1)
-        return result
+        return ~np.logical_or.reduceat(nearer, np.cumsum(counts) - counts) & (counts > 1)
 
 
 def _see_each_other(chords: Chords, near: Nearest) -> Bools:
@@ -140,8 +160,9 @@ def _see_each_other(chords: Chords, near: Nearest) -> Bools:
         return seen
     inner = 1e-3 * (near.two - near.one)
     between = lines(near.one + inner, near.two - inner)
-    blocked, _ = chords.tree.query(between, predicate="intersects")
-    seen[blocked] = False
+    # The nearest line alone: all that are between may be thousands for each.
+    (view, _), distance = chords.tree.query_nearest(between, return_distance=True, all_matches=False)
+    seen[view[distance == 0.0]] = False
     return seen
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,9 @@ Complexes = NDArray[np.complex128]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
+
+_TINY: Final = 1e-200
+"""No length, and no square of one; a coordinate, of 1e12 at most, divided by it is still a number."""
 
 
 class Nearest(NamedTuple):
@@ -43,6 +46,11 @@ class Nearest(NamedTuple):
         )
 
 
+def divisor(length: Floats) -> Floats:
+    """What shares of lengths are taken by: 1 where a length is so small that a quotient might overflow."""
+    return np.where(length > _TINY, length, 1.0)
+
+
 def dot(u: Complexes, v: Complexes) -> Floats:
     """The scalar product of vectors."""
     return u.real * v.real + u.imag * v.imag
@@ -62,7 +70,7 @@ def nearest(chords: Chords, one: Ints, two: Ints) -> Nearest:
     shares[2] = _foot(c, a, b), np.zeros(len(one))
     shares[3] = _foot(d, a, b), np.ones(len(one))
     area = cross(b - a, d - c)
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         t, u = cross(c - a, d - c) / area, cross(c - a, b - a) / area
     crossing = (area != 0) & (t >= 0) & (t <= 1) & (u >= 0) & (u <= 1)
     shares[4] = np.where(crossing, t, 0.0), np.where(crossing, u, 0.0)
@@ -84,7 +92,7 @@ def _foot(point: Complexes, start: Complexes, end: Complexes) -> Floats:
     """The share of segments at which they are nearest to points."""
     way = end - start
     length = dot(way, way)
-    return np.clip(dot(point - start, way) / np.where(length > 0, length, 1.0), 0.0, 1.0)
+    return np.clip(dot(point - start, way) / divisor(length), 0.0, 1.0)
 
 
 def distinct(pairs: Sequence[tuple[int, int]], places: Complexes, reach: float) -> list[int]:
