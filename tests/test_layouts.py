@@ -27,6 +27,7 @@ from sheets import check_apart, shape, tiling
 
 from voronoi_tiles.design import Design
 from voronoi_tiles.fabrication import Job, JobError, Product
+from voronoi_tiles.fabrication.layout import FRAME_MM
 from voronoi_tiles.vector.curves.paths import LINE, Paths
 
 DESIGNS = ["p4-hook", "pg-wave", "cmm-scroll", "pmm", "p31m"]
@@ -68,6 +69,9 @@ def test_every_line_is_cut_once_in_the_fewest_trails(name: str, fit: str) -> Non
     assert len(trails) == least
     tiles = plane(name, *size)
     inside = whole(tiles, *size)
+    if fit == "frame":  # whose frame has a width everywhere
+        room = shapely.box(FRAME_MM, FRAME_MM, size[0] - FRAME_MM, size[1] - FRAME_MM)
+        inside = [copy for copy in inside if room.covers(copy.shape)]
     assert int(product.pieces.whole.sum()) == len(inside)
     if fit == "whole":
         shapes = contour_shapes(pieces, 1e-3)
@@ -350,3 +354,15 @@ def test_slivers_have_no_tabs() -> None:
     assert paths.closed.any()
     assert (lengths[paths.closed] < 4 * 0.4).all()
     assert any(f"{int(paths.closed.sum())} contours are too short for tabs of 0.4 mm" in note for note in product.notes)
+
+
+def test_a_frame_has_a_width_everywhere() -> None:
+    """However the tiles are laid, none comes nearer to the sheet's edge; too small a sheet has no frame."""
+    for name in ("p6-triskele", "p4-pinwheel", "pmm"):
+        product = made(name, sheet=(200.0, 110.0), offset=None, fit="frame", edges="once")
+        lines = [layer.paths for layer in product.drawing.layers]
+        inner = Paths.concatenate([paths.take(np.arange(len(paths) - 1)) for paths in lines])  # the border comes last
+        x0, y0, x1, y1 = inner.bounds
+        assert min(x0, y0, 200.0 - x1, 110.0 - y1) >= FRAME_MM - 1e-9
+    with pytest.raises(JobError, match="too small for a frame of 2 mm"):
+        made("p4-hook", sheet=(100.0, 3.0), fit="frame")

@@ -71,7 +71,7 @@ def _read_tolerance(context: click.Context, parameter: click.Parameter, text: st
     "--tabs",
     metavar="LENGTH",
     callback=_read_optional,
-    help="Gaps of this width are tabs [default: what a file of our own says].",
+    help="Gaps up to this width are tabs [default: what a file of our own says].",
 )
 @click.option(
     "--layer",

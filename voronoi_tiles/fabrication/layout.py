@@ -34,6 +34,9 @@ if TYPE_CHECKING:
 FRAME = -1
 """The site of a piece of a frame."""
 
+FRAME_MM: Final = 2.0
+"""Least width of a frame around tiles; millimetres. A narrower one breaks, or is cut twice."""
+
 TILES_MAX: Final = 100_000
 """Most tiles of a sheet; a count. They take about ten seconds."""
 
@@ -115,8 +118,9 @@ class Layout:
         self.region = sheet.region
         # The tiles where they are cut: as in the period, unless they are pulled apart.
         self.spaced = self._spaced()
-        if sheet.region is not None and job.offset is None and job.fit != "clip":
-            self._move(self.spread.inverse(best_shift(self.spaced, sheet.region)))
+        self._field = sheet.region if sheet.region is None or job.fit != "frame" else _inset(sheet.region, FRAME_MM)
+        if self._field is not None and job.offset is None and job.fit != "clip":
+            self._move(self.spread.inverse(best_shift(self.spaced, self._field)))
         self.placement = self._place(tessellation.placed)
         self.copies = Copies(self.placement.tile, self.placement.step, self.placement.whole, self._pull(self.placement))
 
@@ -222,7 +226,8 @@ class Layout:
             sites, first = np.unique(self.period.site, return_index=True)
             shifts = np.array([placed[site].shift for site in sites.tolist()], np.intp)
             return Placement(first, shifts, np.ones(len(first), np.bool_))
-        placement = place_tiles(self.spaced, self.region)
+        assert self._field is not None
+        placement = place_tiles(self.spaced, self._field)
         if self.job.fit != "clip":
             kept = np.flatnonzero(placement.whole)
             placement = Placement(placement.tile[kept], placement.step[kept], placement.whole[kept])
@@ -396,3 +401,18 @@ def _shifted(paths: Paths, items: Ints, shift: Complexes) -> Paths:
     control[paths.kind == 0] = 0
     control[paths.kind != 2, 1] = 0
     return replace(paths, start=paths.start + per_piece, end=paths.end + per_piece, control=control)
+
+
+def _inset(region: Region, width: float) -> Region:
+    """What is left of a region inside a frame of this width. Raises JobError where nothing is."""
+    try:
+        border = offset(region.border, -width).paths
+    except OffsetError as error:
+        raise JobError(
+            f"the sheet's outline leaves no frame of {width:g} mm: {error}", remedy="Use --fit whole or clip."
+        ) from error
+    if not len(border):
+        raise JobError(
+            f"the sheet is too small for a frame of {width:g} mm", remedy="Take a larger sheet, or --fit whole."
+        )
+    return Region(border)

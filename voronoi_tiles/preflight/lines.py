@@ -95,7 +95,8 @@ def _gap(subject: Subject, ends: Ends, k: int, named: set[tuple[int, int]], tabs
     named.add(key)
     place = subject.place((complex(ends.point[k]) + near) / 2)
     width = float(ends.distance[k])
-    if tabs > 0.0 and abs(width - tabs) <= TAB_SHARE * tabs:
+    # A tab where another line ends is narrower: what ends there hangs on it as well.
+    if width <= (1 + TAB_SHARE) * tabs:
         return Finding(
             "tab", "info", f"tab of {width:.4g} mm", "Break it out by hand.", place, width, subject.sources(path, other)
         )

@@ -23,7 +23,7 @@ class Limits:
 
     Lines nearer than `tolerance` are one place; ends nearer than `gap` should have met; material narrower than `neck`
     and contours smaller than `feature` break or burn; pieces shorter than `shortest` are rubbish; corners sharper than
-    `corner` burn. Gaps as wide as `tabs` are bridges that are meant; None takes what a file of our own says.
+    `corner` burn. Gaps up to the width `tabs` are bridges that are meant; None takes what a file of our own says.
     """
 
     tolerance: float = 0.005
