@@ -80,6 +80,7 @@ bench: $(INSTALLED_DEV)
 
 fuzz: $(INSTALLED_DEV)
 	$(VENV)/bin/python tests/fuzz.py $(N)
+	$(VENV)/bin/python tests/fuzz_sheets.py $(N)
 
 clean:
 	rm -rf $(VENV) $(TYPES_VENV) $(DEMO) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
