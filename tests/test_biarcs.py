@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
@@ -216,6 +216,8 @@ def test_the_count_is_the_least(curve: Points, accuracy: float) -> None:
 
 
 @settings(max_examples=40, deadline=None)
+@example(seed=81590, count=3, accuracy=0.005, angle=2.0, scale=0.01)  # 5 pieces from one end, 8 from the other
+@example(seed=617728, count=7, accuracy=0.05, angle=3.3224661489224676, scale=25.4)  # as many biarcs, but not pieces
 @given(
     seed=st.integers(0, 10**6),
     count=st.integers(1, 8),
@@ -224,11 +226,7 @@ def test_the_count_is_the_least(curve: Points, accuracy: float) -> None:
     scale=st.sampled_from([0.01, 1.0, 25.4]),
 )
 def test_isometries_scaling_and_reversal(seed: int, count: int, accuracy: float, angle: float, scale: float) -> None:
-    """The same bits backwards; as near when turned, scaled and mirrored.
-
-    The count is no invariant: where the curvature is not monotone, a search that rounding turns elsewhere may take
-    another way (5 pieces for 8 in seed 81590); it stays of one size.
-    """
+    """The same bits backwards; as near, and as many pieces but for a rounded search, turned, scaled and mirrored."""
     old = smooth_side(seed, count, 2.0)
     new = to_arcs(old, accuracy=accuracy)
     assert same(to_arcs(old.reversed(), accuracy=accuracy), new.reversed())
@@ -236,7 +234,7 @@ def test_isometries_scaling_and_reversal(seed: int, count: int, accuracy: float,
     image = old.moved(factor, 3 - 2j, conj=True)
     moved = to_arcs(image, accuracy=accuracy * scale)
     assert distance(image, moved, accuracy * scale) <= accuracy * scale * 1.15
-    assert max(len(moved.kind), len(new.kind)) <= 2 * min(len(moved.kind), len(new.kind)) + 2
+    assert abs(len(moved.kind) - len(new.kind)) <= 2 + len(new.kind) // 10
 
 
 def test_a_run_does_not_depend_on_what_stands_beside_it() -> None:

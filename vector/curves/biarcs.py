@@ -37,7 +37,8 @@ def to_arcs(paths: Paths, *, accuracy: float, corner: float = CORNER, absorbed: 
     k-th break then lies no earlier than that of any other choice. Biarcs have this property where the curve's
     curvature is monotone (their error grows with the stretch at either end), and nearly so elsewhere; a longest
     stretch is found to about 0.4 percent. Where the assumption fails, the accuracy still holds, but the count may be
-    above the least. What no biarc can follow, cusps above all, is bridged by lines within the accuracy.
+    above the least; runs are covered from either end, and what takes fewer pieces is kept. What no biarc can
+    follow, cusps above all, is bridged by lines within the accuracy.
 
     A closed path that began within a run begins at the end of that run instead; one that is all one run is cut where
     it began. Curved pieces of length 0 vanish, unless a path has nothing else: then one line of length 0 stays.
@@ -59,11 +60,8 @@ def to_arcs(paths: Paths, *, accuracy: float, corner: float = CORNER, absorbed: 
         return paths
     first = np.flatnonzero(begins & bent)
     counts = np.diff(np.append(np.searchsorted(pieces, first), len(pieces)))
-    turned = _turned(paths, first, first + counts - 1)
-    curves = _oriented(paths, first, counts, turned)
-    runs = Runs.of_pieces(*curves.coefficients(), np.append(0, np.cumsum(counts)))
-    stretches = even_stretches(runs, longest_stretches(runs, bound), bound)
-    return _assembled(paths, ~bent, first, turned, _draw(runs, curves, stretches, bound, FLAT * accuracy))
+    turned, drawn = _fewer(paths, first, counts, bound, FLAT * accuracy)
+    return _assembled(paths, ~bent, first, turned, drawn)
 
 
 def _bent(paths: Paths) -> Bools:
@@ -172,20 +170,21 @@ def _turned(paths: Paths, first: Ints, last: Ints) -> Bools:
     return turned
 
 
-def _oriented(paths: Paths, first: Ints, counts: Ints, turned: Bools) -> _Curves:
+def _oriented(paths: Paths, first: Ints, counts: Ints, turned: Bools) -> tuple[_Curves, Runs]:
     """The pieces of all runs, in the sense in which they are fitted."""
     run = np.repeat(np.arange(len(first)), counts)
     piece = ranges(first, counts)
     back = turned[run]
-    curves = _Curves.of_pieces(paths, np.where(back, (2 * first + counts - 1)[run] - piece, piece))
-    swap = back & curves.cubic
-    return _Curves(
-        np.where(back, curves.end, curves.start),
-        np.where(swap, curves.second, curves.first),
-        np.where(swap, curves.first, curves.second),
-        np.where(back, curves.start, curves.end),
-        curves.cubic,
+    pieces = _Curves.of_pieces(paths, np.where(back, (2 * first + counts - 1)[run] - piece, piece))
+    swap = back & pieces.cubic
+    curves = _Curves(
+        np.where(back, pieces.end, pieces.start),
+        np.where(swap, pieces.second, pieces.first),
+        np.where(swap, pieces.first, pieces.second),
+        np.where(back, pieces.start, pieces.end),
+        pieces.cubic,
     )
+    return curves, Runs.of_pieces(*curves.coefficients(), np.append(0, np.cumsum(counts)))
 
 
 class _Drawn(NamedTuple):
@@ -223,6 +222,23 @@ def _draw(runs: Runs, curves: _Curves, stretches: Stretches, bound: float, flat:
     middle.real = (p.real + q.real) / 2 + bulge * (q.imag - p.imag)
     middle.imag = (p.imag + q.imag) / 2 - bulge * (q.real - p.real)
     return _Drawn(run[row], p, q, middle, np.abs(bulge) * np.abs(q - p) > flat)
+
+
+def _fewer(paths: Paths, first: Ints, counts: Ints, bound: float, flat: float) -> tuple[Bools, _Drawn]:
+    """Draw runs from either end, and keep what takes fewer pieces: whether from the far end, and the pieces.
+
+    Where both take as many, the order of the points decides, so that a run and its reverse are fitted alike.
+    """
+    count = len(first)
+    turned = _turned(paths, first, first + counts - 1)
+    curves, runs = _oriented(paths, np.tile(first, 2), np.tile(counts, 2), np.concatenate((turned, ~turned)))
+    drawn = _draw(runs, curves, even_stretches(runs, longest_stretches(runs, bound), bound), bound, flat)
+    taken = np.bincount(drawn.run, minlength=2 * count)
+    other = taken[count:] < taken[:count]
+    run = drawn.run % count
+    kept = np.flatnonzero((drawn.run >= count) == other[run])
+    order = kept[np.argsort(run[kept], kind="stable")]
+    return turned ^ other, _Drawn(run[order], *(values[order] for values in drawn[1:]))
 
 
 def _assembled(paths: Paths, kept: Bools, first: Ints, turned: Bools, drawn: _Drawn) -> Paths:
