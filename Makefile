@@ -3,9 +3,11 @@
 #   make lint    lint and format check               make types   mypy --strict
 #   make bench   speed, beside Boost.Polygon         make fuzz N=10000
 #   make format  rewrite the sources' layout         make clean   remove all that was made here
+#   make docs    the documentation, in docs/_build   make paper   docs/paper.md: the paper, reproduced and measured
+#   make gallery the pictures of docs/gallery.md
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format types bench fuzz clean
+.PHONY: help demo test lint format types bench fuzz docs paper gallery clean
 .DELETE_ON_ERROR:
 
 PYTHON ?= python3
@@ -18,6 +20,7 @@ PIP := -m pip install --quiet --disable-pip-version-check
 
 INSTALLED := $(VENV)/.installed
 INSTALLED_DEV := $(VENV)/.installed-dev
+INSTALLED_DOCS := $(VENV)/.installed-docs
 INSTALLED_TYPES := $(TYPES_VENV)/.installed
 SOURCES := $(wildcard voronoi_tiles/*.py voronoi_tiles/*/*.py vector/*.py vector/*/*.py raster/*.py raster/*.glsl voronoi_tiles/*.toml)
 EXAMPLES := $(wildcard examples/*.toml)
@@ -33,6 +36,10 @@ $(INSTALLED): pyproject.toml
 
 $(INSTALLED_DEV): $(INSTALLED)
 	$(VENV)/bin/python $(PIP) -e '.[test,dev]'
+	touch $@
+
+$(INSTALLED_DOCS): $(INSTALLED)
+	$(VENV)/bin/python $(PIP) -e '.[docs]'
 	touch $@
 
 demo: $(INSTALLED)
@@ -82,6 +89,17 @@ fuzz: $(INSTALLED_DEV)
 	$(VENV)/bin/python tests/fuzz.py $(N)
 	$(VENV)/bin/python tests/fuzz_sheets.py $(N)
 
+docs: $(INSTALLED_DOCS)
+	$(VENV)/bin/python -m sphinx --fail-on-warning --keep-going --quiet -b html docs docs/_build
+	@echo "The documentation is in $(abspath docs/_build/index.html)."
+
+# The pages and pictures that the project makes of itself; they are committed.
+paper: $(INSTALLED_DOCS)
+	$(VENV)/bin/python docs/generate/paper.py
+
+gallery: $(INSTALLED_DOCS)
+	$(VENV)/bin/python docs/generate/gallery.py
+
 clean:
-	rm -rf $(VENV) $(TYPES_VENV) $(DEMO) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(TYPES_VENV) $(DEMO) docs/_build build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
