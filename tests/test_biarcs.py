@@ -348,7 +348,8 @@ def test_no_length_and_no_pieces() -> None:
     assert same(beside, to_arcs(chain((0j, 5 + 5j, 10 + 0j)), accuracy=0.01))
     hollow = Paths.concatenate([point, replace(Paths.empty(), offsets=np.zeros(2, np.intp), closed=np.array([False]))])
     for convert in (to_arcs, to_lines, to_cubics):
-        assert len(convert(Paths.empty(), accuracy=0.1)) == 0
+        nothing = convert(Paths.empty(), accuracy=0.1)
+        assert (len(nothing), len(nothing.start), len(nothing.end)) == (0, 0, 0)
         assert convert(hollow, accuracy=0.1).counts[1] == 0
 
 

@@ -141,7 +141,7 @@ class _Split(NamedTuple):
 
     def joined(self, paths: Paths, start: Complexes, control: Complexes, kind: Kinds) -> Paths:
         """The paths of these steps, each of which ends where the next begins."""
-        end = np.append(start[1:], 0)
+        end = np.roll(start, -1)
         last = self.number == self.counts - 1
         end[last] = paths.end
         counts = np.bincount(paths.owner[self.piece], minlength=len(paths))
