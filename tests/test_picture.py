@@ -17,6 +17,7 @@ from test_png import chunks_of, decoded
 
 import voronoi_tiles as vt
 from voronoi_tiles.colouring import palette
+from voronoi_tiles.errors import DesignError
 from voronoi_tiles.picture import render, write_diff
 from voronoi_tiles.raster import picture as raster_picture
 from voronoi_tiles.raster.colouring import colour, neighbours
@@ -236,6 +237,36 @@ def test_the_overlay_of_outlines_lies_on_the_borders(tmp_path: Path) -> None:
     ink = (pixels_of(bare) == INK).all(axis=-1)
     assert pink.sum() > 1000
     assert ink[pink].mean() > 0.995
+
+
+def test_art_is_drawn_on_every_copy_in_the_place_of_the_strokes(tmp_path: Path) -> None:
+    """In pg a line of art is dark on the glided and the translated copies, mirrored; the strokes are not there."""
+    svg = '<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="40mm" viewBox="0 0 40 40">{}</svg>'
+    (tmp_path / "face.svg").write_text(svg.format('<path d="M10 30 L16 22" stroke="#000" fill="none"/>'))
+    site = {"strokes": [{"segment": [[5, 4], [20, 12]]}], "art": "face.svg"}
+    design = {"schema": 1, "group": "pg", "cell": {"a": 50.0, "b": 40.0}, "site": [site]}
+    (tmp_path / "bird.json").write_text(json.dumps(design))
+    options = {"size": 1000, "region": (0.0, 0.0, 50.0, 50.0), "renderer": "cpu"}
+    render(vt.Design.load(tmp_path / "bird.json"), tmp_path / "art.png", overlay=["art"], **options)
+    pixels = decoded((tmp_path / "art.png").read_bytes())
+
+    def dark(x: float, y: float) -> bool:
+        return int(pixels[int((50 - y) * 20), int(x * 20)].sum()) < 200
+
+    drawn = np.linspace(10 + 10j, 16 + 18j, 9)  # the page's y runs down
+    for x, y in zip(drawn.real, drawn.imag, strict=True):
+        assert dark(x, y)
+        assert dark(50 - x, y + 20)  # the glide's image: -x, y + b/2
+        assert not dark(x, y + 20)
+    assert dark(10.0, 10.0)
+    assert not dark(12.5, 8.0)  # the middle of the stroke
+
+
+def test_art_that_is_not_there(tmp_path: Path) -> None:
+    """A picture with the art of a design that has none is refused, and no file is written."""
+    with pytest.raises(DesignError, match=r"site\[0\]\.art.*no art to draw"):
+        render(segment_design(), tmp_path / "x.png", overlay=["art"])
+    assert not list(tmp_path.iterdir())
 
 
 def test_what_a_picture_says_of_itself(tmp_path: Path) -> None:

@@ -183,8 +183,9 @@ def check(
 @click.option(
     "--overlay",
     multiple=True,
-    type=click.Choice(("symmetry", "cell", "outline")),
-    help="Draw on top: mirrors, glides and rotation centres; the cell; the exact outlines. May be repeated.",
+    type=click.Choice(("symmetry", "cell", "outline", "art")),
+    help="Draw on top: mirrors, glides and rotation centres; the cell; the exact outlines; the sites' art in the place "
+    "of their strokes. May be repeated.",
 )
 @_with_method
 @with_renderer

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,7 +17,7 @@ from voronoi_tiles.errors import DesignError, ProofError
 from voronoi_tiles.files import writing
 from voronoi_tiles.raster.copies import Pattern
 from voronoi_tiles.raster.lines import dashed
-from voronoi_tiles.raster.picture import Overlay, Picture, Region, default_region
+from voronoi_tiles.raster.picture import INK, Overlay, Picture, Region, Style, default_region
 from voronoi_tiles.raster.png import PngStream, Sink
 from voronoi_tiles.raster.render import Choice, Method, Provenance, Renderer
 from voronoi_tiles.symmetry import placed, symmetry_elements
@@ -28,8 +29,9 @@ if TYPE_CHECKING:
 
 Complexes = NDArray[np.complex128]
 
-OVERLAYS = ("symmetry", "cell", "outline")
-"""What can be drawn on top: mirrors, glides and rotation centres; the cell; the exact outlines."""
+OVERLAYS = ("symmetry", "cell", "outline", "art")
+"""What can be drawn on top: mirrors, glides and rotation centres; the cell; the exact outlines; the sites' art, in the
+place of their strokes."""
 
 DEFAULT_SIZE = 1600
 """The longer side of a picture; pixels."""
@@ -65,8 +67,9 @@ def render(
     OVERLAYS; `renderer`, `device`, `method` and `notice` are those of Renderer; `progress` is told how many rows, of
     how many, are done. Pictures of any size are rendered in bands.
 
-    Raises DesignError for a size or a region that cannot be, TouchingCopiesError where copies touch, RenderError where
-    OpenGL fails and is insisted on, OutputError, and with the overlay "outline" ProofError.
+    Raises DesignError for a size or a region that cannot be, and for art that is not there; TouchingCopiesError where
+    copies touch, RenderError where OpenGL fails and is insisted on, OutputError, and with the overlay "outline"
+    ProofError.
     """
     if isinstance(overlay, str):
         overlay = [overlay]
@@ -83,6 +86,7 @@ def render(
         height,
         renderer=Renderer(renderer, device=device, method=method, notice=notice),
         overlays=_overlays(design, tiling, pattern, region, width, overlay),
+        style=_style(width, height, strokes="art" not in overlay),
     )
     text = {
         "Software": f"voronoi-tiles {__version__}",
@@ -180,7 +184,15 @@ def _overlays(
         assert tiling is not None
         segments = outline_segments(tiling, pattern, region, accuracy=pixel / 10)
         found.append(Overlay(segments, line, _OUTLINE))
+    if "art" in wanted:
+        found.append(Overlay(_art_segments(design, pattern, region, accuracy=pixel / 10), 1.5 * line, INK))
     return found
+
+
+def _style(width: int, height: int, *, strokes: bool) -> Style:
+    """The widths that suit a picture, with the sites' strokes or without."""
+    style = Style.of_size(width, height)
+    return style if strokes else replace(style, site=0.0)
 
 
 def _tiling(design: Design, *, needed: bool) -> Tiling | None:
@@ -208,17 +220,47 @@ def _symbols(centres: Complexes, orders: NDArray[np.intp], radius: float) -> Com
 
 def outline_segments(tiling: Tiling, pattern: Pattern, region: Region, *, accuracy: float) -> Complexes:
     """Give the outlines of all copies that may show in a region as chords, within `accuracy` (in units): (n, 2)."""
-    lattice = pattern.lattice
-    corners = np.array([complex(x, y) for x in region[::2] for y in region[1::2]])
     flat = [
         np.concatenate(
             [np.stack((ring, np.roll(ring, -1)), axis=1) for ring in tile.outline.flatten(accuracy=accuracy)]
         )
         for tile in tiling.tiles
     ]
+    return _everywhere(flat, pattern, region)
+
+
+def _art_segments(design: Design, pattern: Pattern, region: Region, *, accuracy: float) -> Complexes:
+    """Give the art on all copies that may show in a region as chords, within `accuracy` (in units): (n, 2).
+
+    Raises DesignError where the design has none, or it cannot be read.
+    """
+    from voronoi_tiles.fabrication.art import read_art
+    from voronoi_tiles.vector.curves.conversion import to_lines
+
+    flat = [np.zeros((0, 2), complex) for _ in design.sites]
+    for site, art in enumerate(design.art):
+        if art is not None:
+            works = read_art(art, design.folder, site, design.unit_mm, fills=False)
+            lines = [to_lines(paths, accuracy=accuracy) for paths in (works.engraved, works.scored)]
+            flat[site] = np.concatenate([np.stack((paths.start, paths.end), axis=1) for paths in lines])
+    if not any(map(len, flat)):
+        raise DesignError(
+            "there is no art to draw",
+            key="site[0].art",
+            remedy='Give a site its drawing, as art = "face.svg" (voronoi-tiles template makes one to draw in).',
+        )
+    return _everywhere(flat, pattern, region)
+
+
+def _everywhere(flat: Sequence[Complexes], pattern: Pattern, region: Region) -> Complexes:
+    """Give the segments (n, 2) of every site on all its copies that may show in a region: (m, 2)."""
+    lattice = pattern.lattice
+    corners = np.array([complex(x, y) for x in region[::2] for y in region[1::2]])
     found = []
     for placement in pattern.placements:
         segments = placement.isometry(flat[placement.site])
+        if not len(segments):
+            continue
         # The translates whose box, in lattice coordinates, meets that of the region.
         ranges = [
             np.arange(math.ceil(shown.min() - own.max()), math.floor(shown.max() - own.min()) + 1)
