@@ -262,6 +262,19 @@ def test_art_is_drawn_on_every_copy_in_the_place_of_the_strokes(tmp_path: Path) 
     assert not dark(12.5, 8.0)  # the middle of the stroke
 
 
+def test_a_point_is_seen(tmp_path: Path) -> None:
+    """An isolated point, and its image by a half turn, is a dot three strokes wide; the end of a segment is not."""
+    site = {"strokes": [{"point": [10, 10]}, {"segment": [[20, 30], [26, 30]]}]}
+    design = vt.Design.from_dict({"schema": 1, "group": "p2", "cell": {"a": 60, "b": 60, "angle": 90}, "site": [site]})
+    render(design, tmp_path / "x.png", size=660, region=(0.0, 0.0, 60.0, 60.0), renderer="cpu")
+    ink = (decoded((tmp_path / "x.png").read_bytes()) == INK).all(axis=-1)  # eleven pixels a millimetre
+    for x, y in ((110, 660 - 110), (550, 110)):
+        assert ink[y, x - 4 : x + 4].all()
+        assert ink[y - 4 : y + 4, x].all()
+        assert not ink[y, x + 6]
+    assert not ink[330 + 4, 220]
+
+
 def test_art_that_is_not_there(tmp_path: Path) -> None:
     """A picture with the art of a design that has none is refused, and no file is written."""
     with pytest.raises(DesignError, match=r"site\[0\]\.art.*no art to draw"):
