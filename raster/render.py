@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import operator
-import os
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -148,7 +147,7 @@ class Renderer:
         """Who renders, as things stand."""
         method = self._method if self._method == "exact" else f"hoff, cones of {self._sides} sides"
         if self._device is None:
-            return Provenance("cpu", f"numpy, {os.cpu_count()} cores", "float64", method, self._fallback)
+            return Provenance("cpu", "numpy", "float64", method, self._fallback)
         return Provenance("gl", self._device.name, "float32", method, spots=spots)
 
     def _window(self, pattern: Pattern, frame: Frame, x: int, y: int, limit: int) -> Window:

@@ -138,7 +138,7 @@ def test_render(voronoi_tiles: CommandLine, design: Path, tmp_path: Path) -> Non
     call = ["render", design, "-o", picture, "--size", "120x80", "--region", "-30,0,30,40", "--overlay", "symmetry"]
     result = voronoi_tiles(*call, "--overlay", "cell", "--overlay", "outline", "--renderer", "cpu")
     assert (result.returncode, result.stdout) == (0, "")
-    assert result.stderr.startswith(f"wrote {picture}: exact on cpu (numpy, ")
+    assert result.stderr.startswith(f"wrote {picture}: exact on cpu (numpy), float64")
     assert decoded(picture.read_bytes()).shape == (80, 120, 3)
     texts = [body for kind, body in chunks_of(picture.read_bytes()) if kind == b"tEXt"]
     assert any(b"exact on cpu" in body for body in texts)
