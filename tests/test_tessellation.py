@@ -568,6 +568,17 @@ def test_found_by_the_fuzz(name: str) -> None:
     assert fuzz.try_design(FOUND[name], np.random.default_rng(1), points=200) == "tiled"
 
 
+def test_corners_where_many_tiles_meet() -> None:
+    """Six tiles meet at each corner of a triangle of mirrors; rounding once put an edge of no length into one."""
+    site = [
+        {"segment": [[-17.95198925088043, 34.83030372794832], [-23.155423254707237, 41.944307491943704]]},
+        {"segment": [[-25.399265008328186, 20.47210572432103], [-12.616836927199243, 27.362455405412902]]},
+        {"segment": [[-15.771060085682361, 40.145667034318976], [-19.611552688244586, 34.27582755670948]]},
+    ]
+    outline = Design.from_dict(one("p3m1", *site)).tessellate().tiles[0].outline
+    np.testing.assert_allclose(outline.lengths, [math.sqrt(1200)] * 3, rtol=1e-12)
+
+
 @pytest.mark.parametrize("name", list(TOUCHING))
 def test_found_touching_by_the_fuzz(name: str) -> None:
     """Designs that an earlier engine should have refused."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from voronoi_tiles.errors import ProofError
 from voronoi_tiles.site import Site
-from voronoi_tiles.tolerance import SAME_POINT
+from voronoi_tiles.tolerance import PROOF_LIMIT, SAME_POINT
 from voronoi_tiles.vector.arcs import Neighbour, parabola_controls
 from voronoi_tiles.vector.bisectors import TouchingElementsError
 from voronoi_tiles.vector.candidates import build_hierarchy
@@ -290,9 +290,9 @@ def _tidy(traced: Traced, curve: Ints) -> Traced:
 def _pair(
     action: Action, placed: list[Placed], traced: list[Traced], *, without_short: bool
 ) -> tuple[list[Traced], list[Edge]]:
-    """Pair the edges; those that rounding has put on one side only, where four tiles meet, are left out."""
-    if without_short:
-        traced = [boundary.take(long_edges(boundary, _ONE_SIDED * action.size)) for boundary in traced]
+    """Pair the edges; those that rounding has made, where four tiles or more meet, are left out."""
+    limit = (_ONE_SIDED if without_short else PROOF_LIMIT) * action.size
+    traced = [boundary.take(long_edges(boundary, limit)) for boundary in traced]
     pinched = False
     while True:
         try:
