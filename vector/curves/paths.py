@@ -136,9 +136,18 @@ class Paths:
         """The image under z -> factor z + shift, or factor conj(z) + shift."""
         points = np.stack((self.start, self.end, *self.control.T))
         image = moved(points, factor, shift, conj=conj)
-        image[2, self.kind == LINE] = 0
-        image[3, self.kind != CUBIC] = 0
-        return replace(self, start=image[0], end=image[1], control=image[2:].T)
+        return replace(self, start=image[0], end=image[1], control=self._used(image[2:].T))
+
+    def shifted(self, shift: Complexes) -> Paths:
+        """The image where each piece is moved by its own vector, complex128 (n,): the same one for those that meet."""
+        control = self._used(self.control + shift[:, None])
+        return replace(self, start=self.start + shift, end=self.end + shift, control=control)
+
+    def _used(self, control: Complexes) -> Complexes:
+        """Control points, after 0 has been put into them where a kind uses none."""
+        control[self.kind == LINE] = 0
+        control[self.kind != CUBIC, 1] = 0
+        return control
 
     @cached_property
     def lengths(self) -> Floats:

@@ -71,11 +71,15 @@ class Period:
 
     def at(self, points: Complexes, steps: Ints) -> Complexes:
         """Points of the period moved by lattice vectors (n x 2): the same bits for the same point and vector."""
+        return points + self.shifts(steps)
+
+    def shifts(self, steps: Ints) -> Complexes:
+        """Lattice vectors (n x 2) as vectors of the plane."""
         a, b = self.basis.tolist()
         i, j = steps[:, 0].astype(np.float64), steps[:, 1].astype(np.float64)
-        image = np.empty(len(points), np.complex128)
-        image.real = points.real + (i * a.real + j * b.real)
-        image.imag = points.imag + (i * a.imag + j * b.imag)
+        image = np.empty(len(steps), np.complex128)
+        image.real = i * a.real + j * b.real
+        image.imag = i * a.imag + j * b.imag
         return image
 
     def curves(self, side: Ints, step: Ints, forward: Bools | None = None) -> Paths:
@@ -84,17 +88,10 @@ class Period:
         Where sides meet, their ends are the same bits.
         """
         paths = self.sides.take(side)
-        counts = paths.counts
-        steps = np.repeat(step, counts, axis=0)
-        start, end = self.at(paths.start, steps), self.at(paths.end, steps)
-        first, last = paths.offsets[:-1], paths.offsets[1:] - 1
-        start[first] = self.at(self.vertex[self.start[side]], step)
-        end[last] = self.at(self.vertex[self.end[side]], step + self.reach[side])
-        control = np.stack([self.at(part, steps) for part in paths.control.T], axis=1)
-        control[paths.kind == LINE] = 0
-        control[paths.kind <= QUAD, 1] = 0
-        result = replace(paths, start=start, end=end, control=control)
-        return result if forward is None else result.reversed(~forward)
+        paths = paths.shifted(self.shifts(step)[paths.owner])
+        paths.start[paths.offsets[:-1]] = self.at(self.vertex[self.start[side]], step)
+        paths.end[paths.offsets[1:] - 1] = self.at(self.vertex[self.end[side]], step + self.reach[side])
+        return paths if forward is None else paths.reversed(~forward)
 
     def outlines(self, tile: Ints, step: Ints) -> tuple[Paths, Ints]:
         """The rings of tiles moved by lattice vectors, closed paths; and where each tile's rings begin (k + 1)."""

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from voronoi_tiles.vector.curves.paths import CUBIC, LINE, Complexes, Paths
+from voronoi_tiles.vector.curves.paths import Complexes, Paths
 from voronoi_tiles.vector.sheet.period import Period
 
 _DIRECTIONS: Final = 12
@@ -162,16 +162,12 @@ def pulled_apart(period: Period, centres: Complexes, about: complex, stretch: St
     tile = np.repeat(np.arange(len(period.site)), np.diff(rings.tiles))[ring_of]
     shift = stretch(centres - about) - (centres - about)
     sides = period.sides.take(rings.side)
-    steps, away = np.repeat(rings.step, sides.counts, axis=0), np.repeat(shift[tile], sides.counts)
     # The first and last point of a side are those of its vertices, wherever it stands.
     ends = np.column_stack((period.start[rings.side], period.end[rings.side])).ravel()
     places = np.stack((rings.step, rings.step + period.reach[rings.side]), axis=1).reshape(-1, 2)
     rows = np.column_stack((np.repeat(tile, 2), ends, places))
     _, first, vertex = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     start, end = vertex.reshape(-1, 2).T
-    control = np.stack([period.at(part, steps) for part in sides.control.T], axis=1) + away[:, None]
-    control[sides.kind == LINE] = 0
-    control[sides.kind != CUBIC, 1] = 0
     return replace(
         period,
         basis=stretch(period.basis),
@@ -179,9 +175,7 @@ def pulled_apart(period: Period, centres: Complexes, about: complex, stretch: St
         start=start,
         end=end,
         reach=0 * rings.step,
-        sides=replace(
-            sides, start=period.at(sides.start, steps) + away, end=period.at(sides.end, steps) + away, control=control
-        ),
+        sides=sides.shifted(period.shifts(rings.step)[sides.owner]).shifted(shift[tile][sides.owner]),
         rings=replace(rings, side=np.arange(len(rings.side)), step=0 * rings.step),
     )
 

@@ -242,17 +242,5 @@ def _copies_of(drawn: Works, layout: Layout, site: int, shown: Bools) -> list[Wo
 
 def _stamped(paths: Paths, places: Complexes) -> Paths:
     """The same paths at many places, one after the other."""
-    count, many = len(paths.start), len(places)
-    shift = np.repeat(places, count)
-    control = np.tile(paths.control, (many, 1)) + shift[:, None]
-    kind = np.tile(paths.kind, many)
-    control[kind == 0] = 0
-    control[kind != 2, 1] = 0
-    return Paths(
-        start=np.tile(paths.start, many) + shift,
-        end=np.tile(paths.end, many) + shift,
-        control=control,
-        kind=kind,
-        offsets=np.append(0, np.cumsum(np.tile(paths.counts, many))).astype(np.intp),
-        closed=np.tile(paths.closed, many),
-    )
+    copies = paths.take(np.tile(np.arange(len(paths)), len(places)))
+    return copies.shifted(np.repeat(places, len(paths.start)))

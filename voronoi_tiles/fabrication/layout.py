@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Final
@@ -314,7 +314,7 @@ class Layout:
         stamped = rings.take(ranges(starts[:-1][tile], counts))
         items = np.append(0, np.cumsum(counts)).astype(np.intp)
         shift = self.period.at(np.zeros(len(tile), np.complex128), step) + self.copies.moved_by[copies]
-        return _shifted(stamped, items, shift), items
+        return stamped.shifted(np.repeat(shift, counts)[stamped.owner]), items
 
     def _dress_each(self, pieces: Pieces) -> tuple[Pieces, Ints]:
         """Apply fillet and kerf to pieces one by one; also gives of which of them each of the pieces now is."""
@@ -391,16 +391,6 @@ def _unit(turn: float, degrees: float) -> complex:
     if degrees % 90.0 == 0.0:
         return (1, 1j, -1, -1j)[int(degrees // 90.0) % 4]
     return complex(np.cos(turn), np.sin(turn))
-
-
-def _shifted(paths: Paths, items: Ints, shift: Complexes) -> Paths:
-    """Move each item by its own vector."""
-    per_path = np.repeat(shift, np.diff(items))
-    per_piece = per_path[paths.owner]
-    control = paths.control + per_piece[:, None]
-    control[paths.kind == 0] = 0
-    control[paths.kind != 2, 1] = 0
-    return replace(paths, start=paths.start + per_piece, end=paths.end + per_piece, control=control)
 
 
 def _inset(region: Region, width: float) -> Region:
