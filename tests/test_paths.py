@@ -11,8 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from sheets import check_joints, circle, points_on
 
+from voronoi_tiles.vector.copies import move
 from voronoi_tiles.vector.curves.areas import ring_areas
-from voronoi_tiles.vector.curves.paths import ARC, CUBIC, LINE, QUAD, Complexes, Floats, Paths, moved, ranges
+from voronoi_tiles.vector.curves.paths import ARC, CUBIC, LINE, QUAD, Complexes, Floats, Paths, ranges
 
 SETTINGS = settings(max_examples=100, deadline=None, derandomize=True)
 T = np.linspace(0, 1, 501)
@@ -208,10 +209,10 @@ def test_a_moved_point_has_the_same_bits_wherever_it_stands() -> None:
     rng = np.random.default_rng(3)
     points = rng.standard_normal(1000) + 1j * rng.standard_normal(1000)
     factor, shift = complex(np.exp(0.7j)), 0.1 + 0.3j
-    whole = moved(points, factor, shift)
-    alone: Floats = np.array([moved(points[k : k + 1], factor, shift)[0] for k in range(1000)])
+    whole = move(points, factor, shift)
+    alone: Floats = np.array([move(points[k : k + 1], factor, shift)[0] for k in range(1000)])
     assert (whole == alone).all()
-    assert (whole[::-1] == moved(points[::-1], factor, shift)).all()
+    assert (whole[::-1] == move(points[::-1], factor, shift)).all()
 
 
 def test_the_oracle_of_joints_sees_a_bit() -> None:

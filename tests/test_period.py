@@ -11,7 +11,7 @@ from sheets import NAMES, check_joints, engine, flattened, period, points_on, ti
 
 from voronoi_tiles.vector.copies import compose, to_operation, translation
 from voronoi_tiles.vector.curves.areas import ring_areas
-from voronoi_tiles.vector.curves.paths import ARC, CUBIC, Complexes, Ints, Paths, moved
+from voronoi_tiles.vector.curves.paths import ARC, CUBIC, Complexes, Ints, Paths
 from voronoi_tiles.vector.sheet.orbits import approximated, find_orbits
 from voronoi_tiles.vector.sheet.period import Period
 
@@ -271,7 +271,7 @@ def test_the_oracles_of_sharing_and_congruence_see_what_is_wrong() -> None:
     inner = int(np.flatnonzero(np.diff(here.sides.offsets) > 1)[0])
     start, end = here.sides.start.copy(), here.sides.end.copy()
     at = int(here.sides.offsets[inner])
-    start[at + 1] = end[at] = moved(end[at : at + 1], 1 + 0j, 1e-6 + 0j)[0]
+    start[at + 1] = end[at] = end[at] + 1e-6
     bent = replace(here, sides=replace(here.sides, start=start, end=end))
     with pytest.raises(AssertionError, match="differs by"):
         assert_tiles_congruent(bent, here, name)

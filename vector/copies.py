@@ -107,18 +107,9 @@ class Action:
         return max(abs(self.lattice.a), abs(self.lattice.b))
 
     def apply(self, motion: Motion, z: Complexes) -> Complexes:
-        """Return the images of points under one motion.
-
-        The arithmetic is spelt out in real numbers: numpy's complex product may round an element differently with
-        its place in the array, and the same point must have the same bits from wherever it is reached.
-        """
+        """Return the images of points under one motion."""
         unit, conj = self.linear[motion[:4]]
-        shift = self._shift(motion)
-        x, y = z.real, (-z.imag if conj else z.imag)
-        result = np.empty(z.shape, complex)
-        result.real = unit.real * x - unit.imag * y + shift.real
-        result.imag = unit.imag * x + unit.real * y + shift.imag
-        return result
+        return move(z, unit, self._shift(motion), conj)
 
     def apply_to_point(self, motion: Motion, z: complex) -> complex:
         """Return the image of one point: the same bits as `apply` gives, without an array's overhead."""
@@ -133,8 +124,12 @@ class Action:
         return complex(s * a.real + t * b.real, s * a.imag + t * b.imag)
 
 
-def move(z: Complexes, unit: Complexes, shift: Complexes, conj: Bools) -> Complexes:
-    """Return unit * z + shift, or unit * conj(z) + shift where `conj`; all arguments broadcast."""
+def move(z: Complexes, unit: complex | Complexes, shift: complex | Complexes, conj: bool | Bools = False) -> Complexes:
+    """Return unit * z + shift, or unit * conj(z) + shift where `conj`; all arguments broadcast.
+
+    The arithmetic is spelt out in real numbers: numpy's complex product may round an element differently with
+    its place in the array, and the same point must have the same bits from wherever it is reached.
+    """
     x, y = z.real, np.where(conj, -z.imag, z.imag)
     real = unit.real * x - unit.imag * y + shift.real
     result = np.empty(real.shape, complex)

@@ -13,6 +13,8 @@ from typing import Final, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from voronoi_tiles.vector.copies import move
+
 Complexes = NDArray[np.complex128]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -135,7 +137,7 @@ class Paths:
     def moved(self, factor: complex, shift: complex, *, conj: bool = False) -> Paths:
         """The image under z -> factor z + shift, or factor conj(z) + shift."""
         points = np.stack((self.start, self.end, *self.control.T))
-        image = moved(points, factor, shift, conj=conj)
+        image = move(points, factor, shift, conj)
         return replace(self, start=image[0], end=image[1], control=self._used(image[2:].T))
 
     def shifted(self, shift: Complexes) -> Paths:
@@ -230,18 +232,6 @@ class Paths:
         # From the middle of the chord to the centre: to the left for a left turn of less than half a circle.
         centre = (start + end) / 2 + 0.5j * chord / np.tan(turn / 2)
         return centre, radius, np.angle(start - centre), turn
-
-
-def moved(points: Complexes, factor: complex, shift: complex, *, conj: bool = False) -> Complexes:
-    """The image of points under z -> factor z + shift, or factor conj(z) + shift.
-
-    The arithmetic is spelt out in real numbers, so that a point has the same bits wherever it stands in an array.
-    """
-    x, y = points.real, (-points.imag if conj else points.imag)
-    image = np.empty(points.shape, np.complex128)
-    image.real = factor.real * x - factor.imag * y + shift.real
-    image.imag = factor.imag * x + factor.real * y + shift.imag
-    return image
 
 
 def ranges(first: Ints, counts: Ints) -> Ints:

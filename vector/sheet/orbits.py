@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from voronoi_tiles.vector.contour import Bools, Ints
-from voronoi_tiles.vector.copies import IDENTITY, Action, Motion, compose, inverse, reverses_orientation
-from voronoi_tiles.vector.curves.paths import LINE, Paths, moved
+from voronoi_tiles.vector.copies import IDENTITY, Action, Motion, compose, inverse, move, reverses_orientation
+from voronoi_tiles.vector.curves.paths import LINE, Paths
 from voronoi_tiles.vector.sheet.period import Period
 
 _SYMMETRIC = 1e-9
@@ -128,7 +128,7 @@ def _own_symmetry(path: Paths) -> bool | None:
     extent = float(np.abs(points[curved] - points[0]).max())
     for conj in (False, True):
         factor, shift = _swap(complex(start[0]), complex(end[-1]), conj)
-        image = moved(points, factor, shift, conj=conj)
+        image = move(points, factor, shift, conj)
         if float(np.abs(image - back)[curved].max()) <= _SYMMETRIC * extent:
             return conj
     return None

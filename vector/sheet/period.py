@@ -15,8 +15,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from voronoi_tiles.vector.contour import Bools, Complexes, Ints
-from voronoi_tiles.vector.copies import Motion, compose, reverses_orientation
-from voronoi_tiles.vector.curves.paths import LINE, QUAD, Paths, moved, ranges
+from voronoi_tiles.vector.copies import Motion, compose, move, reverses_orientation
+from voronoi_tiles.vector.curves.paths import LINE, QUAD, Paths, ranges
 from voronoi_tiles.vector.representatives import Points
 from voronoi_tiles.vector.shared import SharedOutline
 from voronoi_tiles.vector.tessellation import Tessellation
@@ -64,8 +64,8 @@ class Period:
         """The image under z -> factor z + shift."""
         return replace(
             self,
-            basis=moved(self.basis, factor, 0j),
-            vertex=moved(self.vertex, factor, shift),
+            basis=move(self.basis, factor, 0j),
+            vertex=move(self.vertex, factor, shift),
             sides=self.sides.moved(factor, shift),
         )
 
