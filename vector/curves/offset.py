@@ -134,7 +134,7 @@ class _Attempt:
         except LookupError as error:
             raise OffsetError("the offset has a ring that does not close", middle[error.args[0]]) from None
         paths, pieces = built(parts, raw.paths, rings, self.tolerance / 64)
-        solid = np.abs(ring_areas(paths)) > 4 * self.tolerance * np.bincount(paths.owner, paths.lengths, len(paths))
+        solid = np.abs(ring_areas(paths)) > 4 * self.tolerance * paths.path_lengths
         paths, pieces = paths.take(np.flatnonzero(solid)), pieces[solid[paths.owner]]
         rings = [ring for ring, real in zip(rings, solid, strict=True) if real]
         self._verify(paths, raw.mitred[pieces])

@@ -170,6 +170,11 @@ class Paths:
             )
         return lengths
 
+    @property
+    def path_lengths(self) -> Floats:
+        """The length of each path."""
+        return np.asarray(np.bincount(self.owner, self.lengths, len(self)), np.float64)
+
     def bulges(self) -> Floats:
         """The tangent of a quarter of the angle of each ARC, > 0 where it turns left; 0 for all other kinds."""
         bulge = np.zeros(len(self.start))

@@ -18,7 +18,7 @@ def bridged(
     `paths`, `first` and `last` are the strands `chosen` of all. The longest sides come first; a side that is shorter
     than four bridges has none.
     """
-    length = np.asarray(np.bincount(paths.owner, paths.lengths, len(paths)), np.float64)
+    length = paths.path_lengths
     bridge = _sides_with_bridge(strands, chosen, length, 4 * width)
     cut = np.flatnonzero(bridge)
     half = (length[cut] - width) / 2

@@ -64,7 +64,7 @@ def toured(paths: Paths) -> Paths:
 
 def _tabbed(paths: Paths, width: float) -> Paths:
     """Leave bridges in closed paths; those that are shorter than four bridges stay closed, if any is longer."""
-    length = np.bincount(paths.owner, paths.lengths, len(paths))
+    length = paths.path_lengths
     long = length >= 4 * width
     if not long.any():
         long[:] = True
