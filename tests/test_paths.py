@@ -90,6 +90,19 @@ def test_moved(paths: Paths, angle: float, scale: float, conj: bool) -> None:
 
 @SETTINGS
 @given(drawings())
+def test_shifted(paths: Paths) -> None:
+    """Every path is moved by its own vector; the lengths of the paths stay."""
+    vectors = np.arange(len(paths)) * (1 - 2j)
+    image = paths.shifted(vectors[paths.owner])
+    check_joints(image)
+    for k, vector in enumerate(vectors.tolist()):
+        alone = paths.take(np.array([k]))
+        assert_same(image.take(np.array([k])), alone.moved(1.0, vector))
+        assert image.path_lengths[k] == pytest.approx(alone.lengths.sum(), rel=1e-7, abs=1e-9)
+
+
+@SETTINGS
+@given(drawings())
 def test_bounds_against_samples(paths: Paths) -> None:
     """No sample is outside, and some are near each side."""
     points = np.concatenate(samples(paths))
