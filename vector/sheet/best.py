@@ -29,8 +29,7 @@ def best_shift(period: Period, region: Region) -> complex:
     """
     if not region.is_rectangle:
         return _best_of_grid(period, region)
-    everything = np.arange(len(period.site))
-    box = tile_boxes(*period.outlines(everything, np.zeros((len(everything), 2), np.intp)))
+    box = tile_boxes(*period.own_outlines)
     left, bottom, right, top = region.bounds
     # Where a tile's place may be, by its box, for the tile to be whole.
     room = np.column_stack((left - box[:, 0], bottom - box[:, 1], right - box[:, 2], top - box[:, 3]))

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -110,6 +111,12 @@ class Period:
             closed=np.ones(len(rings), np.bool_),
         )
         return paths, np.append(0, np.cumsum(ring_counts)).astype(np.intp)
+
+    @cached_property
+    def own_outlines(self) -> tuple[Paths, Ints]:
+        """The rings of all tiles where they stand in the period, as `outlines` gives them."""
+        everything = np.arange(len(self.site))
+        return self.outlines(everything, np.zeros((len(everything), 2), np.intp))
 
     def borders(self, tile: Ints, step: Ints) -> tuple[Ints, Ints, Ints, Bools]:
         """The sides around tiles moved by lattice vectors: index into `tile`, side, its lattice vector, forward."""

@@ -28,11 +28,9 @@ def place_tiles(period: Period, region: Region) -> Placement:
 
     Tiles that only touch the border, within `region.close`, are whole, or have nothing of the region.
     """
-    everything = np.arange(len(period.site))
-    outlines, items = period.outlines(everything, np.zeros((len(everything), 2), np.intp))
-    box = tile_boxes(outlines, items)
+    box = tile_boxes(*period.own_outlines)
     tile, step = _near(period, box, region)
-    shift = period.at(np.zeros(len(tile), np.complex128), step)
+    shift = period.shifts(step)
     here = box[tile] + np.column_stack((shift.real, shift.imag, shift.real, shift.imag))
     # Order by the middle of the box: the sheet's rows, whatever the tile.
     order = np.lexsort((here[:, 0] + here[:, 2], np.round(here[:, 1] + here[:, 3], 6)))
@@ -73,7 +71,7 @@ def _near(period: Period, box: Floats, region: Region) -> tuple[Ints, Ints]:
             np.arange(np.floor(j.min()), np.ceil(j.max()) + 1, dtype=np.intp),
         )
         step = np.stack(grid, axis=-1).reshape(-1, 2)
-        shift = period.at(np.zeros(len(step), np.complex128), step)
+        shift = period.shifts(step)
         close = region.close
         meets = (x0 + shift.real < right - close) & (x1 + shift.real > left + close)
         meets &= (y0 + shift.imag < top - close) & (y1 + shift.imag > bottom + close)

@@ -157,7 +157,7 @@ def _near_border(period: Period, sides: _Sides, region: Region) -> Bools:
     piece = boxes(period.sides)
     first = period.sides.offsets[:-1]
     low, high = np.minimum.reduceat(piece[:, :2], first), np.maximum.reduceat(piece[:, 2:], first)
-    shift = period.at(np.zeros(len(sides.side), np.complex128), sides.step)
+    shift = period.shifts(sides.step)
     margin = 2 * region.close
     x0, y0 = low[sides.side, 0] + shift.real - margin, low[sides.side, 1] + shift.imag - margin
     x1, y1 = high[sides.side, 0] + shift.real + margin, high[sides.side, 1] + shift.imag + margin

@@ -230,7 +230,7 @@ def _copies_of(drawn: Works, layout: Layout, site: int, shown: Bools) -> list[Wo
         factor, shift, conj = layout.motion_to_page(tile)
         image = drawn.moved(factor, shift, conj=conj)
         here = np.flatnonzero((copies.tile == tile) & shown)
-        place = layout.period.at(np.zeros(len(here), np.complex128), copies.step[here]) + copies.moved_by[here]
+        place = layout.copy_shifts[here]
         whole = copies.whole[here]
         result.append(image.stamped(place[whole]))
         if layout.region is not None:

@@ -107,8 +107,7 @@ def _label_places(layout: Layout, contours: Contours) -> tuple[Complexes, Floats
     for tile, one in zip(tiles.tolist(), np.flatnonzero(whole)[first].tolist(), strict=True):
         here = np.flatnonzero(whole)[copies.tile[contours.copy[whole]] == tile]
         point, radius = _pole(contours, one, layout.job)
-        shift = layout.period.at(np.zeros(len(here), np.complex128), copies.step[contours.copy[here]])
-        shift = shift + copies.moved_by[contours.copy[here]]
+        shift = layout.copy_shifts[contours.copy[here]]
         place[here] = point + (shift - shift[here.tolist().index(one)])
         room[here] = radius
     for k in np.flatnonzero(known & ~whole).tolist():

@@ -155,6 +155,11 @@ class Layout:
         """The site of each copy."""
         return self.period.site[self.copies.tile]
 
+    @cached_property
+    def copy_shifts(self) -> Complexes:
+        """How far each copy is from where its tile stands in the period."""
+        return self.period.shifts(self.copies.step) + self.copies.moved_by
+
     @property
     def turned_over(self) -> Bools:
         """Whether each copy is its site's tile turned over."""
@@ -216,8 +221,7 @@ class Layout:
     @cached_property
     def tile_areas(self) -> Floats:
         """The areas of the period's tiles, square millimetres."""
-        everything = np.arange(len(self.period.site))
-        outlines, items = self.period.outlines(everything, np.zeros((len(everything), 2), np.intp))
+        outlines, items = self.period.own_outlines
         return np.asarray(np.add.reduceat(ring_areas(outlines), items[:-1]))
 
     def _place(self, placed: list[Placed]) -> Placement:
@@ -232,8 +236,7 @@ class Layout:
             kept = np.flatnonzero(placement.whole)
             placement = Placement(placement.tile[kept], placement.step[kept], placement.whole[kept])
         if not len(placement.tile):
-            rings, items = self.period.outlines(np.zeros(1, np.intp), np.zeros((1, 2), np.intp))
-            x0, y0, x1, y1 = tile_boxes(rings, items)[0].tolist()
+            x0, y0, x1, y1 = tile_boxes(*self.period.own_outlines)[0].tolist()
             other = ", or --fit clip" if self.job.fit != "clip" else ""
             raise JobError(
                 f"no {'whole ' if other else ''}tile fits on the sheet: one takes {x1 - x0:.4g} x {y1 - y0:.4g} mm",
@@ -249,8 +252,8 @@ class Layout:
         site = int(self.period.site[tile])
         first = int(np.flatnonzero(self.period.site == site)[0])
         if tile == first:
-            outline, _ = self.period.outlines(np.array([tile]), np.zeros((1, 2), np.intp))
-            result = self._refitted(self._dress(outline))
+            rings, items = self.period.own_outlines
+            result = self._refitted(self._dress(rings.take(np.arange(items[tile], items[tile + 1]))))
         else:
             # The same shape as the first one of its site, not one that is computed anew.
             result = self._image(
@@ -304,17 +307,16 @@ class Layout:
 
     def _whole(self, copies: Ints) -> tuple[Paths, Ints]:
         """The rings of whole tiles, and where each one's begin."""
-        tile, step = self.copies.tile[copies], self.copies.step[copies]
+        tile = self.copies.tile[copies]
         if not self.job.dressed and not self.copies.moved_by.any():
-            return self.period.outlines(tile, step)
+            return self.period.outlines(tile, self.copies.step[copies])
         bases = [self._base(k) for k in range(len(self.period.site))]
         rings = Paths.concatenate(bases)
         starts = np.append(0, np.cumsum([len(base) for base in bases])).astype(np.intp)
         counts = np.diff(starts)[tile]
         stamped = rings.take(ranges(starts[:-1][tile], counts))
         items = np.append(0, np.cumsum(counts)).astype(np.intp)
-        shift = self.period.at(np.zeros(len(tile), np.complex128), step) + self.copies.moved_by[copies]
-        return stamped.shifted(np.repeat(shift, counts)[stamped.owner]), items
+        return stamped.shifted(np.repeat(self.copy_shifts[copies], counts)[stamped.owner]), items
 
     def _dress_each(self, pieces: Pieces) -> tuple[Pieces, Ints]:
         """Apply fillet and kerf to pieces one by one; also gives of which of them each of the pieces now is."""
@@ -356,7 +358,7 @@ class Layout:
         right, moves = None, []
         for tile, step in zip(placement.tile.tolist(), placement.step, strict=True):
             low_x, _, high_x, _ = self._base(tile).bounds
-            here = float(self.period.at(np.zeros(1, np.complex128), step[None])[0].real)
+            here = float(self.period.shifts(step[None])[0].real)
             moves.append(0.0 if right is None else right + apart - (low_x + here))
             right = high_x + here + moves[-1]
         return np.array(moves, np.complex128)
