@@ -278,14 +278,7 @@ def copies_near(action: Action, base: Placed, other: Placed) -> Copies:
         np.asarray(other.centre), unit, action.cartesian(base_motions[:, 4] / 2, base_motions[:, 5] / 2), conj
     )
     away = origin - base.centre
-    det = p.real * q.imag - p.imag * q.real
-    near = np.stack(
-        (
-            np.round((away.real * q.imag - away.imag * q.real) / det),
-            np.round((p.real * away.imag - p.imag * away.real) / det),
-        ),
-        axis=1,
-    )
+    near = np.round(np.stack(Lattice(p, q).fractional(away), axis=1))
     grid = steps[None, :, :] - near[:, None, :].astype(int)
     vector = away[:, None] + grid[..., 0] * p + grid[..., 1] * q
     inside = np.ones(vector.shape, bool)

@@ -157,13 +157,10 @@ def _nearest_translate(
     isometry, back = lattice.isometry(operation), lattice.isometry(operation.inverse())
     centre = isometry(site.centre)
     p, q = lattice.reduced_basis
-    det = p.real * q.imag - p.imag * q.real
-    away = points - centre
-    first = np.round((away.real * q.imag - away.imag * q.real) / det)
-    second = np.round((p.real * away.imag - p.imag * away.real) / det)
+    first, second = (np.round(share) for share in lattice.reduced.fractional(points - centre))
     # The copy with the nearest point has that point within the lattice's Voronoi cell about the sample, and its
     # centre a radius from there: in coordinates of a reduced basis, less than 1 and this much from the sample's.
-    m, n = (int(np.ceil(1.5 + site.radius * abs(v) / det)) for v in (q, p))
+    m, n = (int(np.ceil(1.5 + site.radius * abs(v) / lattice.reduced.det)) for v in (q, p))
     result = enough.copy()
     for i in range(-m, m + 1):
         for j in range(-n, n + 1):

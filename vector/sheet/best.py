@@ -54,17 +54,8 @@ def best_shift(period: Period, region: Region) -> complex:
 
 def _lattice(period: Period, left: float, bottom: float, right: float, top: float) -> Complexes:
     """The lattice points in a rectangle."""
-    a, b = (complex(vector) for vector in period.basis)
-    det = a.real * b.imag - a.imag * b.real
-    corners = np.array([complex(x, y) for x in (left, right) for y in (bottom, top)])
-    i = (corners.real * b.imag - corners.imag * b.real) / det
-    j = (a.real * corners.imag - a.imag * corners.real) / det
-    m, n = np.meshgrid(
-        np.arange(np.floor(i.min()), np.ceil(i.max()) + 1), np.arange(np.floor(j.min()), np.ceil(j.max()) + 1)
-    )
-    place = (m * a + n * b).ravel()
-    kept = (place.real >= left) & (place.real <= right) & (place.imag >= bottom) & (place.imag <= top)
-    return np.asarray(place[kept], np.complex128)
+    place = period.shifts(period.steps_in(left, bottom, right, top))
+    return place[(place.real >= left) & (place.real <= right) & (place.imag >= bottom) & (place.imag <= top)]
 
 
 def _touching(edges: list[tuple[float, float]], places: list[Floats], reach: float) -> Floats:

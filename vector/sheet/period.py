@@ -21,6 +21,7 @@ from voronoi_tiles.vector.curves.paths import LINE, QUAD, Paths, ranges
 from voronoi_tiles.vector.representatives import Points
 from voronoi_tiles.vector.shared import SharedOutline
 from voronoi_tiles.vector.tessellation import Tessellation
+from voronoi_tiles.wallpaper import Lattice
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,6 +71,11 @@ class Period:
             sides=self.sides.moved(factor, shift),
         )
 
+    @property
+    def lattice(self) -> Lattice:
+        """The lattice of the basis."""
+        return Lattice(*self.basis.tolist())
+
     def at(self, points: Complexes, steps: Ints) -> Complexes:
         """Points of the period moved by lattice vectors (n x 2): the same bits for the same point and vector."""
         return points + self.shifts(steps)
@@ -82,6 +88,15 @@ class Period:
         image.real = i * a.real + j * b.real
         image.imag = i * a.imag + j * b.imag
         return image
+
+    def steps_in(self, left: float, bottom: float, right: float, top: float) -> Ints:
+        """The lattice vectors (n x 2) to the points of an upright rectangle, and to some near it."""
+        corners = np.array([complex(x, y) for x in (left, right) for y in (bottom, top)])
+        i, j = (
+            np.arange(np.floor(along.min()), np.ceil(along.max()) + 1, dtype=np.intp)
+            for along in self.lattice.fractional(corners)
+        )
+        return np.stack(np.meshgrid(i, j), axis=-1).reshape(-1, 2)
 
     def curves(self, side: Ints, step: Ints, forward: Bools | None = None) -> Paths:
         """The curves of sides moved by lattice vectors, one path each; those that are not `forward`, backwards.

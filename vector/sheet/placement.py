@@ -59,20 +59,11 @@ def tile_boxes(paths: Paths, items: Ints) -> Floats:
 def _near(period: Period, box: Floats, region: Region) -> tuple[Ints, Ints]:
     """The tiles whose boxes meet that of the region by more than touching."""
     left, bottom, right, top = region.bounds
-    a, b = period.basis.tolist()
-    det = a.real * b.imag - a.imag * b.real
+    close = region.close
     tiles, steps = [], []
     for number, (x0, y0, x1, y1) in enumerate(box.tolist()):
-        corners = np.array([complex(x, y) for x in (left - x1, right - x0) for y in (bottom - y1, top - y0)])
-        i = (corners.real * b.imag - corners.imag * b.real) / det
-        j = (a.real * corners.imag - a.imag * corners.real) / det
-        grid = np.meshgrid(
-            np.arange(np.floor(i.min()), np.ceil(i.max()) + 1, dtype=np.intp),
-            np.arange(np.floor(j.min()), np.ceil(j.max()) + 1, dtype=np.intp),
-        )
-        step = np.stack(grid, axis=-1).reshape(-1, 2)
+        step = period.steps_in(left - x1, bottom - y1, right - x0, top - y0)
         shift = period.shifts(step)
-        close = region.close
         meets = (x0 + shift.real < right - close) & (x1 + shift.real > left + close)
         meets &= (y0 + shift.imag < top - close) & (y1 + shift.imag > bottom + close)
         tiles.append(np.full(int(meets.sum()), number))

@@ -127,8 +127,7 @@ class Layout:
     def _refuse_crowd(self, region: Region) -> None:
         """Refuse a sheet that would hold more than memory does."""
         left, bottom, right, top = region.bounds
-        a, b = (complex(vector) for vector in self.period.basis)
-        cells = (right - left) * (top - bottom) / abs(a.real * b.imag - a.imag * b.real)
+        cells = (right - left) * (top - bottom) / self.period.lattice.det
         tiles, pieces = cells * len(self.period.site), cells * 2 * len(self.period.sides.start)
         if tiles > TILES_MAX or pieces > PIECES_MAX:
             raise JobError(
