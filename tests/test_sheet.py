@@ -30,9 +30,10 @@ from sheets import (
 
 from voronoi_tiles.vector.curves.areas import ring_areas
 from voronoi_tiles.vector.curves.paths import ARC, CUBIC, LINE, QUAD, Paths
+from voronoi_tiles.vector.curves.pieces import item_boxes
 from voronoi_tiles.vector.curves.winding import winding
 from voronoi_tiles.vector.sheet.period import Period
-from voronoi_tiles.vector.sheet.placement import Placement, tile_boxes
+from voronoi_tiles.vector.sheet.placement import Placement
 from voronoi_tiles.vector.sheet.region import Region
 from voronoi_tiles.vector.sheet.strands import OUTSIDE, clipped_strands
 from voronoi_tiles.wallpaper import GROUPS
@@ -138,7 +139,7 @@ def test_a_region_that_is_a_tile_and_one_with_a_hole_that_is_a_tile(name: str) -
 def box_of_a_tile(here: Period) -> Region:
     """A sheet whose edges touch a tile."""
     outlines, items = here.outlines(np.zeros(1, np.intp), np.zeros((1, 2), np.intp))
-    return Region.rectangle(*tile_boxes(outlines, items)[0].tolist())
+    return Region.rectangle(*item_boxes(outlines, items)[0].tolist())
 
 
 def corners_on_vertices(here: Period) -> Region:

@@ -124,6 +124,14 @@ def boxes(paths: Paths) -> Floats:
     return np.concatenate((low, high)).T
 
 
+def item_boxes(paths: Paths, items: Ints) -> Floats:
+    """The same around each item: item k are the paths from items[k] up to, not including, items[k + 1]."""
+    piece = boxes(paths)
+    first = paths.offsets[items[:-1]]
+    low = np.minimum.reduceat(piece[:, :2], first)
+    return np.column_stack((low, np.maximum.reduceat(piece[:, 2:], first)))
+
+
 @dataclass(frozen=True, eq=False)
 class Circles:
     """Lines and arcs as parts of circles, of which a line is one without curvature.

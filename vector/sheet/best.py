@@ -7,8 +7,9 @@ from typing import Final
 import numpy as np
 
 from voronoi_tiles.vector.curves.paths import Complexes, Floats
+from voronoi_tiles.vector.curves.pieces import item_boxes
 from voronoi_tiles.vector.sheet.period import Period
-from voronoi_tiles.vector.sheet.placement import place_tiles, tile_boxes
+from voronoi_tiles.vector.sheet.placement import place_tiles
 from voronoi_tiles.vector.sheet.region import Region
 
 _PLACES: Final = 48
@@ -29,7 +30,7 @@ def best_shift(period: Period, region: Region) -> complex:
     """
     if not region.is_rectangle:
         return _best_of_grid(period, region)
-    box = tile_boxes(*period.own_outlines)
+    box = item_boxes(*period.own_outlines)
     left, bottom, right, top = region.bounds
     # Where a tile's place may be, by its box, for the tile to be whole.
     room = np.column_stack((left - box[:, 0], bottom - box[:, 1], right - box[:, 2], top - box[:, 3]))

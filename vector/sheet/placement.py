@@ -8,7 +8,7 @@ import numpy as np
 
 from voronoi_tiles.vector.curves.intersections import candidate_pairs, crossings
 from voronoi_tiles.vector.curves.paths import Bools, Floats, Ints, Paths
-from voronoi_tiles.vector.curves.pieces import boxes, point_at
+from voronoi_tiles.vector.curves.pieces import item_boxes, point_at
 from voronoi_tiles.vector.curves.winding import item_winding
 from voronoi_tiles.vector.sheet.period import Period
 from voronoi_tiles.vector.sheet.region import Region, beside_border
@@ -28,17 +28,16 @@ def place_tiles(period: Period, region: Region) -> Placement:
 
     Tiles that only touch the border, within `region.close`, are whole, or have nothing of the region.
     """
-    box = tile_boxes(*period.own_outlines)
+    box = item_boxes(*period.own_outlines)
     tile, step = _near(period, box, region)
     shift = period.shifts(step)
     here = box[tile] + np.column_stack((shift.real, shift.imag, shift.real, shift.imag))
     # Order by the middle of the box: the sheet's rows, whatever the tile.
     order = np.lexsort((here[:, 0] + here[:, 2], np.round(here[:, 1] + here[:, 3], 6)))
     tile, step, here = tile[order], step[order], here[order]
-    near = _meets_border(here, region)
     kept = region.contains(here[:, 0] + 1j * here[:, 1])
     whole = kept.copy()
-    unclear = np.flatnonzero(near)
+    unclear = np.flatnonzero(region.meets_border(here, region.close))
     if len(unclear):
         paths, parts = period.outlines(tile[unclear], step[unclear])
         inner, outer = _against(region, paths, parts)
@@ -46,14 +45,6 @@ def place_tiles(period: Period, region: Region) -> Placement:
         whole[unclear] = inner & ~outer
     chosen = np.flatnonzero(kept)
     return Placement(tile[chosen], step[chosen], whole[chosen])
-
-
-def tile_boxes(paths: Paths, items: Ints) -> Floats:
-    """The boxes of items of paths: least x, least y, greatest x, greatest y (n x 4)."""
-    piece = boxes(paths)
-    first = paths.offsets[items[:-1]]
-    low = np.minimum.reduceat(piece[:, :2], first)
-    return np.column_stack((low, np.maximum.reduceat(piece[:, 2:], first)))
 
 
 def _near(period: Period, box: Floats, region: Region) -> tuple[Ints, Ints]:
@@ -69,18 +60,6 @@ def _near(period: Period, box: Floats, region: Region) -> tuple[Ints, Ints]:
         tiles.append(np.full(int(meets.sum()), number))
         steps.append(step[meets])
     return np.concatenate(tiles), np.concatenate(steps)
-
-
-def _meets_border(box: Floats, region: Region) -> Bools:
-    """Tell which boxes come within `region.close` of the box of a piece of the border."""
-    import shapely
-
-    close = region.close
-    grown = box + np.array([-close, -close, close, close])
-    hit = shapely.STRtree(shapely.box(*grown.T)).query(shapely.box(*boxes(region.border).T))[1]
-    near = np.zeros(len(box), np.bool_)
-    near[hit] = True
-    return near
 
 
 def _against(region: Region, paths: Paths, items: Ints) -> tuple[Bools, Bools]:

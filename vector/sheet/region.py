@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from voronoi_tiles.vector.curves.paths import LINE, Bools, Complexes, Floats, Ints, Paths
-from voronoi_tiles.vector.curves.pieces import point_at, tangent_at
+from voronoi_tiles.vector.curves.pieces import boxes, point_at, tangent_at
 from voronoi_tiles.vector.curves.winding import winding
 
 _CLOSE = 1e-9
@@ -57,6 +57,15 @@ class Region:
     def contains(self, points: Complexes) -> Bools:
         """Tell which points lie inside; of those on the border some count as inside."""
         return winding(self.border, points) > 0
+
+    def meets_border(self, box: Floats, margin: float) -> Bools:
+        """Tell which boxes (n x 4, as `pieces.boxes` gives them) come within a margin of that of a border's piece."""
+        import shapely
+
+        grown = box + np.array([-margin, -margin, margin, margin])
+        meets = np.zeros(len(box), np.bool_)
+        meets[shapely.STRtree(shapely.box(*grown.T)).query(shapely.box(*boxes(self.border).T))[1]] = True
+        return meets
 
     def distance(self, points: Complexes) -> Floats:
         """The distance of points from the border."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from voronoi_tiles.vector.curves.intersections import candidate_pairs, crossings
 from voronoi_tiles.vector.curves.paths import Bools, Complexes, Floats, Ints, Paths
-from voronoi_tiles.vector.curves.pieces import boxes, point_at, split
+from voronoi_tiles.vector.curves.pieces import item_boxes, point_at, split
 from voronoi_tiles.vector.sheet.period import Period
 from voronoi_tiles.vector.sheet.placement import Placement
 from voronoi_tiles.vector.sheet.region import Region
@@ -48,6 +48,12 @@ class _Sides:
     last: Ints
     node: Complexes
 
+    def boxes(self, period: Period) -> Floats:
+        """The boxes of all (n x 4), as `pieces.boxes` gives them."""
+        shift = period.shifts(self.step)
+        box = item_boxes(period.sides, np.arange(len(period.sides) + 1))[self.side]
+        return box + np.column_stack((shift.real, shift.imag, shift.real, shift.imag))
+
     def strands(self, period: Period, chosen: Ints) -> Strands:
         """Some of them as strands."""
         return Strands(
@@ -74,7 +80,7 @@ def clipped_strands(period: Period, placement: Placement, region: Region) -> Str
     What runs along the border within `region.close` is left to the border.
     """
     sides = _sides(period, placement)
-    near = _near_border(period, sides, region)
+    near = region.meets_border(sides.boxes(period), 2 * region.close)
     # Beside a whole tile all is inside; OUTSIDE is the last place.
     whole = np.append(placement.whole, False)
     inside = whole[sides.left] | whole[sides.right]
@@ -148,24 +154,6 @@ def _packed(number: Ints, step: Ints) -> Ints:
     i, j = (step - low).T
     m, n = (step.max(axis=0, initial=0) - low + 1).tolist()
     return np.asarray((number * m + i) * n + j, np.intp)
-
-
-def _near_border(period: Period, sides: _Sides, region: Region) -> Bools:
-    """Tell which sides come near the border, by their boxes."""
-    import shapely
-
-    piece = boxes(period.sides)
-    first = period.sides.offsets[:-1]
-    low, high = np.minimum.reduceat(piece[:, :2], first), np.maximum.reduceat(piece[:, 2:], first)
-    shift = period.shifts(sides.step)
-    margin = 2 * region.close
-    x0, y0 = low[sides.side, 0] + shift.real - margin, low[sides.side, 1] + shift.imag - margin
-    x1, y1 = high[sides.side, 0] + shift.real + margin, high[sides.side, 1] + shift.imag + margin
-    tree = shapely.STRtree(shapely.box(x0, y0, x1, y1))
-    hit = tree.query(shapely.box(*boxes(region.border).T))[1]
-    near = np.zeros(len(sides.side), np.bool_)
-    near[hit] = True
-    return near
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,12 +18,13 @@ from voronoi_tiles.vector.curves.areas import ring_areas
 from voronoi_tiles.vector.curves.conversion import to_lines
 from voronoi_tiles.vector.curves.offset import Offset, OffsetError, offset, round_corners
 from voronoi_tiles.vector.curves.paths import Paths, ranges
+from voronoi_tiles.vector.curves.pieces import item_boxes
 from voronoi_tiles.vector.curves.winding import item_winding
 from voronoi_tiles.vector.sheet.best import best_shift
 from voronoi_tiles.vector.sheet.faces import Pieces, clipped_pieces, frame_pieces
 from voronoi_tiles.vector.sheet.orbits import approximated
 from voronoi_tiles.vector.sheet.period import Period, make_period
-from voronoi_tiles.vector.sheet.placement import Placement, place_tiles, tile_boxes
+from voronoi_tiles.vector.sheet.placement import Placement, place_tiles
 from voronoi_tiles.vector.sheet.pulling import UNSTRETCHED, Stretch, pulled_apart, spread
 from voronoi_tiles.vector.sheet.region import Region
 from voronoi_tiles.vector.sheet.strands import Strands, clipped_strands, whole_strands
@@ -235,7 +236,7 @@ class Layout:
             kept = np.flatnonzero(placement.whole)
             placement = Placement(placement.tile[kept], placement.step[kept], placement.whole[kept])
         if not len(placement.tile):
-            x0, y0, x1, y1 = tile_boxes(*self.period.own_outlines)[0].tolist()
+            x0, y0, x1, y1 = item_boxes(*self.period.own_outlines)[0].tolist()
             other = ", or --fit clip" if self.job.fit != "clip" else ""
             raise JobError(
                 f"no {'whole ' if other else ''}tile fits on the sheet: one takes {x1 - x0:.4g} x {y1 - y0:.4g} mm",
