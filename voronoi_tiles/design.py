@@ -13,13 +13,14 @@ import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from voronoi_tiles import reading
 from voronoi_tiles.errors import DesignError
+from voronoi_tiles.lengths import UNIT_MM, Units
 from voronoi_tiles.site import Site, build_site
 from voronoi_tiles.strokes import Placement, polylines
 from voronoi_tiles.svgpath import ARC_SHARE
@@ -37,10 +38,6 @@ if TYPE_CHECKING:
     from voronoi_tiles.tiling import Tiling
 
 Complexes = NDArray[np.complex128]
-Units = Literal["mm", "cm", "in"]
-
-UNIT_MM: Mapping[Units, float] = {"mm": 1.0, "cm": 10.0, "in": 25.4}
-"""Millimetres in each unit of length."""
 
 # The full symbols of the International Tables, for those who write them.
 _FULL_SYMBOLS = {"p1m1": "pm", "p11m": "pm", "p1g1": "pg", "p11g": "pg", "c1m1": "cm", "p2mm": "pmm", "p2mg": "pmg"}

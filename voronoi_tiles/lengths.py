@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import math
 import re
-from typing import Final
+from typing import Final, Literal
 
 from voronoi_tiles.errors import DesignError
 from voronoi_tiles.tolerance import COORDINATE_MAX
 
-MILLIMETRES: Final = {"mm": 1.0, "cm": 10.0, "in": 25.4}
-"""The units of lengths; millimetres. A number without a unit is millimetres."""
+Units = Literal["mm", "cm", "in"]
+
+UNIT_MM: Final[dict[Units, float]] = {"mm": 1.0, "cm": 10.0, "in": 25.4}
+"""Millimetres in each unit of length."""
 
 _LENGTH = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?)\s*([^\W\d_]*)", re.IGNORECASE)
 _REMEDY = "Write a length as 600mm, 3cm, 1in or 0.15; a plain number is millimetres."
@@ -56,9 +58,10 @@ def _split(part: str, text: str, remedy: str) -> tuple[str, str]:
 
 def _millimetres(number: str, unit: str, text: str, remedy: str) -> float:
     """The length in millimetres."""
-    if unit and unit not in MILLIMETRES:
-        raise DesignError(f"unknown unit {unit!r} in {text!r}", remedy=f"Use {', '.join(MILLIMETRES)}. {remedy}")
-    length = float(number) * MILLIMETRES[unit or "mm"]
+    unit = unit or "mm"
+    if unit not in UNIT_MM:
+        raise DesignError(f"unknown unit {unit!r} in {text!r}", remedy=f"Use {', '.join(UNIT_MM)}. {remedy}")
+    length = float(number) * UNIT_MM[unit]
     if not math.isfinite(length) or abs(length) > COORDINATE_MAX:
         raise DesignError(f"{text!r} is beyond {COORDINATE_MAX:g} mm", remedy=remedy)
     return length
