@@ -238,7 +238,9 @@ def _fewer(paths: Paths, first: Ints, counts: Ints, bound: float, flat: float) -
     run = drawn.run % count
     kept = np.flatnonzero((drawn.run >= count) == other[run])
     order = kept[np.argsort(run[kept], kind="stable")]
-    return turned ^ other, _Drawn(run[order], *(values[order] for values in drawn[1:]))
+    return turned ^ other, _Drawn(
+        run[order], drawn.start[order], drawn.end[order], drawn.middle[order], drawn.round_[order]
+    )
 
 
 def _assembled(paths: Paths, kept: Bools, first: Ints, turned: Bools, drawn: _Drawn) -> Paths:
