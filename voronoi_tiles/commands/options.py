@@ -32,6 +32,10 @@ class Length(click.ParamType[float]):
 
     name = "length"
 
+    def __init__(self, least: float = 0.0) -> None:
+        """Take lengths from `least` on; millimetres."""
+        self.least = least
+
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
         """Read a length; millimetres."""
         from voronoi_tiles.errors import DesignError
@@ -45,6 +49,8 @@ class Length(click.ParamType[float]):
             self.fail(str(error), param, ctx)
         if length < 0.0:
             self.fail(f"{value!r} is negative. Write 0 or more.", param, ctx)
+        if length < self.least:
+            self.fail(f"{value!r} is too small. Write {self.least:f}mm or more.", param, ctx)
         return length
 
 

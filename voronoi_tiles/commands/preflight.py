@@ -2,75 +2,50 @@
 
 from __future__ import annotations
 
-import os
-
 import click
 
-from voronoi_tiles.commands.common import EXIT_USAGE, report_error, say, shown
-from voronoi_tiles.errors import DesignError
+from voronoi_tiles.commands.common import EXIT_USAGE, PATH, refuse_output, report_error, say, shown
+from voronoi_tiles.commands.options import LENGTH, Length
 
-
-def _read_length(_context: click.Context, _parameter: click.Parameter, text: str) -> float:
-    """Read a length that is not negative: "1mm"."""
-    from voronoi_tiles.lengths import parse_length
-
-    try:
-        length = parse_length(text)
-    except DesignError as error:
-        raise click.BadParameter(str(error)) from None
-    if length < 0.0:
-        raise click.BadParameter(f"{text!r} is negative. Write 0 or more.")
-    return length
-
-
-def _read_optional(context: click.Context, parameter: click.Parameter, text: str | None) -> float | None:
-    """Read a length that may be left out."""
-    return None if text is None else _read_length(context, parameter, text)
-
-
-def _read_tolerance(context: click.Context, parameter: click.Parameter, text: str) -> float:
-    """Read a length that is greater than a nanometre."""
-    length = _read_length(context, parameter, text)
-    if length < 1e-6:
-        raise click.BadParameter(f"{text!r} is too small. Write 0.000001mm or more.")
-    return length
+_APART = Length(least=1e-6)
+"""A length from a nanometre on."""
 
 
 @click.command()
-@click.argument("file", type=click.Path(allow_dash=True, readable=False))
+@click.argument("file", type=PATH)
 @click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
 @click.option(
     "-o",
     "--output",
     metavar="MARKED",
-    type=click.Path(allow_dash=True, readable=False),
+    type=PATH,
     help="Write a picture (.svg) of the drawing with a numbered mark at every finding.",
 )
 @click.option(
     "--neck",
     default="1mm",
     metavar="LENGTH",
-    callback=_read_length,
+    type=LENGTH,
     help="Warn of material that is narrower; 0 for never [default: 1mm].",
 )
 @click.option(
     "--feature",
     default="1mm",
     metavar="LENGTH",
-    callback=_read_length,
+    type=LENGTH,
     help="Warn of contours that are smaller [default: 1mm].",
 )
 @click.option(
     "--tolerance",
     default="0.005mm",
     metavar="LENGTH",
-    callback=_read_tolerance,
+    type=_APART,
     help="Lines and ends that are nearer are one [default: 0.005mm].",
 )
 @click.option(
     "--tabs",
     metavar="LENGTH",
-    callback=_read_optional,
+    type=LENGTH,
     help="Gaps up to this width are tabs [default: what a file of our own says].",
 )
 @click.option(
@@ -100,7 +75,9 @@ def preflight(
     from voronoi_tiles.preflight import Limits, report_text
     from voronoi_tiles.preflight import preflight as find
 
-    _refuse_output(file, output)
+    refuse_output(file, output, (".svg",))
+    if output == STDOUT:
+        raise click.UsageError("The report goes to standard output: give the picture a file, -o marked.svg.")
     try:
         limits = Limits(tolerance=tolerance, neck=neck, feature=feature, tabs=tabs)
         report = find(file, limits=limits, layers=layers)
@@ -120,19 +97,3 @@ def preflight(
         findings = "1 finding" if errors == 1 else f"{errors:,} findings"
         say(f"Error: {shown(file)}: {findings} would spoil the cut.")
         raise click.exceptions.Exit(1)
-
-
-def _refuse_output(file: str, output: str | None) -> None:
-    """Refuse a picture that is none by its name, or that would overwrite the drawing."""
-    from voronoi_tiles.files import STDOUT, is_special
-
-    if output is None:
-        return
-    if not output:
-        raise click.UsageError("The name of the file to write is empty: -o FILE.")
-    if output == STDOUT:
-        raise click.UsageError("The report goes to standard output: give the picture a file, -o marked.svg.")
-    if not output.lower().endswith(".svg") and not is_special(output):
-        raise click.UsageError(f"{output} is no name of an SVG file: give it the suffix .svg.")
-    if file != "-" and os.path.realpath(output) == os.path.realpath(file):
-        raise click.UsageError(f"{output} is the drawing, and would be overwritten.")
