@@ -15,7 +15,6 @@ from voronoi_tiles.vector.sheet.region import Region
 _CLOSED = 1e-3
 """How far apart the ends of a path may be that is meant to be closed; millimetres."""
 
-
 _PIECES_MAX = 50_000
 """Most lines and curves that bound a sheet; a count."""
 
@@ -50,13 +49,12 @@ def _drawn_sheet(name: str, job: Job) -> Sheet:
     drawing = read_drawing(name)
     rings = Paths.concatenate([shape.paths for shape in drawing.shapes])
     closed = _closed_rings(rings)
-    if len(closed):
-        _refuse_size(name, closed)
     if not len(closed):
         raise JobError(
             f"{name} has no closed path",
             remedy="Draw the sheet's outline as a closed path, or give its size: 600x300mm.",
         )
+    _refuse_size(name, closed)
     if len(closed) > _RINGS_MAX:
         raise JobError(f"{name} has {len(closed)} closed paths", remedy=f"Bound a sheet by {_RINGS_MAX} at most.")
     border = oriented(to_arcs(closed, accuracy=job.accuracy / 2))
