@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from math import fsum
 
 import numpy as np
 
@@ -20,6 +21,11 @@ class Pieces:
     whole: Bools
     colour: Ints
     area: Floats
+
+    @property
+    def tile_area(self) -> float:
+        """The area of all pieces but those of a frame; square millimetres."""
+        return fsum(self.area[self.site != FRAME].tolist())
 
 
 def contour_pieces(layout: Layout, contours: Contours, colouring: Colouring) -> Pieces:

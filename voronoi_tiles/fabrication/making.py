@@ -58,9 +58,8 @@ class Product:
         cuts = [layer.paths for layer in self.drawing.layers if layer.work == "cut"]
         length = fsum(float(paths.lengths.sum()) for paths in cuts) / 1000
         count, area = len(self.pieces.site), self.drawing.width * self.drawing.height
-        used = fsum(self.pieces.area[self.pieces.site != FRAME].tolist()) / area
         return (
-            f"{count:,} piece{'s' * (count != 1)}, {used:.1%} of {self.drawing.width:.5g} x "
+            f"{count:,} piece{'s' * (count != 1)}, {self.pieces.tile_area / area:.1%} of {self.drawing.width:.5g} x "
             f"{self.drawing.height:.5g} mm, {length:.3g} m of cuts in {sum(map(len, cuts)):,} paths"
         )
 

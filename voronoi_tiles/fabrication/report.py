@@ -66,7 +66,7 @@ def report_figures(
         )
     )
     area = drawing.width * drawing.height
-    used = fsum(pieces.area[pieces.site != FRAME].tolist())
+    used = pieces.tile_area
     whole = fsum(pieces.area[pieces.whole].tolist())
     return {
         "design": tiling.design.name,
