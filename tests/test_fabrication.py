@@ -33,7 +33,7 @@ from sheets import tiling
 from svgelements import SVG
 from svgelements import Path as SvgPath
 
-from voronoi_tiles.fabrication import Job, JobError, Product, colour_names
+from voronoi_tiles.fabrication import Job, JobError, Product, colour_names, make_colours
 from voronoi_tiles.fabrication.layout import FRAME
 from voronoi_tiles.fabrication.report import report_figures
 from voronoi_tiles.vector.curves.paths import ARC, CUBIC, LINE, QUAD, Paths
@@ -285,6 +285,11 @@ def test_files_have_all_pieces_once() -> None:
     names = colour_names(tiles, job)
     assert [number for number, _ in names] == list(range(len(names)))
     parts = [tiles.make(replace(job, only_colour=number)) for number, _ in names]
+    at_once = make_colours(tiles, job)
+    assert [name for name, _ in at_once] == [name for _, name in names]
+    for part, (_, same) in zip(parts, at_once, strict=True):
+        assert written(same) == written(part)
+        assert same.notes == part.notes
     together = tiles.make(replace(job, colours="layers"))
     assert sum(len(part.pieces.site) for part in parts) == len(together.pieces.site)
     starts = [np.sort_complex(cuts(part).start) for part in parts]

@@ -28,7 +28,7 @@ def contours(tiles: Tiling, job: Job) -> list[tuple[int, Paths]]:
     """Each piece's site and rings where its tile lies in the plane, the pulling undone."""
     fit, _ = curve_fit(job, "exact", tiles.design.unit_mm)
     layout = Layout(tiles, job, read_sheet(job), fit)
-    found = layout.contours()
+    found = layout.contours
     result = []
     for k, copy in enumerate(found.copy.tolist()):
         piece = found.paths.take(np.arange(found.items[k], found.items[k + 1]))

@@ -6,7 +6,6 @@ import os
 from collections import Counter
 from collections.abc import Sequence
 from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -92,14 +91,14 @@ def _write(tiling: Tiling, target: str, form: str, job: Job | None, check: Check
         _refuse_inputs(tiling, job, [target])
         product = tiling.write(target, form, job=job, check=check)
         return [f"wrote {target}"] if product is None else [*product.notes, f"wrote {target}: {product.summary()}"]
-    from voronoi_tiles.fabrication import colour_names
+    from voronoi_tiles.fabrication import make_colours
     from voronoi_tiles.files import writing
 
     path = Path(target)
     # All of them before the first is written: a job that cannot be done leaves nothing.
     products = {
-        str(path.with_name(f"{path.stem}-{name}{path.suffix}")): tiling.make(replace(job, only_colour=number), form)
-        for number, name in colour_names(tiling, job, form)
+        str(path.with_name(f"{path.stem}-{name}{path.suffix}")): product
+        for name, product in make_colours(tiling, job, form)
     }
     _refuse_inputs(tiling, job, list(products))
     lines = []

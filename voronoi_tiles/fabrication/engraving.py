@@ -61,7 +61,7 @@ def engrave(
     lines: list[Paths] = []
     notes: list[str] = list(art.left_out)
     if job.labels != "none":
-        labels, small = _labels(tiling, layout, contours if contours is not None else layout.contours())
+        labels, small = _labels(tiling, layout, contours if contours is not None else layout.contours)
         lines.append(labels)
         if small:
             notes.append(f"{small} pieces are too small for a label of {LABEL_MIN:g} mm")
@@ -146,7 +146,7 @@ def _bar(layout: Layout, contours: Contours | None, sheet: Sheet) -> Paths:
     """The reference bar: in the sheet's margin below, or below the tiles."""
     job = layout.job
     if sheet.region is None:
-        paths = contours.paths if contours is not None else layout.contours().paths
+        paths = contours.paths if contours is not None else layout.contours.paths
         low_x, low_y, _, _ = paths.bounds
         height = bar_height(_LETTERS_MM)
         return reference_bar(letters=_LETTERS_MM).moved(1.0, complex(low_x, low_y - height - 2 * _FREE_MM))

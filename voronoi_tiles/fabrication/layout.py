@@ -189,6 +189,7 @@ class Layout:
             return clipped_strands(self.spaced, self.placement, self.region)
         return self.strands()
 
+    @cached_property
     def contours(self) -> Contours:
         """The closed contours of all pieces, kerf, fillets and gaps applied."""
         whole = np.flatnonzero(self.copies.whole)

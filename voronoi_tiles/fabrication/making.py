@@ -77,28 +77,75 @@ def make(tiling: Tiling, job: Job, file_format: str = "svg") -> Product:
     if job.colours == "files" and job.only_colour is None:
         raise JobError(
             "a file for each colour is several drawings, and one is asked for",
-            remedy="Make one for each of colour_names, with only_colour, or put the colours on layers.",
+            remedy="Use make_colours, or put the colours on layers.",
         )
-    preset = load_preset(job.preset)
-    preset.require(form)
-    curves = _curves(job, preset, form)
-    fit, rest = curve_fit(job, curves, tiling.design.unit_mm)
-    sheet = read_sheet(job)
-    layout = Layout(tiling, job, sheet, fit, refit=curves != "polyline")
-    colouring = colour_tiles(layout)
-    if job.pieces:
-        contours = _of_colour(layout.contours(), colouring, job)
-        cuts = cut_pieces(contours, colouring, job)
-        pieces = contour_pieces(layout, contours, colouring)
-    else:
-        cuts = [Cut("cut", "", None, cut_once(layout, job))]
-        contours = None
-        pieces = cut_free(layout, colouring)
-    engraving = engrave(tiling, layout, contours, sheet, _shown(colouring, layout, job), fills=preset.fill_engraving)
-    layers = _layers(preset, form, job, cuts, engraving, _converter(curves, rest))
-    drawing = _page(layers, sheet, job, tiling)
-    notes = tuple(dict.fromkeys((*layout.losses, *engraving.notes, *_doubled(layout, job), *_untabbed(cuts, job))))
-    return Product(form, drawing, pieces, colouring.count, notes, curves, job.accuracy)
+    return _Plan.of(tiling, job, form).product(job)
+
+
+def make_colours(tiling: Tiling, job: Job, file_format: str = "svg") -> list[tuple[str, Product]]:
+    """Make a drawing for each colour that a job has pieces of, and one for a frame; each with a name for its file.
+
+    Raises what `make` does.
+    """
+    plan = _Plan.of(tiling, job, _format(file_format))
+    return [(name, plan.product(replace(job, only_colour=number))) for number, name in plan.colours()]
+
+
+def colour_names(tiling: Tiling, job: Job, file_format: str = "svg") -> list[tuple[int, str]]:
+    """Give the colours that a job has pieces of, each with a name for its file; FRAME for the frame."""
+    return _Plan.of(tiling, job, _format(file_format)).colours()
+
+
+@dataclass(frozen=True, eq=False)
+class _Plan:
+    """What the drawings of a job share: the tiles on the page, in the curves that a format takes, and their colours.
+
+    `rest` is what approximating the tiles has left of the accuracy; millimetres.
+    """
+
+    tiling: Tiling
+    form: Format
+    preset: Preset
+    curves: str
+    rest: float
+    layout: Layout
+    colouring: Colouring
+
+    @classmethod
+    def of(cls, tiling: Tiling, job: Job, form: Format) -> _Plan:
+        """Lay out the tiles."""
+        preset = load_preset(job.preset)
+        preset.require(form)
+        curves = _curves(job, preset, form)
+        fit, rest = curve_fit(job, curves, tiling.design.unit_mm)
+        layout = Layout(tiling, job, read_sheet(job), fit, refit=curves != "polyline")
+        return cls(tiling, form, preset, curves, rest, layout, colour_tiles(layout))
+
+    def colours(self) -> list[tuple[int, str]]:
+        """The colours that the page has pieces of, each with a name for its file; FRAME for the frame."""
+        copies = np.arange(len(self.layout.copies.tile))
+        found = np.unique(self.colouring.of_copies(copies)).tolist()
+        if self.layout.job.fit == "frame" and self.layout.rest() is not None:
+            found.append(FRAME)
+        return [(number, "frame" if number == FRAME else str(number + 1)) for number in found]
+
+    def product(self, job: Job) -> Product:
+        """Draw what a job asks for, which is that of the plan, or one of its colours."""
+        layout, colouring, preset = self.layout, self.colouring, self.preset
+        if job.pieces:
+            contours = _of_colour(layout.contours, colouring, job)
+            cuts = cut_pieces(contours, colouring, job)
+            pieces = contour_pieces(layout, contours, colouring)
+        else:
+            cuts = [Cut("cut", "", None, cut_once(layout, job))]
+            contours = None
+            pieces = cut_free(layout, colouring)
+        shown = _shown(colouring, layout, job)
+        engraving = engrave(self.tiling, layout, contours, layout.sheet, shown, fills=preset.fill_engraving)
+        layers = _layers(preset, self.form, job, cuts, engraving, _converter(self.curves, self.rest))
+        drawing = _page(layers, layout.sheet, job, self.tiling)
+        notes = tuple(dict.fromkeys((*layout.losses, *engraving.notes, *_doubled(layout, job), *_untabbed(cuts, job))))
+        return Product(self.form, drawing, pieces, colouring.count, notes, self.curves, job.accuracy)
 
 
 def _format(name: str) -> Format:
@@ -119,19 +166,6 @@ def _doubled(layout: Layout, job: Job) -> list[str]:
     if not job.pieces or job.apart is not None or len(layout.copies.tile) < 2 or job.sheet is None:
         return []
     return ["neighbouring contours lie on each other, and are cut twice: --edges once, or --gap 1mm, avoids it"]
-
-
-def colour_names(tiling: Tiling, job: Job, file_format: str = "svg") -> list[tuple[int, str]]:
-    """Give the colours that a job has pieces of, each with a name for its file; FRAME for the frame."""
-    # As the files are made: where most tiles fit may depend on the curves.
-    curves = _curves(job, load_preset(job.preset), _format(file_format))
-    fit, _ = curve_fit(job, curves, tiling.design.unit_mm)
-    layout = Layout(tiling, job, read_sheet(job), fit, refit=curves != "polyline")
-    colouring = colour_tiles(layout)
-    found = np.unique(colouring.of_copies(np.arange(len(layout.copies.tile)))).tolist()
-    if job.fit == "frame" and layout.rest() is not None:
-        found.append(FRAME)
-    return [(number, "frame" if number == FRAME else str(number + 1)) for number in found]
 
 
 def _of_colour(contours: Contours, colouring: Colouring, job: Job) -> Contours:
