@@ -5,21 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from voronoi_tiles.fabrication.fitting import fewer_arcs
+from voronoi_tiles.fabrication.dressing import Dressing
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.vector.contour import Bools, Complexes, Floats, Ints
 from voronoi_tiles.vector.copies import Motion, Placed, compose, inverse, reverses_orientation
 from voronoi_tiles.vector.curves.areas import ring_areas
 from voronoi_tiles.vector.curves.conversion import to_lines
-from voronoi_tiles.vector.curves.offset import Offset, OffsetError, offset, round_corners
+from voronoi_tiles.vector.curves.offset import OffsetError, offset
 from voronoi_tiles.vector.curves.paths import Paths, ranges
 from voronoi_tiles.vector.curves.pieces import item_boxes
-from voronoi_tiles.vector.curves.winding import item_winding
 from voronoi_tiles.vector.sheet.best import best_shift
 from voronoi_tiles.vector.sheet.faces import Pieces, clipped_pieces, frame_pieces
 from voronoi_tiles.vector.sheet.orbits import approximated
@@ -43,13 +41,6 @@ TILES_MAX: Final = 100_000
 
 PIECES_MAX: Final = 4_000_000
 """Most edges of all tiles of a sheet, and most lines of art; counts. They take about 1.5 GB."""
-
-_LOSSES = {
-    "ring": "a piece vanishes",
-    "neck": "a neck breaks",
-    "gap": "a gap closes",
-    "part": "a thin part vanishes",
-}
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,7 +89,6 @@ class Layout:
         """Place tiles; `fit` replaces the exact curves (in the design's units), `refit` what kerf and fillet leave."""
         tessellation = tiling.tessellation
         self.job = job
-        self.refit = refit
         self.sheet = sheet
         self.action = tessellation.action
         self.design_units = tiling.design.unit_mm
@@ -111,7 +101,7 @@ class Layout:
         self.period: Period = period.placed(self.factor, self.shift)
         if sheet.region is not None:
             self._refuse_crowd(sheet.region)
-        self.losses: list[str] = []
+        self.dressing = Dressing(job, refit=refit)
         self.spread = UNSTRETCHED
         self._dressed: dict[int, Paths] = {}
         if job.apart is not None and sheet.region is not None:
@@ -197,7 +187,7 @@ class Layout:
         copy, area = whole, self.tile_areas[self.copies.tile[whole]]
         rest = self.rest()
         if rest is not None:
-            done, of = self._dress_each(rest)
+            done, of = self.dressing.pieces(rest)
             # What fillets cut in two shares the area that it had.
             left = piece_areas(done) if len(of) else np.zeros(0)
             share = left / np.bincount(of, left, len(rest.tile))[of]
@@ -254,7 +244,7 @@ class Layout:
         first = int(np.flatnonzero(self.period.site == site)[0])
         if tile == first:
             rings, items = self.period.own_outlines
-            result = self._refitted(self._dress(rings.take(np.arange(items[tile], items[tile + 1]))))
+            result = self.dressing.tile(rings.take(np.arange(items[tile], items[tile + 1])))
         else:
             # The same shape as the first one of its site, not one that is computed anew.
             result = self._image(
@@ -272,40 +262,6 @@ class Layout:
         image = paths.moved(factor, self.factor * place + self.shift - factor * base, conj=conj)
         return image.reversed() if conj else image
 
-    def _dress(self, rings: Paths, *, whole: bool = True) -> Paths:
-        """Round the corners of a piece and let its contour keep half the kerf.
-
-        A tile that is `whole` must leave all its rings; of a part of one, or of a frame, less may be left, or nothing.
-        """
-        job = self.job
-        if job.fillet > 0.0:
-            rings = self._kept(round_corners, rings, job.fillet, "fillet", whole=whole)
-        if job.kerf > 0.0 and len(rings):
-            rings = self._kept(offset, rings, job.kerf / 2, "kerf", whole=whole)
-        return rings
-
-    def _kept(
-        self, change: Callable[[Paths, float], Offset], rings: Paths, size: float, name: str, *, whole: bool
-    ) -> Paths:
-        """Apply a change to a piece, and note what is lost by it."""
-        try:
-            result = change(rings, size)
-        except OffsetError as error:
-            raise JobError(
-                f"--{name} cannot be applied at ({error.place.real:.4g}, {error.place.imag:.4g}) mm of the page",
-                remedy=f"Change --{name} a little, and please report the design.",
-            ) from error
-        given = getattr(self.job, name)
-        for lost in result.lost:
-            place = f"({lost.place.real:.4g}, {lost.place.imag:.4g}) mm"
-            if whole and (lost.kind in ("ring", "neck") or len(result.paths) != len(rings)):
-                raise JobError(
-                    f"--{name} {given:g}mm is too much: {_LOSSES[lost.kind]} at {place} of the page",
-                    remedy=f"Use a smaller --{name}, or a larger design.",
-                )
-            self.losses.append(f"--{name} {given:g}mm: {_LOSSES[lost.kind]} at {place} of the page")
-        return result.paths
-
     def _whole(self, copies: Ints) -> tuple[Paths, Ints]:
         """The rings of whole tiles, and where each one's begin."""
         tile = self.copies.tile[copies]
@@ -318,24 +274,6 @@ class Layout:
         stamped = rings.take(ranges(starts[:-1][tile], counts))
         items = np.append(0, np.cumsum(counts)).astype(np.intp)
         return stamped.shifted(np.repeat(self.copy_shifts[copies], counts)[stamped.owner]), items
-
-    def _dress_each(self, pieces: Pieces) -> tuple[Pieces, Ints]:
-        """Apply fillet and kerf to pieces one by one; also gives of which of them each of the pieces now is."""
-        if not self.job.dressed:
-            return pieces, np.arange(len(pieces.tile))
-        done: list[Paths] = []
-        of: list[int] = []
-        for k, (a, b) in enumerate(pairwise(pieces.items.tolist())):
-            parts = _parts(self._dress(pieces.paths.take(np.arange(a, b)), whole=False))
-            done += parts
-            of += [k] * len(parts)
-        items = np.append(0, np.cumsum([len(rings) for rings in done])).astype(np.intp)
-        owner = np.array(of, np.intp)
-        return Pieces(self._refitted(Paths.concatenate(done)), items, pieces.tile[owner]), owner
-
-    def _refitted(self, rings: Paths) -> Paths:
-        """Replace the many short arcs that kerf and fillet leave by the fewest within what is left of the accuracy."""
-        return fewer_arcs(rings, self.job.accuracy) if self.job.dressed and self.refit else rings
 
     def _centres(self) -> Complexes:
         """The points of the period's tiles that are spread: the middles of their boxes."""
@@ -373,15 +311,6 @@ class Layout:
         place = self.period.at(self._centres()[placement.tile], placement.step)
         away = place - self.sheet.centre
         return self.spread(away) - away
-
-
-def _parts(rings: Paths) -> list[Paths]:
-    """The parts that rings bound: an outer one each, and the holes in it."""
-    areas = ring_areas(rings)
-    outer, holes = np.flatnonzero(areas > 0), np.flatnonzero(areas <= 0)
-    shells = rings.take(outer)
-    inside = item_winding(shells, shells.offsets, rings.start[rings.offsets[:-1]][holes]) > 0
-    return [rings.take(np.append(one, holes[held])) for one, held in zip(outer, inside, strict=True)]
 
 
 def piece_areas(pieces: Pieces) -> Floats:

@@ -144,7 +144,8 @@ class _Plan:
         engraving = engrave(self.tiling, layout, contours, layout.sheet, shown, fills=preset.fill_engraving)
         layers = _layers(preset, self.form, job, cuts, engraving, _converter(self.curves, self.rest))
         drawing = _page(layers, layout.sheet, job, self.tiling)
-        notes = tuple(dict.fromkeys((*layout.losses, *engraving.notes, *_doubled(layout, job), *_untabbed(cuts, job))))
+        said = (*layout.dressing.losses, *engraving.notes, *_doubled(layout, job), *_untabbed(cuts, job))
+        notes = tuple(dict.fromkeys(said))
         return Product(self.form, drawing, pieces, colouring.count, notes, self.curves, job.accuracy)
 
 
