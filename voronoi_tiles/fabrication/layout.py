@@ -163,12 +163,9 @@ class Layout:
         place = complex(self.action.cartesian(motion[4] / 2, motion[5] / 2))
         return self.factor * unit, self.factor * place + self.shift, conj
 
+    @cached_property
     def strands(self) -> Strands:
         """The lines of the sheet, each once; those of tiles that are pulled apart, two for a side."""
-        return self._strands
-
-    @cached_property
-    def _strands(self) -> Strands:
         if self.region is not None and self.job.fit == "clip":
             return clipped_strands(self.spaced, self.placement, self.region)
         return whole_strands(self.spaced, self.placement)
@@ -177,7 +174,7 @@ class Layout:
         """The lines of the sheet and its border, each once: where tiles lie along the border, it is the border's."""
         if self.region is not None and self.job.fit == "frame":
             return clipped_strands(self.spaced, self.placement, self.region)
-        return self.strands()
+        return self.strands
 
     @cached_property
     def contours(self) -> Contours:
@@ -202,11 +199,11 @@ class Layout:
         if self.region is None or self.job.fit == "whole":
             return None
         if self.job.fit == "frame":
-            rest = frame_pieces(self.strands(), self.region)
+            rest = frame_pieces(self.strands, self.region)
         else:
             cut = np.flatnonzero(~self.copies.whole)
             outlines, items = self.spaced.outlines(self.copies.tile[cut], self.copies.step[cut])
-            rest = clipped_pieces(self.strands(), cut, outlines, items)
+            rest = clipped_pieces(self.strands, cut, outlines, items)
         return rest if len(rest.tile) else None
 
     @cached_property
