@@ -9,11 +9,10 @@ from __future__ import annotations
 import json
 import math
 import os
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +20,7 @@ from numpy.typing import NDArray
 from voronoi_tiles import reading
 from voronoi_tiles.errors import DesignError
 from voronoi_tiles.lengths import UNIT_MM, Units
+from voronoi_tiles.parsing import STARTER, parse, read_text
 from voronoi_tiles.site import Site, build_site
 from voronoi_tiles.strokes import Placement, polylines
 from voronoi_tiles.svgpath import ARC_SHARE
@@ -28,7 +28,6 @@ from voronoi_tiles.tolerance import (
     ANGLE_MIN,
     CELL_ASPECT_MAX,
     CELL_MIN,
-    FILE_BYTES_MAX,
     FLATTENING_MM,
     SITE_EXTENT_MAX,
 )
@@ -42,8 +41,6 @@ Complexes = NDArray[np.complex128]
 # The full symbols of the International Tables, for those who write them.
 _FULL_SYMBOLS = {"p1m1": "pm", "p11m": "pm", "p1g1": "pg", "p11g": "pg", "c1m1": "cm", "p2mm": "pmm", "p2mg": "pmg"}
 _FULL_SYMBOLS |= {"p2gg": "pgg", "c2mm": "cmm", "p4mm": "p4m", "p4gm": "p4g", "p6mm": "p6m", "p211": "p2", "p111": "p1"}
-
-_STARTER = 'Run "voronoi-tiles new p4" for a design to start from.'
 
 
 @dataclass(frozen=True)
@@ -93,7 +90,7 @@ class Design:
         """
         file = os.fspath(path)
         shown = "standard input" if file == "-" else file or repr(file)
-        text = _read_text(file, shown)
+        text = read_text(file, shown)
         suffix = Path(file).suffix.lower()
         if suffix not in (".toml", ".json"):
             suffix = ".json" if text.lstrip()[:1] == "{" else ".toml"
@@ -112,7 +109,7 @@ class Design:
         name: str = "design",
     ) -> Design:
         """Read a design from text in "toml" or "json"; `file` is what messages call it. Raises DesignError."""
-        return cls.from_dict(_parse(text, format, file), file=file, name=name)
+        return cls.from_dict(parse(text, format, file), file=file, name=name)
 
     @classmethod
     def from_dict(cls, mapping: Mapping[str, Any], *, file: str | None = None, name: str = "design") -> Design:
@@ -132,114 +129,13 @@ class Design:
         return tessellate(self)
 
 
-# --- text ---------------------------------------------------------------------------------------------------
-
-
-def _read_text(file: str, shown: str) -> str:
-    if not file:
-        raise DesignError(
-            "the name of the design is empty", file=shown, remedy="Name a TOML or JSON file, or - for standard input."
-        )
-    if file == "-" and sys.stdin is None:
-        raise DesignError(
-            "cannot read the design: it is closed", file=shown, remedy="Send a design to it, or name a file."
-        )
-    try:
-        if file == "-":
-            data = sys.stdin.buffer.read(FILE_BYTES_MAX + 1)
-        else:
-            with Path(file).open("rb") as stream:
-                data = stream.read(FILE_BYTES_MAX + 1)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise DesignError(
-            f"cannot read the design: {reason}", file=shown, remedy="Check the path and its permissions."
-        ) from None
-    if len(data) > FILE_BYTES_MAX:
-        raise DesignError(
-            f"larger than {FILE_BYTES_MAX // 2**20} MiB", file=shown, remedy=f"Is it a design? {_STARTER}"
-        )
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise DesignError(
-            "not a text in UTF-8", file=shown, line=line, remedy=f"Save it as UTF-8 text. {_STARTER}"
-        ) from None
-
-
-def _parse(text: str, form: str, file: str | None) -> Mapping[str, Any]:
-    if not isinstance(text, str):
-        raise DesignError(f"a design is text, not {reading.shown(text)}", file=file, remedy="Pass a str.")
-    if form not in ("toml", "json"):
-        raise DesignError(f"unknown format {reading.shown(form)}", file=file, remedy='Use "toml" or "json".')
-    try:
-        try:
-            return _parse_as(form, text)
-        except (DesignError, json.JSONDecodeError):
-            raise
-        except ValueError:
-            # Python refuses integers of thousands of digits without a place. No key takes one, so a shorter one that
-            # is still too large for all gives the message with the key.
-            return _parse_as(form, _shorter(text))
-    except DesignError as error:
-        raise error.with_file(file) from None
-    except json.JSONDecodeError as error:
-        raise DesignError(
-            f"not JSON: {error.msg} (column {error.colno})", file=file, line=error.lineno, remedy="Correct the line."
-        ) from None
-    except (ValueError, RecursionError) as error:
-        why = "nested too deeply" if isinstance(error, RecursionError) else str(error).partition(";")[0]
-        raise DesignError(f"not {form.upper()}: {why}", file=file, remedy=_STARTER) from None
-
-
-def _parse_as(form: str, text: str) -> Mapping[str, Any]:
-    if form == "toml":
-        return _parse_toml(text)
-    return cast("Mapping[str, Any]", json.loads(text, object_pairs_hook=_without_repeats))
-
-
-def _shorter(text: str) -> str:
-    """The text with integers of thousands of digits cut to 401, which Python always takes."""
-    import re
-
-    return re.sub(rf"\d(?:_?\d){{{sys.get_int_max_str_digits()},}}", "1" + "0" * 400, text)
-
-
-def _parse_toml(text: str) -> Mapping[str, Any]:
-    import re
-    import tomllib
-
-    try:
-        return tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        what = str(error)
-        place = re.search(r" \(at line (\d+), column (\d+)\)$", what)
-        if place:
-            line, what = int(place[1]), f"{what[: place.start()]} (column {place[2]})"
-        else:
-            line, what = text.count("\n") + 1, what.removesuffix(" (at end of document)") + " at the end"
-        raise DesignError(
-            f"not TOML: {what[:1].lower()}{what[1:]}", line=line, remedy=f"Correct the line. {_STARTER}"
-        ) from None
-
-
-def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    table = dict(pairs)
-    if len(table) < len(pairs):
-        names = [name for name, _ in pairs]
-        twice = next(name for name in names if names.count(name) > 1)
-        raise DesignError(f"key {reading.shown(twice)} occurs twice in one object", remedy="Keep one of them.")
-    return table
-
-
 # --- the design ---------------------------------------------------------------------------------------------
 
 _Parts = tuple[WallpaperGroup, Lattice, Units, tuple[Site, ...], str, tuple[Art | None, ...]]
 
 
 def _read_design(value: object) -> _Parts:
-    table = reading.table(value, ("schema", "group", "units", "cell", "site"), _STARTER)
+    table = reading.table(value, ("schema", "group", "units", "cell", "site"), STARTER)
     schema = reading.required(table, "schema", "Write schema = 1.")
     if isinstance(schema, bool) or not isinstance(schema, int) or schema != 1:
         raise DesignError(f"schema {reading.shown(schema)} is not supported", key="schema", remedy="Write schema = 1.")
