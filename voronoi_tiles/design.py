@@ -75,7 +75,8 @@ class Design:
 
     def __repr__(self) -> str:
         sites = ", ".join(site.name for site in self.sites[:3]) + (", ..." if len(self.sites) > 3 else "")
-        return f"<Design {self.name!r}: {self.group.name}, {len(self.sites)} sites ({sites})>"
+        many = "site" if len(self.sites) == 1 else "sites"
+        return f"<Design {self.name!r}: {self.group.name}, {len(self.sites)} {many} ({sites})>"
 
     @property
     def unit_mm(self) -> float:

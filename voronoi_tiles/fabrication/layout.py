@@ -26,6 +26,7 @@ from voronoi_tiles.vector.sheet.placement import Placement, place_tiles
 from voronoi_tiles.vector.sheet.pulling import UNSTRETCHED, Stretch, pulled_apart, spread
 from voronoi_tiles.vector.sheet.region import Region
 from voronoi_tiles.vector.sheet.strands import Strands, clipped_strands, whole_strands
+from voronoi_tiles.wallpaper import unit_at
 
 if TYPE_CHECKING:
     from voronoi_tiles.tiling import Tiling
@@ -95,8 +96,7 @@ class Layout:
         period = make_period(tessellation)
         if fit is not None:
             period = approximated(period, tessellation.action, fit)
-        turn = np.deg2rad(job.rotate)
-        self.factor = self.design_units * complex(_unit(turn, job.rotate))
+        self.factor = self.design_units * unit_at(job.rotate)
         self.shift = sheet.centre + (job.offset or 0j) if sheet.region is not None else 0j
         self.period: Period = period.placed(self.factor, self.shift)
         if sheet.region is not None:
@@ -313,13 +313,6 @@ class Layout:
 def piece_areas(pieces: Pieces) -> Floats:
     """The area of each piece, its holes taken off."""
     return np.asarray(np.add.reduceat(ring_areas(pieces.paths), pieces.items[:-1]))
-
-
-def _unit(turn: float, degrees: float) -> complex:
-    """The unit complex number at an angle, exact at right angles."""
-    if degrees % 90.0 == 0.0:
-        return (1, 1j, -1, -1j)[int(degrees // 90.0) % 4]
-    return complex(np.cos(turn), np.sin(turn))
 
 
 def _inset(region: Region, width: float) -> Region:
