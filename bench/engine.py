@@ -1,10 +1,10 @@
-"""How fast the engine is, beside Boost.Polygon, and what a whole process costs. Run it with `make bench`.
+"""How fast the engine is, beside Boost.Polygon and CGAL, and what a whole process costs. Run it with `make bench`.
 
 Timed of the engine: `tessellate`, from sites whose strokes are flattened and noded to the outlines, without the proof
-and without files. Timed of the peer: see peer.py. All take turns, so that a busy machine slows all; the ratios are
-those of the fastest runs. Every size is checked: the areas must agree to 1e-6.
+and without files. Timed of the peers: see peer.py and cgal.cpp. All take turns, so that a busy machine slows all; the
+ratios are those of the fastest runs. Every size is checked: the areas must agree to 1e-6.
 
-Boost.Polygon gets two blocks of copies. *Fewest copies* is the smallest block that gives the same tile, of which no
+The peers get two blocks of copies. *Fewest copies* is the smallest block that gives the same tile, of which no
 copy can be left out; to know it one must know the tile. *Whole cells* is the smallest square block of whole cells about
 the site's own (3 x 3, 5 x 5, ...) that gives the same tile: what one can take without knowing it.
 """
@@ -12,11 +12,9 @@ the site's own (3 x 3, 5 x 5, ...) that gives the same tile: what one can take w
 from __future__ import annotations
 
 import argparse
-import datetime as dt
 import gc
 import json
 import os
-import platform
 import resource
 import statistics
 import subprocess
@@ -24,23 +22,27 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
+from report import machine, published, table
 
-from voronoi_tiles import Design, __version__
+from voronoi_tiles import Design
 from voronoi_tiles.site import Site, build_site
 from voronoi_tiles.vector.proof import prove
 from voronoi_tiles.vector.tessellation import TileRecord, tessellate
 from voronoi_tiles.wallpaper import Lattice, Operation, WallpaperGroup
 
 try:
+    import cgal
     import peer
 except ImportError as error:
     if error.name != "pyvoronoi":
         raise
-    peer = None
+    peer = cgal = None
 
 # Of each group a cell in millimetres and a cubic curve in it, without a loop.
 CURVES: dict[str, tuple[dict[str, float], list[list[float]]]] = {
@@ -49,11 +51,12 @@ CURVES: dict[str, tuple[dict[str, float], list[list[float]]]] = {
     "p6": ({"a": 60.0}, [[9, 4], [21, 2], [26, 9], [16, 17]]),
 }
 SIZES = (1, 3, 10, 24, 100, 300, 1000, 3000, 10000, 20000)
-AGREEMENT = 1e-6
-# Larger diagrams are not built again and again to find the smallest block: that of a smaller one is tried first.
-SEARCHED = 300
-# The peer gets no larger problem than this.
+# The peers get no larger problem than this.
 MOST_SEGMENTS = 200_000
+# CGAL gets no larger one after a run of so many seconds.
+LONGEST_RUN = 2.0
+
+Complexes = NDArray[np.complex128]
 
 
 class Case(NamedTuple):
@@ -98,87 +101,80 @@ def repetitions(seconds: float, most: int) -> int:
     return max(3, min(most, int(2.0 / max(seconds, 1e-9))))
 
 
-# The peer and its block of copies
+# The engine and its peers
 
 
-def neighbours(record: TileRecord) -> list[Operation]:
-    """List the copies beyond the edges of a tile, those with the longest common edges first."""
-    outline = record.outline
-    lengths = np.bincount(outline.neighbour, np.abs(outline.end - outline.start), len(outline.neighbours))
-    return [outline.neighbours[k].operation for k in np.argsort(-lengths)]
+class Block(NamedTuple):
+    """A block of copies, the site included, and the seconds of the peers' runs: none where one was left out."""
+
+    copies: int
+    boost: list[float]
+    cgal: list[float]
 
 
-def block_error(case: Case, copies: Sequence[Operation], area: float) -> float:
-    """Give the relative error of the tile's area that the peer finds with these copies."""
-    segments = peer.block_segments(case.site, case.lattice, copies)
-    _, reading = peer.run_peer(segments, len(case.site.segments))
-    error = abs(peer.tile_area(reading, segments) - area) / area
-    return error if error == error else float("inf")  # noqa: PLR0124 NaN: an unbounded cell
+class Timing(NamedTuple):
+    """The seconds of the engine's runs, and the blocks: fewest copies, whole cells."""
+
+    group: str
+    segments: int
+    engine: list[float]
+    blocks: list[Block]
 
 
-def smallest_block(case: Case, record: TileRecord, known: Sequence[Operation] | None) -> list[Operation]:
-    """Find copies with which the peer gives the same tile, and of which none can be left out.
+class Peers:
+    """The peers of one group: what they got last, and how long it took."""
 
-    The copies beyond the tile's edges come first, with rings of further ones until the area is right; then those that
-    do not matter leave, the least important first.
-    """
-    area = record.outline.area
-    if known is not None and len(case.site.segments) > SEARCHED and block_error(case, known, area) <= AGREEMENT:
-        return list(known)
-    first = neighbours(record)
-    block = list(first)
-    for _ in range(3):
-        if block_error(case, block, area) <= AGREEMENT:
-            break
-        block += [q for p in list(block) for n in first if not (q := p @ n).is_identity and q not in block]
-    else:
-        raise AssertionError(f"the peer's area is off by {block_error(case, block, area):.2g}")
-    for copy in reversed(list(block)):
-        rest = [other for other in block if other != copy]
-        if block_error(case, rest, area) <= AGREEMENT:
-            block = rest
-    return block
+    def __init__(self, limit: int) -> None:
+        """Give them no more than so many segments in the site."""
+        self.limit = limit if peer is not None else 0
+        self.known: list[list[Operation] | None] = [None, None]
+        self.slow = [False, False]
 
+    def actions(
+        self, case: Case, record: TileRecord
+    ) -> list[tuple[int, Callable[[], float], Callable[[], float] | None]]:
+        """Give for each block the number of copies and the runs of Boost.Polygon and of CGAL."""
+        size = len(case.site.segments)
+        found: list[tuple[int, Callable[[], float], Callable[[], float] | None]] = []
+        for number, find in enumerate((peer.smallest_block, peer.block_of_cells) if self.limit else ()):
+            last = self.known[number]
+            if size > self.limit or size * (len(last) + 1 if last is not None else 1) > MOST_SEGMENTS:
+                continue
+            copies = self.known[number] = find(case, record, last)
+            nodes = peer.block_nodes(case.site, case.lattice, copies)
+            given = peer.block_segments(case.site, nodes)
+            boost = partial(lambda given: peer.run_peer(given, size)[0], given)
+            other = (
+                None if self.slow[number] or not has_cgal() else partial(self._run_cgal, number, case, record, nodes)
+            )
+            found.append((len(nodes), boost, other))
+        return found
 
-def block_of_cells(case: Case, record: TileRecord, known: Sequence[Operation] | None) -> list[Operation]:
-    """Find the smallest square of whole cells with which the peer gives the same tile; all its copies but the site."""
-    area = record.outline.area
-    if known is not None and len(case.site.segments) > SEARCHED and block_error(case, known, area) <= AGREEMENT:
-        return list(known)
-    for reach in range(1, 5):
-        steps = range(-reach, reach + 1)
-        block = [
-            copy
-            for operation in case.group.operations
-            for i in steps
-            for j in steps
-            if not (copy := operation.translated(i, j)).is_identity
-        ]
-        if block_error(case, block, area) <= AGREEMENT:
-            return block
-    raise AssertionError("no block of cells gives the tile")
+    def _run_cgal(self, number: int, case: Case, record: TileRecord, nodes: Complexes) -> float:
+        """Run CGAL, check the area, and see whether it is too slow for a larger problem."""
+        seconds, reading = cgal.run_cgal(case.site, nodes)
+        area = peer.tile_area(reading, peer.block_segments(case.site, nodes))
+        assert abs(area / record.outline.area - 1) <= peer.AGREEMENT
+        self.slow[number] |= seconds > LONGEST_RUN
+        return seconds
 
 
-# The tables
+def has_cgal() -> bool:
+    """Whether CGAL can be used here."""
+    try:
+        return cgal is not None and bool(cgal.version())
+    except cgal.MissingError:
+        return False
 
 
-def compare(group: str, sizes: Sequence[int], peer_limit: int, most: int) -> dict[int, float]:
-    """Print the rows of one group; give the engine's best time for each size."""
-    best: dict[int, float] = {}
-    known: list[list[Operation] | None] = [None, None]
+def compare(group: str, sizes: Sequence[int], peer_limit: int, most: int) -> list[Timing]:
+    """Time the engine and its peers for one group."""
+    peers, timings = Peers(peer_limit), []
     for size in sizes:
         case = case_of(group, size)
-        record = case.solve()
-        blocks: list[list[Operation]] = []
-        for number, find in enumerate((smallest_block, block_of_cells)):
-            block = known[number]
-            copies = len(block) + 1 if block is not None else 0
-            if peer is not None and size * max(1, copies) <= MOST_SEGMENTS and size <= peer_limit:
-                known[number] = find(case, record, block)
-                blocks.append(known[number])
-        inputs = [peer.block_segments(case.site, case.lattice, block) for block in blocks]
+        offered = peers.actions(case, case.solve())
         actions: list[Callable[[], float]] = [lambda case=case: stopwatch(case.solve)]
-        actions += [lambda given=given, size=size: peer.run_peer(given, size)[0] for given in inputs]
+        actions += [run for _, *runs in offered for run in runs if run is not None]
         times = [[action()] for action in actions]
         gc.collect()
         gc.disable()
@@ -186,32 +182,57 @@ def compare(group: str, sizes: Sequence[int], peer_limit: int, most: int) -> dic
             for action, taken in zip(actions, times, strict=True):
                 taken.append(action())
         gc.enable()
-        best[size] = min(times[0])
-        print(_row(size, group, times, [len(block) + 1 for block in blocks]), flush=True)
-    return best
+        engine, *others = times
+        rest = iter(others)
+        blocks = [Block(copies, next(rest), next(rest) if other is not None else []) for copies, _, other in offered]
+        timings.append(Timing(group, size, engine, blocks))
+        print(f"{group}, {size} segments: {min(engine) * 1e3:.2f} ms", file=sys.stderr)
+    return timings
 
 
-def _row(size: int, group: str, times: Sequence[Sequence[float]], copies: Sequence[int]) -> str:
-    """Write a row: ratios, group, segments, runs, the engine's times, then for each block copies and times."""
-    engine, *others = times
-    ratios = [f"{min(other) / min(engine):.1f}" for other in others]
-    cells = [*ratios, *["-"] * (2 - len(ratios)), group, str(size), str(len(engine)), *_two(engine)]
-    for number in range(2):
-        cells += [str(copies[number]), *_two(others[number])] if number < len(others) else ["-", "-", "-"]
-    return "| " + " | ".join(cells) + " |"
+# The tables
+
+
+def print_ratios(timings: Sequence[Timing]) -> None:
+    """Print who is faster, and by how much."""
+    heads = ["fastest, fewest copies", "Boost.Polygon", "CGAL", "fastest, whole cells", "Boost.Polygon", "CGAL"]
+    title = "Ratio = the peer's fastest run / the engine's fastest run; below 1 the engine loses:"
+    table(title, *heads, "group", "segments")
+    for timing in timings:
+        cells = []
+        for number in range(2):
+            block = timing.blocks[number] if number < len(timing.blocks) else Block(0, [], [])
+            runs = {"engine": timing.engine, "Boost.Polygon": block.boost, "CGAL": block.cgal}
+            taken = {who: min(times) for who, times in runs.items() if times}
+            ratios = [
+                f"{taken[who] / taken['engine']:.2f}" if who in taken else "-" for who in ("Boost.Polygon", "CGAL")
+            ]
+            cells += [min(taken, key=taken.__getitem__) if len(taken) > 1 else "-", *ratios]
+        print(f"| {' | '.join([*cells, timing.group, str(timing.segments)])} |")
+
+
+def print_times(timings: Sequence[Timing]) -> None:
+    """Print the times."""
+    heads = ["group", "segments", "runs", "engine min", "median"]
+    for name in ("fewest copies", "whole cells: copies"):
+        heads += [name, "Boost.Polygon min", "median", "CGAL min", "median"]
+    table("The times (milliseconds):", *heads)
+    for timing in timings:
+        cells = [timing.group, str(timing.segments), str(len(timing.engine)), *_two(timing.engine)]
+        for block in timing.blocks:
+            cells += [str(block.copies), *_two(block.boost), *_two(block.cgal)]
+        cells += ["-"] * (len(heads) - len(cells))
+        print(f"| {' | '.join(cells)} |")
 
 
 def _two(times: Sequence[float]) -> list[str]:
-    """Write the least and the median of times in milliseconds."""
+    """Write the least and the median of times in milliseconds; dashes where there are none."""
+    if not times:
+        return ["-", "-"]
     return [f"{min(times) * 1e3:.2f}", f"{statistics.median(times) * 1e3:.2f}"]
 
 
-def table(title: str, *heads: str) -> None:
-    """Print the head of a table."""
-    print(f"\n{title}\n\n| {' | '.join(heads)} |\n|{'---:|' * len(heads)}")
-
-
-def print_growth(best: dict[str, dict[int, float]]) -> None:
+def print_growth(timings: Sequence[Timing]) -> None:
     """Print the exponent of the growth from 100 segments on: the slope of a line through the logarithms."""
     table(
         "Growth of the engine's time with the number of segments, fitted to the fastest runs:",
@@ -220,10 +241,11 @@ def print_growth(best: dict[str, dict[int, float]]) -> None:
         "to",
         "exponent",
     )
-    for group, times in best.items():
-        sizes = [size for size in times if size >= 100]
+    for group in CURVES:
+        best = {timing.segments: min(timing.engine) for timing in timings if timing.group == group}
+        sizes = [size for size in best if size >= 100]
         if len(sizes) > 1:
-            slope = np.polyfit(np.log(sizes), np.log([times[size] for size in sizes]), 1)[0]
+            slope = np.polyfit(np.log(sizes), np.log([best[size] for size in sizes]), 1)[0]
             print(f"| {group} | {min(sizes)} | {max(sizes)} | {slope:.3f} |")
 
 
@@ -316,55 +338,34 @@ def peak_memory() -> float:
     return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0
 
 
-def machine() -> str:
-    """Describe the machine and the versions."""
-    model = platform.processor() or platform.machine()
-    cpuinfo = Path("/proc/cpuinfo")
-    if cpuinfo.exists():
-        lines = cpuinfo.read_text(encoding="utf-8").splitlines()
-        model = next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), model)
-    today = dt.datetime.now(tz=dt.UTC).date().isoformat()
-    return (
-        f"{today}, {model}, {os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}; Python {platform.python_version()}, "
-        f"numpy {np.__version__}, voronoi_tiles {__version__}"
-    )
-
-
 def main() -> None:
     """Print all tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--largest", type=int, default=SIZES[-1], help="the largest number of segments")
     parser.add_argument("--peer-limit", type=int, default=SIZES[-1], help="no peer beyond so many segments")
     parser.add_argument("--repeat", type=int, default=30, help="repetitions at most")
+    parser.add_argument("--write", action="store_true", help="put the tables into bench/README.md")
     parser.add_argument("--memory-of", nargs=2, metavar=("GROUP", "SIZE"), help=argparse.SUPPRESS)
     options = parser.parse_args()
     if options.memory_of:
         report_memory(options.memory_of[0], int(options.memory_of[1]))
         return
-    print(machine())
+    with published("engine", write=options.write):
+        print_all(options.largest, options.peer_limit, options.repeat)
+
+
+def print_all(largest: int, peer_limit: int, most: int) -> None:
+    """Print the tables."""
+    print(f"{machine()}; {cgal.described() if cgal is not None else 'without CGAL'}")
     if peer is None:
-        print("\nThe peer is missing: install pyvoronoi (the extra `test`) to compare with Boost.Polygon.")
-    table(
-        "Engine and Boost.Polygon (milliseconds); ratio = Boost.Polygon's fastest run / the engine's fastest run:",
-        "ratio, fewest copies",
-        "ratio, whole cells",
-        "group",
-        "segments",
-        "runs",
-        "engine min",
-        "median",
-        "fewest copies",
-        "min",
-        "median",
-        "whole cells: copies",
-        "min",
-        "median",
-    )
-    sizes = [size for size in SIZES if size <= options.largest]
-    best = {group: compare(group, sizes, options.peer_limit, options.repeat) for group in CURVES}
-    print_growth(best)
+        print("\nThe peers are missing: install pyvoronoi (the extra `test`) to compare with Boost.Polygon and CGAL.")
+    sizes = [size for size in SIZES if size <= largest]
+    timings = [timing for group in CURVES for timing in compare(group, sizes, peer_limit, most)]
+    print_ratios(timings)
+    print_times(timings)
+    print_growth(timings)
     print_memory(sizes[-1])
-    print_stages("p4", options.repeat)
+    print_stages("p4", most)
     print_processes(10)
 
 

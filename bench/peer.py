@@ -1,8 +1,8 @@
 """The yardstick: Boost.Polygon's Voronoi diagram of segments, through pyvoronoi, on a block of copies.
 
 Boost.Polygon knows no symmetry: it needs the base site with enough copies about it that the cells of the base site's
-segments and end points are those of the whole plane. Its input is rounded to whole numbers, here a ten-millionth of a
-unit apart.
+segments and end points are those of the whole plane; which they are is found here, for all peers. Its input is rounded
+to whole numbers, here a ten-millionth of a unit apart.
 """
 
 from __future__ import annotations
@@ -10,17 +10,27 @@ from __future__ import annotations
 import time
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pyvoronoi
+from numpy.typing import NDArray
 
 from voronoi_tiles.site import Site
+from voronoi_tiles.vector.tessellation import TileRecord
 from voronoi_tiles.wallpaper import Lattice, Operation
 
+if TYPE_CHECKING:
+    from engine import Case
+
 SCALE = 1e7
+AGREEMENT = 1e-6
+"""How well the areas of a tile have to agree, relative to it."""
+# Larger diagrams are not built again and again to find the smallest block: that of a smaller one is tried first.
+SEARCHED = 300
 
 Segment = list[list[float]]
+Complexes = NDArray[np.complex128]
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,23 +45,27 @@ class Reading:
     owner: list[tuple[int, int]]
 
 
-def block_segments(site: Site, lattice: Lattice, copies: Iterable[Operation]) -> list[Segment]:
-    """Give the segments of the site and then of its copies, as pyvoronoi takes them."""
-    segments = []
-    for isometry in [None, *(lattice.isometry(operation) for operation in copies)]:
-        nodes = site.nodes if isometry is None else isometry(site.nodes)
-        ends = nodes[site.segments]
-        segments += np.stack((ends.real, ends.imag), axis=-1).tolist()
+def block_nodes(site: Site, lattice: Lattice, copies: Iterable[Operation]) -> Complexes:
+    """Give the nodes of the site and then of its copies, complex128 (copies + 1, m)."""
+    return np.array([site.nodes, *(lattice.isometry(operation)(site.nodes) for operation in copies)])
+
+
+def block_segments(site: Site, nodes: Complexes) -> list[Segment]:
+    """Give the segments of a block of copies, which has these nodes, as pyvoronoi takes them."""
+    ends = nodes[:, site.segments].reshape(-1, 2)
+    segments: list[Segment] = np.stack((ends.real, ends.imag), axis=-1).tolist()
     return segments
 
 
-def run_peer(segments: Sequence[Segment], base: int) -> tuple[float, Reading]:
+def run_peer(segments: Sequence[Segment], base: int, scale: float = SCALE) -> tuple[float, Reading]:
     """Build the diagram and read it back; `base` is the number of the base site's segments, which come first.
+
+    Coordinates are rounded to multiples of 1 / `scale`.
 
     Returns the seconds that the building and the reading took, and what was read. Handing over the segments is not
     timed. Read are all cells, for there is no other way to find the base site's, and of these the edges and vertices.
     """
-    diagram = pyvoronoi.Pyvoronoi(SCALE)
+    diagram = pyvoronoi.Pyvoronoi(scale)
     for segment in segments:
         diagram.AddSegment(segment)
     begin = time.perf_counter()
@@ -109,6 +123,67 @@ def _is_segment(category: int) -> bool:
     return category in {3, 4}
 
 
-def _point(ends: np.ndarray[Any, np.dtype[np.complex128]], segment: int, category: int) -> complex:
+def _point(ends: Complexes, segment: int, category: int) -> complex:
     """Give the end of a segment that a cell belongs to."""
     return complex(ends[segment, category - 1])
+
+
+# Blocks of copies
+
+
+def neighbours(record: TileRecord) -> list[Operation]:
+    """List the copies beyond the edges of a tile, those with the longest common edges first."""
+    outline = record.outline
+    lengths = np.bincount(outline.neighbour, np.abs(outline.end - outline.start), len(outline.neighbours))
+    return [outline.neighbours[k].operation for k in np.argsort(-lengths)]
+
+
+def block_error(case: Case, copies: Sequence[Operation], area: float) -> float:
+    """Give the relative error of the tile's area that the peer finds with these copies."""
+    segments = block_segments(case.site, block_nodes(case.site, case.lattice, copies))
+    _, reading = run_peer(segments, len(case.site.segments))
+    error = abs(tile_area(reading, segments) - area) / area
+    return error if error == error else float("inf")  # noqa: PLR0124 NaN: an unbounded cell
+
+
+def smallest_block(case: Case, record: TileRecord, known: Sequence[Operation] | None) -> list[Operation]:
+    """Find copies with which the peer gives the same tile, and of which none can be left out.
+
+    The copies beyond the tile's edges come first, with rings of further ones until the area is right; then those that
+    do not matter leave, the least important first.
+    """
+    area = record.outline.area
+    if known is not None and len(case.site.segments) > SEARCHED and block_error(case, known, area) <= AGREEMENT:
+        return list(known)
+    first = neighbours(record)
+    block = list(first)
+    for _ in range(3):
+        if block_error(case, block, area) <= AGREEMENT:
+            break
+        block += [q for p in list(block) for n in first if not (q := p @ n).is_identity and q not in block]
+    else:
+        raise AssertionError(f"the peer's area is off by {block_error(case, block, area):.2g}")
+    for copy in reversed(list(block)):
+        rest = [other for other in block if other != copy]
+        if block_error(case, rest, area) <= AGREEMENT:
+            block = rest
+    return block
+
+
+def block_of_cells(case: Case, record: TileRecord, known: Sequence[Operation] | None) -> list[Operation]:
+    """Find the smallest square of whole cells with which the peer gives the same tile; all its copies but the site."""
+    area = record.outline.area
+    if known is not None and len(case.site.segments) > SEARCHED and block_error(case, known, area) <= AGREEMENT:
+        return list(known)
+    for reach in range(1, 5):
+        steps = range(-reach, reach + 1)
+        block = [
+            copy
+            for operation in case.group.operations
+            for i in steps
+            for j in steps
+            if not (copy := operation.translated(i, j)).is_identity
+        ]
+        if block_error(case, block, area) <= AGREEMENT:
+            return block
+    raise AssertionError("no block of cells gives the tile")

@@ -1,19 +1,17 @@
-"""How fast the raster stage and the cross-check are. Run it with `make bench-raster`, or on a machine with a GPU.
+"""How fast the raster stage and the cross-check are. Run it with `make bench`, or on a machine with a GPU.
 
 The picture is one cell, 2048 x 2048 and 4096 x 4096 samples, of a curve in p4 (that of engine.py) cut into so many
 segments. Each row is the fastest of some runs, so that a busy machine matters less; every image is compared with the
 CPU's: the number of samples with another owner is printed, of which none may be unexplained.
 
     python bench/raster.py                    everything
+    python bench/raster.py --write            the same, into bench/README.md
     python bench/raster.py --only frame       the frame alone, its lists on the device: draw and finish
 """
 
 from __future__ import annotations
 
 import argparse
-import datetime as dt
-import os
-import platform
 import resource
 import sys
 import time
@@ -21,8 +19,9 @@ from collections.abc import Callable
 
 import numpy as np
 from engine import case_of
+from report import machine, published
 
-from voronoi_tiles import Design, __version__
+from voronoi_tiles import Design
 from voronoi_tiles.crosscheck import crosscheck
 from voronoi_tiles.raster.candidates import find_candidates
 from voronoi_tiles.raster.copies import Pattern, gather
@@ -162,25 +161,29 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", choices=("frame", "image", "hoff", "check"), help="one table alone")
     parser.add_argument("--device", type=int, help="the number of OpenGL's device")
+    parser.add_argument("--write", action="store_true", help="put the tables into bench/README.md")
     options = parser.parse_args()
+    if options.write and options.only:
+        parser.error("--write needs all tables: leave --only out")
+    with published("raster", write=options.write):
+        tables(options.only, options.device)
+
+
+def tables(only: str | None, number: int | None) -> None:
+    """Print one table, or all, measured on the device of a number."""
     try:
-        device = Device(options.device)
+        device = Device(number)
     except GlError as error:
         print(f"no OpenGL: {error}")
         device = None
-    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else float("nan")
-    print(
-        f"{dt.datetime.now(tz=dt.UTC).date()}, {platform.machine()}, {os.cpu_count()} cores, load {load:.1f}; "
-        f"Python {platform.python_version()}, numpy {np.__version__}, voronoi_tiles {__version__}; "
-        f"OpenGL: {device.name if device else 'none'}"
-    )
-    if options.only in {None, "frame"} and device is not None:
+    print(f"{machine()}; OpenGL: {device.name if device else 'none'}")
+    if only in {None, "frame"} and device is not None:
         frames(device, SIZES)
-    if options.only in {None, "image"}:
+    if only in {None, "image"}:
         images(device, SIZES[:3], "exact")
-    if options.only in {None, "hoff"}:
+    if only in {None, "hoff"}:
         images(device, HOFF, "hoff")
-    if options.only in {None, "check"}:
+    if only in {None, "check"}:
         checks(device)
     peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
     print(f"\npeak memory {peak / (1e6 if sys.platform == 'darwin' else 1e3):.0f} MB")

@@ -6,23 +6,24 @@ smaller. "peer" is what the usual library takes to write the same file: svgwrite
 with one add_lwpolyline for every path, timed alone, from arrays that are there already.
 
     python bench/sheets.py                      100, 1,000 and 10,000 tiles
+    python bench/sheets.py --write              the same, into bench/README.md
     python bench/sheets.py --tiles 300 3000
 """
 
 from __future__ import annotations
 
 import argparse
-import datetime as dt
 import io
 import os
-import platform
 import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
-from voronoi_tiles import Design, Job, __version__
+from report import machine, published
+
+from voronoi_tiles import Design, Job
 from voronoi_tiles.fabrication import Product
 
 SHEET = (600.0, 300.0)
@@ -118,24 +119,27 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--tiles", type=int, nargs="+", default=[100, 1000, 10_000])
     parser.add_argument("--runs", type=int, default=3)
+    parser.add_argument("--write", action="store_true", help="put the table into bench/README.md")
     options = parser.parse_args()
-    print(
-        f"{dt.datetime.now(tz=dt.UTC):%Y-%m-%d}, {platform.processor() or platform.machine()}, "
-        f"{os.cpu_count()} cores, load {os.getloadavg()[0]:.1f}; Python {platform.python_version()}, "
-        f"voronoi_tiles {__version__}\n"
-    )
+    with published("sheets", write=options.write):
+        tables(options.tiles, options.runs)
+
+
+def tables(sizes: list[int], runs: int) -> None:
+    """Print the table for sheets of so many tiles, each row the fastest of some runs."""
+    print(f"{machine()}\n")
     print("| file | edges | tiles | seconds | MB | file, MB | peer, seconds |")
     print("|---|---|---:|---:|---:|---:|---:|")
     with tempfile.TemporaryDirectory() as folder:
-        seconds, memory = fastest(["--version"], options.runs)
+        seconds, memory = fastest(["--version"], runs)
         rows = [("(the command alone)", "", "", f"{seconds:.2f}", f"{memory:.0f}", "")]
-        designs = {tiles: Path(folder, f"c{tiles}.toml") for tiles in options.tiles}
+        designs = {tiles: Path(folder, f"c{tiles}.toml") for tiles in sizes}
         for tiles, design in designs.items():
             design.write_text(design_text(tiles))
             for form, edges, arguments in JOBS:
                 target = Path(folder, f"sheet.{form}")
                 command = ["export", str(design), "-o", str(target), "--sheet", "600x300mm", *arguments]
-                seconds, memory = fastest(command, options.runs)
+                seconds, memory = fastest(command, runs)
                 size = target.stat().st_size / 1e6
                 rows.append((form, edges, f"{tiles:,}", f"{seconds:.2f}", f"{memory:.0f}", f"{size:.1f}"))
                 if form in {"svg", "dxf"} and edges == "once":
