@@ -1,0 +1,140 @@
+"""Make docs/paper.md: the paper's figures with our own sites, and its sentences about the groups, measured."""
+
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from string import Template
+
+import figures
+from census import POINTS, Census, censuses
+from claims import CLAIMS, groups_of, table
+from random_sites import TOLERANCE
+from running import ROOT, Command, command_block, image_table, run_all
+
+from voronoi_tiles import Design
+from voronoi_tiles.wallpaper import GROUPS
+
+SITES = 1000
+"""Random sites per group; a count."""
+
+PAGE = ROOT / "docs" / "paper.md"
+
+PICTURES = "docs/paper"
+"""Where the pictures are, from the repository's root."""
+
+PGG = {
+    "pgg-grid": "A point in pgg that is chosen so that the edges are straight lines. Glide lines are dashed; there"
+    " are no mirrors.",
+    "fig05-pgg": "A line in pgg as it falls: no straight line remains.",
+}
+"""Pictures about pgg: their designs and captions."""
+
+ALWAYS = {
+    "pm-on-mirrors": "pm without a straight line: every mirror (red) carries a site that is its own image.",
+    "p4m-scattered": "p4m with curves: the two strokes of one site lie in different chambers.",
+    "p4m-two-sites": "p4m with curves: two sites share every chamber.",
+}
+"""Pictures of what *always* leaves out: their designs and captions."""
+
+
+def picture(name: str) -> Command:
+    """Give the command for the picture of a design that a sentence is tried at."""
+    design = name if name.startswith("fig") else f"claim-{name}"
+    options = ("--size", "440", "--overlay", "outline", "--overlay", "symmetry", "--renderer", "cpu")
+    return Command(
+        ("voronoi-tiles", "render"),
+        f"examples/paper/{design}.toml",
+        f"{PICTURES}/claim-{name}.png",
+        options,
+    )
+
+
+def commands() -> list[Command]:
+    """Give the commands of all pictures."""
+    return [*figures.commands(), *(picture(name) for name in PGG | ALWAYS)]
+
+
+def pictures(captions: dict[str, str]) -> str:
+    """Give pictures beside each other, with the commands that made them."""
+    rows = [(name, f"paper/claim-{name}.png", caption) for name, caption in captions.items()]
+    return image_table(rows, len(rows)) + "\n" + command_block(picture(name) for name in captions)
+
+
+def agrees(design: Path) -> bool:
+    """Whether the image and the exact outlines of a design agree, by the cross-check."""
+    return Design.load(design).tessellate().check(renderer="cpu").passed
+
+
+def sentences(found: dict[str, Census]) -> str:
+    """Give the paper's sentences with their verdicts, as a Markdown table."""
+    lines = ["| | the sentence, in substance | verdict | measured |", "|---|---|---|---|"]
+    for claim in CLAIMS:
+        judged = {group: claim.judge(found[group]) for group in claim.groups}
+        wrong = [group for group, verdict in judged.items() if not verdict.holds]
+        verdict = f"**wrong for {', '.join(wrong)}**" if wrong else "holds"
+        if claim.condition and len(wrong) < len(judged):
+            verdict += f"{'; else holds' if wrong else ''} if {claim.condition}"
+        groups: dict[str, list[str]] = {}
+        for group, each in judged.items():
+            groups.setdefault(each.because, []).append(group)
+        measured = "<br>".join(f"{', '.join(names)}: {because}" for because, names in groups.items())
+        lines.append(f"| {claim.key} | {claim.sentence} | {verdict} | {measured} |")
+    return "\n".join(lines)
+
+
+def page(rows: Sequence[Census], agreed: Sequence[bool]) -> str:
+    """Write the page from the measurements of the groups and the cross-checks of the designs."""
+    found = groups_of(rows)
+    sites = len(rows[0].tiles)
+    tiles = [tile for row in rows for tile in row.tiles]
+    scattered = [tile for row in rows for tile in row.scattered]
+    having = sum(tile.endless > 0 for tile in found["pgg"].tiles)
+    template = (Path(__file__).parent / "paper-template.md").read_text(encoding="utf-8")
+    text = Template(template).substitute(
+        designs=len(agreed),
+        agreed="all" if all(agreed) else f"only {sum(agreed)}",
+        sites=f"{sites:,}",
+        total=f"{len(tiles):,}",
+        points=POINTS,
+        tolerance=TOLERANCE,
+        pgg_endless=f"{having:,}" if having else "none",
+        pgg_without=f"{sites - having:,}",
+        endless_off_mirrors=f"{sum(tile.endless_off_mirrors > 0 for tile in tiles):,}",
+        strangers=sum(row.strangers for row in rows),
+        refused=f"{sum(row.refused for row in rows):,}",
+        unproved=sum(row.unproved for row in rows) or "none",
+        beyond=f"{max(tile.beyond for tile in tiles):.1e}",
+        area_error=f"{max(tile.area_error for tile in tiles):.1e}",
+        scattered=f"{len(scattered):,}",
+        scattered_curved=f"{sum(tile.curves > 0 for tile in scattered):,}",
+        census_command=f"python docs/generate/census.py pgg --sites {sites}",
+        figures="\n".join(map(figures.markdown, figures.FAMILIES)).strip(),
+        claims=sentences(found),
+        table=table(rows),
+        pgg_pictures=pictures(PGG).strip(),
+        always_pictures=pictures(ALWAYS).strip(),
+    )
+    return "<!-- Written by docs/generate/paper.py (make paper). -->\n\n" + text
+
+
+def main() -> None:
+    """Make the pictures, measure, and write the page."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--sites", type=int, default=SITES, help=f"random sites per group (default: {SITES})")
+    options = parser.parse_args()
+    began = time.monotonic()
+    run_all(commands())
+    print(f"pictures: {time.monotonic() - began:.0f} s", flush=True)
+    with multiprocessing.Pool() as pool:
+        agreed = pool.map(agrees, sorted((ROOT / "examples" / "paper").glob("*.toml")))
+    rows = list(censuses(GROUPS, options.sites))
+    PAGE.write_text(page(rows, agreed), encoding="utf-8")
+    print(f"{PAGE.relative_to(ROOT)}: {time.monotonic() - began:.0f} s in all")
+
+
+if __name__ == "__main__":
+    main()
