@@ -1,13 +1,13 @@
 # Everything sets itself up: python3, python3-venv and make are all it needs.
 #   make demo    export and draw the examples        make test    run the tests
 #   make lint    lint and format check               make types   mypy --strict
-#   make bench   speed, beside Boost.Polygon         make fuzz N=10000
+#   make bench   speed and accuracy, beside peers    make fuzz N=10000
 #   make format  rewrite the sources' layout         make clean   remove all that was made here
 #   make docs    the documentation, in docs/_build   make paper   docs/paper.md: the paper, reproduced and measured
-#   make gallery the pictures of docs/gallery.md
+#   make gallery the pictures of docs/gallery.md     make diagrams  the drawings of the other pages
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format types bench fuzz docs paper gallery clean
+.PHONY: help demo test lint format types bench fuzz docs paper gallery diagrams clean
 .DELETE_ON_ERROR:
 
 PYTHON ?= python3
@@ -34,8 +34,9 @@ $(INSTALLED): pyproject.toml
 	$(VENV)/bin/python $(PIP) -e .
 	touch $@
 
+# The documentation's scripts are tested as well.
 $(INSTALLED_DEV): $(INSTALLED)
-	$(VENV)/bin/python $(PIP) -e '.[test,dev]'
+	$(VENV)/bin/python $(PIP) -e '.[test,dev,docs]'
 	touch $@
 
 $(INSTALLED_DOCS): $(INSTALLED)
@@ -81,9 +82,10 @@ types: $(INSTALLED_TYPES)
 	cd $(TYPES_VENV) && bin/mypy --config-file $(abspath pyproject.toml) --cache-dir cache -p voronoi_tiles
 
 bench: $(INSTALLED_DEV)
-	$(VENV)/bin/python bench/engine.py
-	$(VENV)/bin/python bench/raster.py
-	$(VENV)/bin/python bench/sheets.py
+	$(VENV)/bin/python bench/engine.py --write
+	$(VENV)/bin/python bench/accuracy.py --write
+	$(VENV)/bin/python bench/raster.py --write
+	$(VENV)/bin/python bench/sheets.py --write
 
 fuzz: $(INSTALLED_DEV)
 	$(VENV)/bin/python tests/fuzz.py $(N)
@@ -99,6 +101,9 @@ paper: $(INSTALLED_DOCS)
 
 gallery: $(INSTALLED_DOCS)
 	$(VENV)/bin/python docs/generate/gallery.py
+
+diagrams: $(INSTALLED_DOCS)
+	$(VENV)/bin/python docs/generate/diagrams.py
 
 clean:
 	rm -rf $(VENV) $(TYPES_VENV) $(DEMO) docs/_build build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
