@@ -9,11 +9,16 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 from voronoi_tiles.raster import gl
 from voronoi_tiles.vector.arcs import Arc, LineArc, Neighbour, ParabolaArc
 from voronoi_tiles.vector.outline import Outline
 from voronoi_tiles.wallpaper import Operation
+
+# How long an example takes says how busy the machine is; timings live in bench/.
+settings.register_profile("untimed", deadline=None)
+settings.load_profile("untimed")
 
 RIGHT = Neighbour("bird", Operation.parse("x+1,y"))
 ABOVE = Neighbour("bird", Operation.parse("-x,-y+1"))
