@@ -394,6 +394,16 @@ def near(chance: Chance, on: Canvas) -> Sites:
     return [[segment(first, along)]]
 
 
+def scattered(chance: Chance, on: Canvas) -> Sites:
+    """Strokes and a point beside their image under an operation: tiles with islands that touch them, or holes."""
+    lattice, operation = on.lattice, chance.pick(GROUPS[on.group].operations)
+    reach = 0.4 * on.inradius()
+    first = on.spot(chance)
+    strokes = [segment(first, first + reach * cmath.rect(chance.real(0.3, 2.0), chance.real(0.0, 6.2)))]
+    away = reach * cmath.rect(chance.real(0.01, 1.0), chance.real(0.0, 6.2))
+    return [[*strokes, {"point": xy(lattice.isometry(operation)(first + away))}]]
+
+
 def parallel(chance: Chance, on: Canvas) -> Sites:
     """Segments that are nearly parallel or nearly in line."""
     p, q = _apart([on.spot(chance, 0.8), on.spot(chance, 0.8)], 0.1 * on.inradius())
@@ -485,6 +495,7 @@ KINDS: dict[str, tuple[Callable[[Chance, Canvas], Sites], int]] = {
     "special": (special, 10),
     "nearly special": (nearly_special, 6),
     "near": (near, 8),
+    "scattered": (scattered, 6),
     "parallel": (parallel, 8),
     "points": (points, 8),
     "several": (several, 8),

@@ -279,6 +279,18 @@ def test_a_failed_proof_is_an_error_with_the_report(monkeypatch: pytest.MonkeyPa
     assert caught.value.exit_code == 1
 
 
+def test_a_lost_island_is_a_stroke_that_strayed() -> None:
+    """With one of two islands left out the figure says so, whatever the rings that are left have of points."""
+    strokes = [{"segment": [[0.5, 10], [7, 19]]}, {"point": [-2.5, 14]}]
+    strokes += [{"segment": [[0.5, 40], [7, 49]]}, {"point": [-2.5, 44]}]
+    design = {"schema": 1, "group": "pm", "cell": {"a": 60, "b": 80}, "site": [{"strokes": strokes}]}
+    read = Design.from_dict(design)
+    (record,) = tessellate(read.sites, read.group, read.lattice)
+    assert len(record.local().outline.ring_offsets) == 4
+    assert prove(read.group, read.lattice, [record]).passed
+    assert "strayed strokes" in _failed(_report(partial(_rings, chosen=[0, 1]), design))
+
+
 def test_a_far_site_is_proved_where_it_was_computed() -> None:
     """Thousands of cells away the figures are as small as near the origin."""
     far = {**DESIGN, "site": [{"strokes": [{"circle": [3e5 + 15, 15 - 9e5], "radius": 9}]}]}

@@ -523,6 +523,11 @@ FOUND = {
     "a segment beside a centre": one(
         "cmm", {"segment": [[12.754479401359138, 25.422749573159372], [17.245520611875396, 4.577250485362822]]}, b=60.0
     ),
+    "a point across a mirror, beside the image of a stroke": one(
+        "pm", {"segment": [[0.5, 10], [7, 19]]}, {"point": [-2.5, 14]}, b=60.0
+    ),
+    "the same where mirrors cross": one("p4m", {"segment": [[10, -0.5], [19, -7]]}, {"point": [14, 2.5]}),
+    "the same, on a diagonal": one("p4m", {"segment": [[11.4, 11.3], [10.5, 3.2]]}, {"point": [9, 11]}),
     "six rays": one(
         "pm",
         *(

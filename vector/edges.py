@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from voronoi_tiles.vector.arcs import parabola_controls
 from voronoi_tiles.vector.contour import Bools, Complexes, Ints
 from voronoi_tiles.vector.copies import IDENTITY, Action, Copies, Motion, Placed, compose, inverse, reverses_orientation
 
@@ -51,12 +52,25 @@ class Traced:
         opening = np.flatnonzero(np.append(True, self.ring[1:] != self.ring[:-1]))
         return np.split(np.arange(len(self.ring)), opening[1:])
 
+    def middles(self) -> Complexes:
+        """Return the point of each arc halfway between its ends, by its parameter."""
+        following = np.arange(1, len(self.vertex) + 1)
+        for ring in self.rings():
+            following[ring[-1]] = ring[0]
+        start, end = self.vertex, self.vertex[following]
+        middle = (start + end) / 2
+        bent = np.flatnonzero(self.curved)
+        control = parabola_controls(start[bent], end[bent], self.focus[bent], self.directrix[bent])
+        middle[bent] = (middle[bent] + control) / 2
+        return middle
+
 
 # How near vertices must be to count as one, relative to the cell's size: far above rounding.
 _SAME = 1e-6
 # How far an edge may be from the image of its counterpart, on the same scale. Where copies nearly touch, vertices are
 # known to far fewer digits along their edges; the proof judges what comes of it.
 PAIRING = 1e-3
+_SLANT = np.exp(1j)
 
 Corner = tuple[int, int]
 """Tile and index of the arc that starts there."""
@@ -72,6 +86,7 @@ class Edge:
         target, motion: the copy on the other side.
         start, end: its corners.
         vertex: (k + 1,) the points between and at the ends of its arcs.
+        course: (2k + 1,) the same with a point of each arc between its ends, halfway by its parameter.
         images: all edges of base tiles that it is mapped to, each with the motion and whether that reverses its
             direction; itself under the identity comes first.
     """
@@ -83,6 +98,7 @@ class Edge:
     start: Corner
     end: Corner
     vertex: Complexes
+    course: Complexes
     images: list[tuple[Motion, Edge, bool]]
 
 
@@ -113,8 +129,9 @@ def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pi
     edges = [
         edge
         for tile, boundary in enumerate(traced)
+        for middle in [boundary.middles()]
         for ring, cut in zip(boundary.rings(), cuts[tile], strict=True)
-        for edge in _edges(tile, boundary, ring, cut)
+        for edge in _edges(tile, boundary, middle, ring, cut)
     ]
     faces: defaultdict[tuple[int, int, Motion], list[Edge]] = defaultdict(list)
     for edge in edges:
@@ -125,11 +142,11 @@ def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pi
             if motion == IDENTITY and not flips:
                 edge.images.append((motion, edge, False))
                 continue
-            image = action.apply(motion, edge.vertex)
+            image = action.apply(motion, edge.course)
             candidates = faces.get((tile, target, beyond), [])
             if flips:
                 image = image[::-1]
-            gaps = [_gap(image, other.vertex, limit) for other in candidates]
+            gaps = [_gap(image, other.course, limit) for other in candidates]
             best = int(np.argmin(gaps)) if gaps else -1
             if best < 0 or gaps[best] > limit:
                 raise UnpairedEdgeError(edge)
@@ -140,15 +157,16 @@ def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pi
 def long_edges(boundary: Traced, limit: float) -> Ints:
     """Return the arcs of the edges that extend farther than a limit; all, where no other would be left of a ring."""
     kept = []
+    middle = boundary.middles()
     for ring, cut in zip(boundary.rings(), _cuts(boundary), strict=True):
-        edges = list(_edges(0, boundary, ring, cut or [0]))
+        edges = list(_edges(0, boundary, middle, ring, cut or [0]))
         long = [e.arcs for e in edges if len(cut) < 2 or np.abs(e.vertex - e.vertex[0]).max() > limit]
         kept.append(np.sort(np.concatenate(long)) if long else ring)
     return np.concatenate(kept)
 
 
 def _gap(one: Complexes, other: Complexes, limit: float) -> float:
-    """Return how far two lists of vertices are from being the same edge.
+    """Return how far the courses of two edges are from being the same.
 
     Where they do not agree one by one, points at equal shares of their lengths are compared: rounding may split a
     vertex, on one side only, into several.
@@ -159,10 +177,10 @@ def _gap(one: Complexes, other: Complexes, limit: float) -> float:
             return gap
     shares = np.linspace(0.0, 1.0, 9)
     places = []
-    for vertex in (one, other):
-        run = np.append(0.0, np.cumsum(np.abs(np.diff(vertex))))
+    for course in (one, other):
+        run = np.append(0.0, np.cumsum(np.abs(np.diff(course))))
         places.append(
-            np.interp(shares * run[-1], run, vertex.real) + 1j * np.interp(shares * run[-1], run, vertex.imag)
+            np.interp(shares * run[-1], run, course.real) + 1j * np.interp(shares * run[-1], run, course.imag)
         )
     return float(np.abs(places[0] - places[1]).max())
 
@@ -239,23 +257,34 @@ def _at(boundary: Traced, point: Complexes, limit: float) -> list[int]:
 
 def _pinches(boundary: Traced, limit: float) -> list[int]:
     """Return the vertices that another one coincides with."""
-    from scipy.spatial import cKDTree
-
-    tree = cKDTree(np.stack((boundary.vertex.real, boundary.vertex.imag), axis=1))
-    one, two = tree.query_pairs(limit, output_type="ndarray").T
+    # Sorted along a direction in which no mirror and no row of copies runs, few vertices are near each other.
+    along = (boundary.vertex * _SLANT).real
+    order = np.argsort(along)
+    vertex, along = boundary.vertex[order], along[order]
+    pairs = [np.zeros((0, 2), np.intp)]
+    for step in range(1, len(order)):
+        near = np.flatnonzero(along[step:] - along[:-step] <= limit)
+        if not len(near):
+            break
+        same = near[np.abs(vertex[near + step] - vertex[near]) <= limit]
+        pairs.append(np.stack((order[same], order[same + step]), axis=1))
+    one, two = np.concatenate(pairs).T
     # Neighbours on the boundary may be as close without touching: a short arc lies between them.
     following = np.concatenate([np.roll(ring, -1) for ring in boundary.rings()])
     apart = (following[one] != two) & (following[two] != one)
     return [int(vertex) for vertex in np.unique(np.concatenate((one[apart], two[apart])))]
 
 
-def _edges(tile: int, boundary: Traced, ring: Ints, cut: list[int]) -> Iterator[Edge]:
+def _edges(tile: int, boundary: Traced, middle: Complexes, ring: Ints, cut: list[int]) -> Iterator[Edge]:
     """Yield the edges of a ring that is cut at these places."""
     turned = np.roll(ring, -cut[0])
     for first, last in zip(cut, [*cut[1:], cut[0] + len(ring)], strict=True):
         arcs = turned[first - cut[0] : last - cut[0]]
         end = int(turned[(last - cut[0]) % len(ring)])
         start = int(arcs[0])
+        vertex = boundary.vertex[np.append(arcs, end)]
+        course = np.empty(2 * len(vertex) - 1, complex)
+        course[::2], course[1::2] = vertex, middle[arcs]
         yield Edge(
             tile=tile,
             arcs=arcs,
@@ -263,6 +292,7 @@ def _edges(tile: int, boundary: Traced, ring: Ints, cut: list[int]) -> Iterator[
             motion=_motion(boundary, start),
             start=(tile, start),
             end=(tile, end),
-            vertex=boundary.vertex[np.append(arcs, end)],
+            vertex=vertex,
+            course=course,
             images=[],
         )

@@ -284,7 +284,8 @@ def _strayed(tile: LocalTile, size: float) -> int:
     if not len(outside):
         return 0
     rings = [np.append(ring, ring[0]) for ring in tile.outline.flatten(accuracy=_UNDECIDED * size / 4)]
-    border = shapely.multilinestrings([np.stack((ring.real, ring.imag), axis=1) for ring in rings])
+    lines = [shapely.linestrings(ring.real, ring.imag) for ring in rings]  # of any number of points each
+    border = shapely.multilinestrings(lines)
     return int((shapely.distance(shapely.points(outside.real, outside.imag), border) > _UNDECIDED * size).sum())
 
 

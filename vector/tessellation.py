@@ -293,7 +293,7 @@ def _pair(
     """Pair the edges; those that rounding has made, where four tiles or more meet, are left out."""
     limit = (_ONE_SIDED if without_short else PROOF_LIMIT) * action.size
     traced = [boundary.take(long_edges(boundary, limit)) for boundary in traced]
-    pinched = False
+    pinched = True
     while True:
         try:
             return traced, pair_edges(action, placed, traced, pinched=pinched)
@@ -304,8 +304,8 @@ def _pair(
             rest = np.delete(np.arange(len(boundary.vertex)), edge.arcs)
             if extent <= _ONE_SIDED * action.size and len(rest):
                 traced = [boundary.take(rest) if t == edge.tile else other for t, other in enumerate(traced)]
-            elif not pinched:
-                pinched = True
+            elif pinched:
+                pinched = False
             elif not without_short:
                 return _pair(action, placed, traced, without_short=True)
             else:
