@@ -38,7 +38,7 @@ DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
 
 NOT_RUN = {
-    "pip install .": "needs the index for the dependencies; test_wheel.py installs the package",
+    "pip install -e .": "needs the index for the dependencies; the tests run in such an environment already",
     "python3 -m venv .venv": "the tests run in an environment already",
     ". .venv/bin/activate": "the tests run in an environment already",
     ".ci/run": "runs these tests",
@@ -438,6 +438,7 @@ def general_tile(group: str, seed: int) -> tuple[vt.Tile, vt.Lattice]:
     """The tile of a random segment in general position, in a cell of 60."""
     dice = random.Random(f"{group} {seed}")  # noqa: S311 - random input, not secrets
     cell = {"a": 60.0} | ({} if vt.GROUPS[group].fixes_b else {"b": dice.uniform(40.0, 80.0)})
+    cell |= {"angle": dice.uniform(60.0, 80.0)} if vt.GROUPS[group].system == "oblique" else {}
     while True:
         ends = [[dice.uniform(0.0, 60.0), dice.uniform(0.0, 60.0)]]
         ends.append([ends[0][0] + dice.uniform(-6.0, 6.0), ends[0][1] + dice.uniform(-6.0, 6.0)])
@@ -465,6 +466,64 @@ def test_mirrors_take_the_length_that_the_page_says(group: str, seed: int) -> No
     lines = symmetry_elements(vt.GROUPS[group]).mirrors
     said = sum(2.0 * abs(p * lattice.a + q * lattice.b) for p, q in (line.direction for line in lines))
     assert measured == pytest.approx(said / vt.GROUPS[group].order, rel=1e-9)
+
+
+def corners_at(tile: vt.Tile, lattice: vt.Lattice, group: str, place: complex) -> int:
+    """How many copies of a tile have a vertex at a place of the cell."""
+    copies = [
+        tile.copy(operation.translated(i, j))
+        for operation in vt.GROUPS[group].operations
+        for i in range(-2, 3)
+        for j in range(-2, 3)
+    ]
+    return sum(bool((abs(copy.start - place) < 1e-9 * abs(lattice.a)).any()) for copy in copies)
+
+
+@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("group", [name for name, group in vt.GROUPS.items() if symmetry_elements(group).centres])
+def test_tiles_meet_at_centres_as_the_page_says(group: str, seed: int) -> None:
+    """As many as the order, twice with mirrors, each with a corner; none at half turns without mirrors."""
+    tile, lattice = general_tile(group, seed)
+    elements = symmetry_elements(vt.GROUPS[group])
+    for centre in elements.centres:
+        place = lattice.cartesian(float(centre.x), float(centre.y))
+        mirrored = any(
+            (line.direction[1] * centre.x - line.direction[0] * centre.y - line.offset) % 1 == 0
+            for line in elements.mirrors
+        )
+        expected = 2 * centre.order if mirrored else centre.order if centre.order > 2 else 0
+        assert corners_at(tile, lattice, group, place) == expected, centre
+
+
+REGULAR = {
+    "p3 point": ("p3", {"a": 60.0}, [{"point": [30, 0]}], 0j, 6),
+    "p4 segment": ("p4", {"a": 60.0}, [{"segment": [[15, 10], [15, 20]]}], 30 + 0j, 4),
+    "p2 rectangle, a corner": ("p2", {"a": 60.0, "b": 60.0, "angle": 90}, [{"segment": [[15, -10], [15, 10]]}], 30j, 4),
+    "p2 rectangle, a side": ("p2", {"a": 60.0, "b": 60.0, "angle": 90}, [{"segment": [[15, -10], [15, 10]]}], 0j, 0),
+}
+"""The regular sites that docs/groups.md names, a centre, and how many tiles have a corner there."""
+
+
+@pytest.mark.parametrize(("group", "cell", "strokes", "place", "corners"), REGULAR.values(), ids=REGULAR.keys())
+def test_regular_sites_have_more_tiles_about_a_centre(
+    group: str, cell: dict[str, float], strokes: list[dict[str, object]], place: complex, corners: int
+) -> None:
+    """What the page names as otherwise is so."""
+    design = vt.Design.from_dict({"schema": 1, "group": group, "cell": cell, "site": [{"strokes": strokes}]})
+    assert corners_at(design.tessellate().tiles[0], design.lattice, group, place) == corners
+
+
+@pytest.mark.parametrize(("strokes", "sides"), [([[10, 10], [10, 90]], 2), ([[10, 10]], 1)])
+def test_a_site_in_two_pieces_has_more_sides_on_a_mirror(strokes: list[list[float]], sides: int) -> None:
+    """In pm a site in one piece has one of length b on either; one of two points has two of half of it."""
+    site = {"strokes": [{"point": place} for place in strokes]}
+    cell = {"a": 60.0, "b": 60.0}
+    outline = (
+        vt.Design.from_dict({"schema": 1, "group": "pm", "cell": cell, "site": [site]}).tessellate().tiles[0].outline
+    )
+    for x in (0.0, 30.0):
+        on = (abs(outline.start.real - x) < 1e-9) & (abs(outline.end.real - x) < 1e-9)
+        assert outline.lengths[on] == pytest.approx([60.0 / sides] * sides)
 
 
 def test_pictures_are_there_small_and_shown() -> None:

@@ -174,9 +174,9 @@ def test_measured_captions() -> None:
     captions = {p.file: figures.caption(p) for family in figures.FAMILIES for p in family.pictures}
     for name, edges in (("p4m", 3), ("pmm", 4), ("p3m1", 3), ("p6m", 3)):
         assert captions[f"fig07-{name}.png"].endswith(f"; {edges} edges, 0.0% curved")
-    assert captions["fig08-line.png"].endswith("; 0 lines, 1 parabola")
-    assert captions["fig08-segment.png"].endswith("; 2 lines, 1 parabola")
-    assert captions["fig08-mirrored.png"].endswith("; 1 line, 0 parabolas")
+    assert captions["fig08-line.png"].endswith("; boundary: 1 parabola")
+    assert captions["fig08-segment.png"].endswith("; boundary: 2 lines, 1 parabola")
+    assert captions["fig08-mirrored.png"].endswith("; boundary: 1 line")
 
 
 @pytest.mark.parametrize("command", list(gallery.commands()), ids=lambda command: Path(command.output).name)

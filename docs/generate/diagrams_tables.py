@@ -12,7 +12,7 @@ from shapely import LineString, Point, Polygon
 from shapely.ops import polygonize, unary_union
 
 from voronoi_tiles import GROUPS, Lattice, WallpaperGroup
-from voronoi_tiles.symmetry import placed, symmetry_elements
+from voronoi_tiles.symmetry import Line, placed, symmetry_elements
 
 PAGE = Path(__file__).parents[1] / "groups.md"
 
@@ -193,7 +193,42 @@ def _symbol(length: float, lattice: Lattice, *, fixes_b: bool) -> str:
     return next(symbol for symbol, value in known.items() if abs(length - value) < 1e-9 * a)
 
 
-TABLES = {"decision": decision_table, "mirrors": mirror_table, "centres": centre_table}
+_TURNS = {6: "sixths", 4: "quarters", 3: "thirds", 2: "half turns"}
+
+
+def element_table() -> str:
+    """Where centres, mirrors and glide lines lie in a cell, as Markdown, in fractional coordinates."""
+    rows = ["| group | centres | mirrors | glide lines |", "|---|---|---|---|"]
+    for name, group in GROUPS.items():
+        elements = symmetry_elements(group)
+        centres = []
+        for order, turns in _TURNS.items():
+            places = [f"({centre.x}, {centre.y})" for centre in elements.centres if centre.order == order]
+            centres += [f"{turns}: {', '.join(places)}"] if places else []
+        cells = ("<br>".join(centres), _equations(elements.mirrors), _equations(elements.glides))
+        rows.append(f"| {name} | " + " | ".join(cells) + " |")
+    return "\n".join(rows) + "\n"
+
+
+def _equations(lines: tuple[Line, ...]) -> str:
+    """Equations of lines in fractional coordinates, those of one direction together."""
+    found: dict[str, set[Fraction]] = {}
+    for line in lines:
+        p, q = line.direction
+        # Of the two signs that the equation q x - p y = offset can have, the one where x, or else y, counts up.
+        sign = -1 if (q, -p) < (0, 0) else 1
+        found.setdefault(_linear(sign * q, -sign * p), set()).add(sign * line.offset % 1)
+    return "<br>".join(f"{left} = {', '.join(map(str, sorted(offsets)))}" for left, offsets in found.items())
+
+
+def _linear(m: int, n: int) -> str:
+    """The term m x + n y, as it is written; m > 0, or m = 0 and n > 0."""
+    terms = [(abs(k), "-" if k < 0 else "+", name) for k, name in ((m, "x"), (n, "y")) if k]
+    text = " ".join(f"{sign} {'' if k == 1 else f'{k} '}{name}" for k, sign, name in terms)
+    return text.removeprefix("+ ")
+
+
+TABLES = {"decision": decision_table, "mirrors": mirror_table, "centres": centre_table, "elements": element_table}
 
 
 def with_tables(page: str) -> str:

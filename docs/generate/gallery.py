@@ -12,6 +12,7 @@ import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from running import ROOT, Command, command_block, image_table, run_all
 
@@ -116,7 +117,12 @@ class Example:
     @property
     def group(self) -> str:
         """Its wallpaper group."""
-        return str(tomllib.loads((ROOT / self.design).read_text(encoding="utf-8"))["group"])
+        return str(self._keys["group"])
+
+    @property
+    def tile_caption(self) -> str:
+        """What its first picture shows: the tiles of several sites lie side by side, as in the plane."""
+        return "the tile" if len(self._keys["site"]) == 1 else "one of each tile, where they lie"
 
     @property
     def about(self) -> str:
@@ -143,6 +149,11 @@ class Example:
             Command(export, self.design, f"{start}-sheet.svg", self.sheet.arguments),
         )
 
+    @property
+    def _keys(self) -> dict[str, Any]:
+        """The keys of its design."""
+        return tomllib.loads((ROOT / self.design).read_text(encoding="utf-8"))
+
 
 def examples() -> list[Example]:
     """Give all examples: those of one site's art last."""
@@ -158,7 +169,7 @@ def commands() -> Iterator[Command]:
 
 def section(example: Example) -> str:
     """Give an example's section of the page."""
-    captions = ("the tile", "the tessellation", example.sheet.caption)
+    captions = (example.tile_caption, "the tessellation", example.sheet.caption)
     rows = [
         (f"{example.stem}: {caption}", Path(command.output).relative_to("docs").as_posix(), caption)
         for command, caption in zip(example.commands, captions, strict=True)
@@ -176,8 +187,8 @@ def section(example: Example) -> str:
 _HEAD = """\
 # Gallery
 
-Every design in `examples/`: its tile beside the tessellation, and a sheet. Under the pictures stand the commands that
-wrote them; they run in the repository's root, and `make gallery` runs them all.
+Every design in `examples/`: its tile, or one of each, beside the tessellation, and a sheet. Under the pictures stand
+the commands that wrote them; they run in the repository's root, and `make gallery` runs them all.
 
 The preset `docs/gallery/screen.toml` draws lines of 0.45 mm in colours that are seen on a screen. For a cutter leave it
 out, or take the preset of its program: `--preset lightburn`. `--curves arc --accuracy 0.02mm` keeps the files of this
