@@ -25,11 +25,13 @@ from census import Census, Measured, census  # noqa: E402
 from chambers import chamber_about, chamber_numbers  # noqa: E402
 from claims import (  # noqa: E402
     CLAIMS,
+    WRONG,
     curved,
     endless_lines_always,
     fills_chamber,
     fills_the_plane,
     fixed_polygon,
+    outcome,
     table,
     verdicts,
 )
@@ -178,7 +180,7 @@ def test_a_small_census(group: str) -> None:
     assert wrong == ({("endless", "pgg")} if group == "pgg" else {("squares", "cmm")} if group == "cmm" else set())
     if group == "pgg":
         assert curved(found).holds
-    assert group in table([found])
+    assert group in table([found], {})
 
 
 def test_the_verdicts_can_be_otherwise() -> None:
@@ -204,8 +206,18 @@ def test_the_verdicts_can_be_otherwise() -> None:
     assert curved(free).holds
     assert not curved(replace(free, survived=1)).holds
     assert not curved(replace(free, tiles=[replace(free.tiles[0], endless=1)] * 8)).holds
+
+
+def test_cmm_makes_squares_where_the_sides_are_equal() -> None:
+    """And rectangles else; where the cell with a = b does not give squares either, the sentence is wrong."""
     squares = next(claim for claim in CLAIMS if claim.key == "squares")
-    assert squares.judge(census("cmm", 4, {"a": 60.0, "b": 60.0})).holds
+    found, even = census("cmm", 4), census("cmm", 4, measuring.EVEN)
+    assert outcome(squares, found, even) == "holds where a = b, else rectangles"
+    assert "squares: holds where a = b, else rectangles" in table([found], {"cmm": even})
+    assert outcome(squares, even, None) == "holds"
+    broken = replace(even, tiles=[replace(even.tiles[0], beyond=1e-9), *even.tiles[1:]])
+    for other in (None, found, broken):
+        assert outcome(squares, found, other) == WRONG
 
 
 def test_points_that_survive_are_seen_to_die() -> None:
@@ -239,27 +251,56 @@ def test_the_designs_against_the_word_always(name: str, lines: int, curves: bool
     assert any(tile.outline.curved.any() for tile in tiling.tiles) == curves
 
 
+@pytest.mark.parametrize(
+    ("point", "lines"),
+    [
+        ((15, 0), {(1, 0), (0, 1)}),
+        ((16, 0), {(0, 1)}),
+        ((15, 0.5), set()),
+        ((15, 1), set()),
+        ((14, 2), set()),
+    ],
+)
+def test_a_move_in_y_ends_the_lines_of_the_grid(point: tuple[float, float], lines: set[tuple[int, int]]) -> None:
+    """In pgg; a move along y = 0 keeps those along b, on x = 0 and x = a/2."""
+    found = endless_lines(tiling_of("pgg", [{"point": list(point)}], a=60, b=44))
+    assert {line.direction for line in found} == lines
+    across = sorted(round(line.offset, 6) % 1 for line in found if line.direction == (0, 1))
+    assert across == pytest.approx([0.0, 0.5] if lines else [])
+
+
 def test_a_measured_tile_has_all_figures() -> None:
     """No figure of a tile is left at a default."""
     assert not any(field.default is not field.default_factory for field in Measured.__dataclass_fields__.values())
-    assert re.match(r"p4\n  sites: 2; ", measuring.describe(census("p4", 2)))
+    for group, between in (("p4", "no mirrors"), ("pm", "strip, not bounded"), ("p4g", "square, 4 tiles in each")):
+        text = measuring.describe(census(group, 2))
+        assert re.match(rf"{group}\n  sites: 2; ", text)
+        assert f"\n  between mirrors: {between}\n" in text
 
 
 def test_the_page_is_written_from_the_measurements() -> None:
     """Other measurements give another page, with other verdicts; a group that is not measured is an error."""
     rows = [census(group, 2) for group in GROUPS]
-    text = paper.page(rows, [True, True])
+    even = census("cmm", 2, measuring.EVEN)
+    text = paper.page(rows, even, [True, True])
     assert "$" not in text
     assert "agree in all," in text
     assert "**wrong for pgg**" in text
     assert "none of 2 random tilings" in text
+    assert "for cmm it holds where a = b, else rectangles |" in text
+    assert "cmm: 2 tiles form one rectangle in all 2 tilings<br>cmm with a = b: 2 tiles form one square in all" in text
+    flat = next(row for row in rows if row.group == "p4")
+    flat.tiles[0] = replace(flat.tiles[0], curves=0)
+    uncurved = sum(tile.curves == 0 for row in rows if row.group in set(FREE) - {"pgg"} for tile in row.tiles)
+    assert f"{uncurved} of 12 have curves" in " ".join(paper.page(rows, even, [True]).split())
+    assert "**wrong for cmm**" in paper.page(rows, next(row for row in rows if row.group == "cmm"), [True])
     pgg = next(row for row in rows if row.group == "pgg")
     pgg.tiles[:] = [replace(tile, endless=1) for tile in pgg.tiles]
-    other = paper.page(rows, [True, False])
+    other = paper.page(rows, even, [True, False])
     assert "**wrong for pgg**" not in other
     assert "agree in only 1," in other
     with pytest.raises(ValueError, match="pgg"):
-        paper.page([row for row in rows if row.group != "pgg"], [True])
+        paper.page([row for row in rows if row.group != "pgg"], even, [True])
 
 
 @pytest.mark.parametrize("command", paper.commands(), ids=lambda command: Path(command.output).name)

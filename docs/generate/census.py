@@ -26,6 +26,9 @@ Bools = NDArray[np.bool_]
 
 SEED = 2026
 
+EVEN = {"a": 60.0, "b": 60.0}
+"""A cell with equal sides, in mm: what some rectangular groups make of it is more regular."""
+
 POINTS = 400
 """Points of the first tile's outline that are asked whether they lie on edges for every other site too; a count."""
 
@@ -133,10 +136,10 @@ def census(group: str, sites: int, cell: dict[str, float] | None = None) -> Cens
     return result
 
 
-def censuses(groups: Iterable[str], sites: int) -> Iterator[Census]:
+def censuses(groups: Iterable[str], sites: int, cell: dict[str, float] | None = None) -> Iterator[Census]:
     """Measure several groups, on all cores; in their order."""
     with multiprocessing.Pool() as pool:
-        yield from pool.starmap(census, [(group, sites) for group in groups], chunksize=1)
+        yield from pool.starmap(census, [(group, sites, cell) for group in groups], chunksize=1)
 
 
 class _Shapes:
@@ -251,9 +254,21 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("groups", nargs="*", default=list(GROUPS), help="groups (default: all)")
     parser.add_argument("--sites", type=int, default=1000, help="random sites per group (default: 1000)")
+    parser.add_argument("--even", action="store_true", help="cells with a = b, for groups with rectangular ones")
     options = parser.parse_args()
-    for found in censuses(options.groups, options.sites):
+    other = [name for name in options.groups if GROUPS[name].system != "rectangular"]
+    if options.even and other:
+        parser.error(f"--even is for groups with rectangular cells, not for {', '.join(other)}")
+    for found in censuses(options.groups, options.sites, EVEN if options.even else None):
         print(describe(found))
+
+
+def _between_mirrors(found: Census) -> str:
+    """Say what the mirrors leave, and how many tiles it holds."""
+    chamber = found.chamber
+    if not len(chamber.sides):
+        return "no mirrors"
+    return f"{chamber.name}, {found.in_chamber} tiles in each" if chamber.bounded else f"{chamber.name}, not bounded"
 
 
 def describe(found: Census) -> str:
@@ -277,7 +292,7 @@ def describe(found: Census) -> str:
         "points in one of the two but not in both": found.strangers,
         "shapes among all tiles": found.shapes,
         "tilings with left and right tiles": np.count_nonzero(found.values("left_and_right")),
-        "between mirrors": f"{found.chamber.name}, {found.in_chamber} tiles in each",
+        "between mirrors": _between_mirrors(found),
         "a tile leaves it by at most, of the cell": f"{found.values('beyond').max():.1e}",
         "areas are off by at most, of the cell": f"{found.values('area_error').max():.1e}",
         "sites in several of them, and such tiles with curves": (

@@ -13,6 +13,9 @@ from voronoi_tiles.wallpaper import GROUPS
 ROUNDING = 1e-12
 """How far from its chamber, beside the cell's longer side, a tile may reach that lies in it: what outlines are off."""
 
+WRONG = "**wrong**"
+"""How a sentence that does not hold is marked."""
+
 
 @dataclass(frozen=True)
 class Verdict:
@@ -107,14 +110,14 @@ CLAIMS = (
         "Under cmm and p4g copies of the tile form squares.",
         ("cmm", "p4g"),
         copies_form("square"),
-        "the site lies in one chamber",
+        "there is one site, and it lies in one chamber",
     ),
     Claim(
         "triangles",
         "Under p31m copies of the tile form triangles.",
         ("p31m",),
         copies_form("triangle"),
-        "the site lies in one chamber",
+        "there is one site, and it lies in one chamber",
     ),
     Claim(
         "fixed",
@@ -131,8 +134,21 @@ def verdicts(found: Census) -> list[tuple[Claim, Verdict]]:
     return [(claim, claim.judge(found)) for claim in CLAIMS if found.group in claim.groups]
 
 
-def table(rows: Sequence[Census]) -> str:
-    """Give the figures of all groups as a Markdown table."""
+def outcome(claim: Claim, found: Census, even: Census | None) -> str:
+    """Say what is found of a sentence in a group: it holds, or where, or it is wrong.
+
+    `even` is the census of the group in a cell with a = b, None where none was taken: then the sentence is judged by
+    `found` alone.
+    """
+    if claim.judge(found).holds:
+        return "holds"
+    if even is not None and claim.judge(even).holds:
+        return f"holds where a = b, else {found.chamber.name}s"
+    return WRONG
+
+
+def table(rows: Sequence[Census], even: dict[str, Census]) -> str:
+    """Give the figures of all groups as a Markdown table; `even` are the censuses in cells with a = b, by group."""
     head = (
         "group",
         "straight",
@@ -145,18 +161,18 @@ def table(rows: Sequence[Census]) -> str:
         "the paper",
     )
     lines = ["| " + " | ".join(head) + " |", "|---|---:|---:|---:|---:|---:|---:|---|---|"]
-    lines += ["| " + " | ".join(_cells(found)) + " |" for found in rows]
+    lines += ["| " + " | ".join(_cells(found, even.get(found.group))) + " |" for found in rows]
     return "\n".join(lines)
 
 
-def _cells(found: Census) -> list[str]:
+def _cells(found: Census, even: Census | None) -> list[str]:
     """The cells of one row."""
     both = int(found.values("left_and_right").sum())
     shapes = {0: "1", len(found.tiles): "2: left and right"}.get(both, f"2 in {both:,} tilings, else 1")
     judged = [
-        f"{claim.key}: {'holds' if verdict.holds else '**wrong**'}"
-        for claim, verdict in verdicts(found)
-        if len(claim.groups) < len(GROUPS)
+        f"{claim.key}: {outcome(claim, found, even)}"
+        for claim in CLAIMS
+        if found.group in claim.groups and len(claim.groups) < len(GROUPS)
     ]
     return [
         found.group,

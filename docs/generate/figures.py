@@ -101,7 +101,7 @@ FAMILIES: tuple[Family, ...] = (
         "The art of the copies is placed by the operations that place the outlines, so it meets the edges of every "
         "copy as it meets those of the first.",
         (
-            _swimming("fig01-tile.png", "the tile", "-30,-24,102,64"),
+            _swimming("fig01-tile.png", "the tile, among its neighbours", "-30,-24,102,64"),
             _swimming("fig01-interlocked.png", "a few interlocked", "-54,-40,126,80"),
             _swimming("fig01-plane.png", "filling the plane", "-130,-94,206,130"),
         ),
@@ -279,7 +279,8 @@ def _between(design: str) -> str:
     outline = tiling.tiles[0].outline
     shared = [(found.site, str(found.operation)) == (other, operation) for found in outline.neighbours]
     edges = outline.curved[np.array(shared)[outline.neighbour]].tolist()
-    return f"{_counted(edges.count(False), 'line')}, {_counted(edges.count(True), 'parabola')}"
+    counts = ((edges.count(False), "line"), (edges.count(True), "parabola"))
+    return "boundary: " + ", ".join(_counted(count, what) for count, what in counts if count)
 
 
 def _counted(count: int, what: str) -> str:

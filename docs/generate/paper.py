@@ -10,8 +10,8 @@ from pathlib import Path
 from string import Template
 
 import figures
-from census import POINTS, Census, censuses
-from claims import CLAIMS, groups_of, table
+from census import EVEN, POINTS, Census, census, censuses
+from claims import CLAIMS, WRONG, Claim, groups_of, outcome, table
 from random_sites import TOLERANCE
 from running import ROOT, Command, command_block, image_table, run_all
 
@@ -20,6 +20,9 @@ from voronoi_tiles.wallpaper import GROUPS
 
 SITES = 1000
 """Random sites per group; a count."""
+
+EVEN_GROUP = "cmm"
+"""The group that is measured in cells with a = b as well, a tenth as often: there its rectangles are squares."""
 
 PAGE = ROOT / "docs" / "paper.md"
 
@@ -69,26 +72,45 @@ def agrees(design: Path) -> bool:
     return Design.load(design).tessellate().check(renderer="cpu").passed
 
 
-def sentences(found: dict[str, Census]) -> str:
-    """Give the paper's sentences with their verdicts, as a Markdown table."""
+def sentences(found: dict[str, Census], even: dict[str, Census]) -> str:
+    """Give the paper's sentences with their verdicts, as a Markdown table; `even` are censuses with a = b."""
     lines = ["| | the sentence, in substance | verdict | measured |", "|---|---|---|---|"]
     for claim in CLAIMS:
-        judged = {group: claim.judge(found[group]) for group in claim.groups}
-        wrong = [group for group, verdict in judged.items() if not verdict.holds]
-        verdict = f"**wrong for {', '.join(wrong)}**" if wrong else "holds"
-        if claim.condition and len(wrong) < len(judged):
-            verdict += f"{'; else holds' if wrong else ''} if {claim.condition}"
-        groups: dict[str, list[str]] = {}
-        for group, each in judged.items():
-            groups.setdefault(each.because, []).append(group)
-        measured = "<br>".join(f"{', '.join(names)}: {because}" for because, names in groups.items())
-        lines.append(f"| {claim.key} | {claim.sentence} | {verdict} | {measured} |")
+        outcomes = {group: outcome(claim, found[group], even.get(group)) for group in claim.groups}
+        measured = _measured(claim, found, even, outcomes)
+        lines.append(f"| {claim.key} | {claim.sentence} | {_verdict(claim, outcomes)} | {measured} |")
     return "\n".join(lines)
 
 
-def page(rows: Sequence[Census], agreed: Sequence[bool]) -> str:
-    """Write the page from the measurements of the groups and the cross-checks of the designs."""
+def _verdict(claim: Claim, outcomes: dict[str, str]) -> str:
+    """Put what is found of a sentence in its groups into one phrase."""
+    wrong = [group for group, found in outcomes.items() if found == WRONG]
+    parts = [f"**wrong for {', '.join(wrong)}**"] if wrong else []
+    if len(wrong) < len(outcomes):
+        parts.append(f"{'else ' if wrong else ''}holds" + (f" if {claim.condition}" if claim.condition else ""))
+    parts += [f"for {group} it {found}" for group, found in outcomes.items() if found not in (WRONG, "holds")]
+    return "; ".join(parts)
+
+
+def _measured(claim: Claim, found: dict[str, Census], even: dict[str, Census], outcomes: dict[str, str]) -> str:
+    """Say what a sentence is judged by: groups of which the same can be said together."""
+    groups: dict[str, list[str]] = {}
+    for group, how in outcomes.items():
+        groups.setdefault(claim.judge(found[group]).because, []).append(group)
+        if group in even and how != "holds":
+            groups.setdefault(claim.judge(even[group]).because, []).append(f"{group} with a = b")
+    return "<br>".join(f"{', '.join(names)}: {because}" for because, names in groups.items())
+
+
+def page(rows: Sequence[Census], even: Census, agreed: Sequence[bool]) -> str:
+    """Write the page from the measurements of the groups and the cross-checks of the designs.
+
+    `even` is the census of EVEN_GROUP in cells with a = b.
+    """
     found = groups_of(rows)
+    evenly = {even.group: even}
+    lines = next(claim for claim in CLAIMS if claim.key == "curved").groups
+    lined = [tile for group in lines for tile in found[group].tiles]
     sites = len(rows[0].tiles)
     tiles = [tile for row in rows for tile in row.tiles]
     scattered = [tile for row in rows for tile in row.scattered]
@@ -113,8 +135,12 @@ def page(rows: Sequence[Census], agreed: Sequence[bool]) -> str:
         scattered_curved=f"{sum(tile.curves > 0 for tile in scattered):,}",
         census_command=f"python docs/generate/census.py pgg --sites {sites}",
         figures="\n".join(map(figures.markdown, figures.FAMILIES)).strip(),
-        claims=sentences(found),
-        table=table(rows),
+        claims=sentences(found, evenly),
+        table=table(rows, evenly),
+        even=f"{len(even.tiles):,}",
+        even_command=f"python docs/generate/census.py {even.group} --even --sites {len(even.tiles)}",
+        lined=f"{len(lined):,}",
+        uncurved=f"{sum(tile.curves == 0 for tile in lined):,}",
         pgg_pictures=pictures(PGG).strip(),
         always_pictures=pictures(ALWAYS).strip(),
     )
@@ -132,7 +158,8 @@ def main() -> None:
     with multiprocessing.Pool() as pool:
         agreed = pool.map(agrees, sorted((ROOT / "examples" / "paper").glob("*.toml")))
     rows = list(censuses(GROUPS, options.sites))
-    PAGE.write_text(page(rows, agreed), encoding="utf-8")
+    even = census(EVEN_GROUP, options.sites // 10, EVEN)
+    PAGE.write_text(page(rows, even, agreed), encoding="utf-8")
     print(f"{PAGE.relative_to(ROOT)}: {time.monotonic() - began:.0f} s in all")
 
 
