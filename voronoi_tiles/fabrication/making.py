@@ -57,10 +57,11 @@ class Product:
         """Say in a line what it comes to."""
         cuts = [layer.paths for layer in self.drawing.layers if layer.work == "cut"]
         length = fsum(float(paths.lengths.sum()) for paths in cuts) / 1000
+        strokes = sum(map(len, cuts))
         count, area = len(self.pieces.site), self.drawing.width * self.drawing.height
         return (
             f"{count:,} piece{'s' * (count != 1)}, {self.pieces.tile_area / area:.1%} of {self.drawing.width:.5g} x "
-            f"{self.drawing.height:.5g} mm, {length:.3g} m of cuts in {sum(map(len, cuts)):,} paths"
+            f"{self.drawing.height:.5g} mm, {length:.3g} m of cuts in {strokes:,} path{'s' * (strokes != 1)}"
         )
 
     def write(self, file: BinaryIO | RawIOBase) -> None:
