@@ -70,6 +70,7 @@ _SAME = 1e-6
 # How far an edge may be from the image of its counterpart, on the same scale. Where copies nearly touch, vertices are
 # known to far fewer digits along their edges; the proof judges what comes of it.
 PAIRING = 1e-3
+# Turns the plane so that no mirror and no row of copies is upright.
 _SLANT = np.exp(1j)
 
 Corner = tuple[int, int]
@@ -126,13 +127,7 @@ def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pi
     """
     cuts = [_cuts(boundary) for boundary in traced]
     _cut_further(action, placed, traced, cuts, pinched)
-    edges = [
-        edge
-        for tile, boundary in enumerate(traced)
-        for middle in [boundary.middles()]
-        for ring, cut in zip(boundary.rings(), cuts[tile], strict=True)
-        for edge in _edges(tile, boundary, middle, ring, cut)
-    ]
+    edges = [edge for tile, boundary in enumerate(traced) for edge in _edges(tile, boundary, cuts[tile])]
     faces: defaultdict[tuple[int, int, Motion], list[Edge]] = defaultdict(list)
     for edge in edges:
         faces[edge.tile, edge.target, edge.motion].append(edge)
@@ -157,11 +152,13 @@ def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pi
 def long_edges(boundary: Traced, limit: float) -> Ints:
     """Return the arcs of the edges that extend farther than a limit; all, where no other would be left of a ring."""
     kept = []
-    middle = boundary.middles()
     for ring, cut in zip(boundary.rings(), _cuts(boundary), strict=True):
-        edges = list(_edges(0, boundary, middle, ring, cut or [0]))
-        long = [e.arcs for e in edges if len(cut) < 2 or np.abs(e.vertex - e.vertex[0]).max() > limit]
-        kept.append(np.sort(np.concatenate(long)) if long else ring)
+        long = [
+            arcs
+            for arcs, end in _runs(ring, cut)
+            if np.abs(boundary.vertex[np.append(arcs, end)] - boundary.vertex[arcs[0]]).max() > limit
+        ]
+        kept.append(np.sort(np.concatenate(long)) if len(cut) > 1 and long else ring)
     return np.concatenate(kept)
 
 
@@ -257,7 +254,7 @@ def _at(boundary: Traced, point: Complexes, limit: float) -> list[int]:
 
 def _pinches(boundary: Traced, limit: float) -> list[int]:
     """Return the vertices that another one coincides with."""
-    # Sorted along a direction in which no mirror and no row of copies runs, few vertices are near each other.
+    # Sorted from left to right, turned by the slant, few vertices are near each other.
     along = (boundary.vertex * _SLANT).real
     order = np.argsort(along)
     vertex, along = boundary.vertex[order], along[order]
@@ -275,24 +272,29 @@ def _pinches(boundary: Traced, limit: float) -> list[int]:
     return [int(vertex) for vertex in np.unique(np.concatenate((one[apart], two[apart])))]
 
 
-def _edges(tile: int, boundary: Traced, middle: Complexes, ring: Ints, cut: list[int]) -> Iterator[Edge]:
-    """Yield the edges of a ring that is cut at these places."""
-    turned = np.roll(ring, -cut[0])
-    for first, last in zip(cut, [*cut[1:], cut[0] + len(ring)], strict=True):
-        arcs = turned[first - cut[0] : last - cut[0]]
-        end = int(turned[(last - cut[0]) % len(ring)])
-        start = int(arcs[0])
-        vertex = boundary.vertex[np.append(arcs, end)]
-        course = np.empty(2 * len(vertex) - 1, complex)
-        course[::2], course[1::2] = vertex, middle[arcs]
-        yield Edge(
-            tile=tile,
-            arcs=arcs,
-            target=int(boundary.target[start]),
-            motion=_motion(boundary, start),
-            start=(tile, start),
-            end=(tile, end),
-            vertex=vertex,
-            course=course,
-            images=[],
-        )
+def _runs(ring: Ints, cut: list[int]) -> Iterator[tuple[Ints, int]]:
+    """Yield the arcs between the places where a ring is cut, and the arc that starts where they end."""
+    for first, last in zip(cut, [*cut[1:], *(place + len(ring) for place in cut[:1])], strict=True):
+        yield ring[np.arange(first, last) % len(ring)], int(ring[last % len(ring)])
+
+
+def _edges(tile: int, boundary: Traced, cuts: list[list[int]]) -> Iterator[Edge]:
+    """Yield the edges of a boundary whose rings are cut at these places."""
+    middle = boundary.middles()
+    for ring, cut in zip(boundary.rings(), cuts, strict=True):
+        for arcs, end in _runs(ring, cut):
+            start = int(arcs[0])
+            vertex = boundary.vertex[np.append(arcs, end)]
+            course = np.empty(2 * len(vertex) - 1, complex)
+            course[::2], course[1::2] = vertex, middle[arcs]
+            yield Edge(
+                tile=tile,
+                arcs=arcs,
+                target=int(boundary.target[start]),
+                motion=_motion(boundary, start),
+                start=(tile, start),
+                end=(tile, end),
+                vertex=vertex,
+                course=course,
+                images=[],
+            )

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from itertools import product
 
 import numpy as np
@@ -88,6 +89,7 @@ class PlacedElements:
     glides: Complexes
 
 
+@cache
 def symmetry_elements(group: WallpaperGroup) -> SymmetryElements:
     """The rotation centres, mirror lines and glide lines of a group."""
     orders: dict[tuple[Fraction, Fraction], int] = {}

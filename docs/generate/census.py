@@ -123,13 +123,14 @@ def census(group: str, sites: int, cell: dict[str, float] | None = None) -> Cens
         except vt.ProofError:
             result.unproved += 1
             continue
-        measured = _measure(tiling, chamber_about(row, design.lattice, complex(site.nodes[0])))
+        outline = tiling.tiles[0].outline
+        shape = Shape.of(outline)
+        measured = _measure(tiling, shape, chamber_about(row, design.lattice, complex(site.nodes[0])))
         if np.any(where != where[0]):
             result.scattered.append(measured)
             continue
         result.tiles.append(measured)
-        outline = tiling.tiles[0].outline
-        shapes.add(Shape.of(outline), outline.perimeter)
+        shapes.add(shape, outline.perimeter)
         points.see(tiling)
     result.shapes = len(shapes)
     result.survived, result.expected, result.strangers = points.counts()
@@ -192,10 +193,9 @@ class _Points:
         return int(self._alive.sum()), int(self._mirrored.sum()), strangers
 
 
-def _measure(tiling: Tiling, chamber: Chamber) -> Measured:
+def _measure(tiling: Tiling, shape: Shape, chamber: Chamber) -> Measured:
     """Measure one tile."""
     design, outline = tiling.design, tiling.tiles[0].outline
-    shape = Shape.of(outline)
     scale = max(abs(design.lattice.a), abs(design.lattice.b))
     lines, mirrors = endless_lines(tiling), mirror_lines(design.group)
     off = sum(not any(same_line(line, mirror) for mirror in mirrors) for line in lines)

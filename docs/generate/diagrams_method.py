@@ -123,16 +123,22 @@ def _envelope() -> None:
             colour = FIELDS[scene.pieces.target[scene.piece[part]]]
             right.fill(area.real, area.imag, fc=colour, ec="none", alpha=0.55)
             _draw(right, curve, color=_dark(scene.pieces.target[scene.piece[part]]), lw=2.4)
-        for k, (nodes, segments) in enumerate([(base, _SEGMENT), *others]):
-            style = {"lw": 2.4} if len(segments) else {"marker": "o", "ms": 6}
-            _draw(right, nodes, color=INK if k == 0 else _dark(k), solid_capstyle="round", **style)
+        _draw_sites(right, [(base, _SEGMENT), *others])
 
 
 def _dark(target: int) -> str:
     return ("", "#2a6fa3", "#b5482b", "#3c7d36")[target]
 
 
-def _functions(axes: Axes, scene: Scene, row: int) -> None:
+def _draw_sites(axes: Axes, sites: list[tuple[Complexes, Ints]]) -> None:
+    """The first site in ink, the others in their dark colours."""
+    for k, (nodes, segments) in enumerate(sites):
+        style = {"lw": 2.4} if len(segments) else {"marker": "o", "ms": 6}
+        _draw(axes, nodes, color=INK if k == 0 else _dark(k), solid_capstyle="round", **style)
+
+
+def _envelope_of(axes: Axes, scene: Scene, row: int) -> None:
+    """The functions of a row, thin, and their lower envelope, bold."""
     pieces = scene.pieces
     for k in np.flatnonzero(pieces.row == row):
         x = np.linspace(pieces.low[k], pieces.high[k], 40)
@@ -141,6 +147,11 @@ def _functions(axes: Axes, scene: Scene, row: int) -> None:
         x = np.linspace(scene.start[part], scene.end[part], 40)
         colour = _dark(pieces.target[scene.piece[part]])
         axes.plot(x, pieces.value(np.full(40, scene.piece[part]), x), color=colour, lw=3.0, solid_capstyle="butt")
+
+
+def _functions(axes: Axes, scene: Scene, row: int) -> None:
+    _envelope_of(axes, scene, row)
+    for part in np.flatnonzero(scene.row == row):
         axes.axvline(scene.start[part], color=PALE, lw=0.8, zorder=0)
     axes.set(xlim=(0, 10), ylim=(0, 7.2), xlabel="s along the segment", ylabel="h: height of the bisector")
     axes.set_aspect("equal")
@@ -169,22 +180,12 @@ def _fan() -> None:
                 _draw(right, curve, color=_dark(scene.pieces.target[scene.piece[part]]), lw=2.4)
             ray = np.array([0, 7 * scene.rows.ray0[row]])
             _draw(right, ray, color=GREY, lw=0.6, dashes=(3, 3), zorder=0)
-        for k, (nodes, segments) in enumerate([(base, _SEGMENT), *others]):
-            style = {"lw": 2.4} if len(segments) else {"marker": "o", "ms": 6}
-            _draw(right, nodes, color=INK if k == 0 else _dark(k), solid_capstyle="round", **style)
+        _draw_sites(right, [(base, _SEGMENT), *others])
 
 
 def _fan_functions(axes: Axes, scene: Scene, row: int) -> None:
     """The functions of one fan; the fans of a point share their variable."""
-    pieces = scene.pieces
-    for k in np.flatnonzero(pieces.row == row):
-        x = np.linspace(pieces.low[k], pieces.high[k], 40)
-        axes.plot(x, pieces.value(np.full(40, k), x), color=_dark(pieces.target[k]), lw=0.9, alpha=0.8)
-    for part in np.flatnonzero(scene.row == row):
-        x = np.linspace(scene.start[part], scene.end[part], 40)
-        colour = _dark(pieces.target[scene.piece[part]])
-        value = pieces.value(np.full(40, scene.piece[part]), x)
-        axes.plot(x, value, color=colour, lw=3.0, solid_capstyle="butt")
+    _envelope_of(axes, scene, row)
     axes.axvline(scene.rows.low[row], color=PALE, lw=0.8, zorder=0)
     axes.set(
         xlim=(-1, 1), ylim=(-0.9, 0), xlabel="x, the tangent of half the angle from the axis", ylabel="-(1 + x²) / r"
