@@ -22,7 +22,7 @@ INSTALLED := $(VENV)/.installed
 INSTALLED_DEV := $(VENV)/.installed-dev
 INSTALLED_DOCS := $(VENV)/.installed-docs
 INSTALLED_TYPES := $(TYPES_VENV)/.installed
-SOURCES := $(wildcard voronoi_tiles/*.py voronoi_tiles/*/*.py vector/*.py vector/*/*.py raster/*.py raster/*.glsl voronoi_tiles/*.toml)
+SOURCES := $(shell find voronoi_tiles vector raster -name "*.py" -o -name "*.glsl" -o -name "*.toml")
 EXAMPLES := $(wildcard examples/*.toml)
 
 help:
@@ -88,8 +88,8 @@ bench: $(INSTALLED_DEV)
 	$(VENV)/bin/python bench/sheets.py --write
 
 fuzz: $(INSTALLED_DEV)
-	$(VENV)/bin/python tests/fuzz.py $(N)
-	$(VENV)/bin/python tests/fuzz_sheets.py $(N)
+	cd tests && $(abspath $(VENV))/bin/python -m helpers.fuzz $(N)
+	cd tests && $(abspath $(VENV))/bin/python -m helpers.fuzz_sheets $(N)
 
 docs: $(INSTALLED_DOCS)
 	$(VENV)/bin/python -m sphinx --fail-on-warning --keep-going --quiet -b html docs docs/_build

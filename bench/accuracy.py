@@ -32,11 +32,12 @@ from mpmath import mpc, mpf
 from numpy.typing import NDArray
 from report import machine, published, table
 
-from voronoi_tiles.errors import TouchingCopiesError
-from voronoi_tiles.site import Site, build_site
+from voronoi_tiles.base.errors import TouchingCopiesError
+from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.designs.site import Site, build_site
+from voronoi_tiles.groups.wallpaper import GROUPS, Lattice, WallpaperGroup
 from voronoi_tiles.vector.outline import Outline
 from voronoi_tiles.vector.tessellation import TileRecord, tessellate
-from voronoi_tiles.wallpaper import GROUPS, Lattice, Operation, WallpaperGroup
 
 SIZES = (24, 100)
 CHOSEN = ("p1", "pgg", "cmm", "p4", "p31m", "p6")

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from peer import Reading
 
-from voronoi_tiles.site import Site
+from voronoi_tiles.designs.site import Site
 
 SOURCE = Path(__file__).with_name("cgal.cpp")
 FLAGS = ("-std=c++17", "-O3", "-DNDEBUG", "-frounding-math")

@@ -31,10 +31,11 @@ from numpy.typing import NDArray
 from report import machine, published, table
 
 from voronoi_tiles import Design
-from voronoi_tiles.site import Site, build_site
+from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.designs.site import Site, build_site
+from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.vector.proof import prove
 from voronoi_tiles.vector.tessellation import TileRecord, tessellate
-from voronoi_tiles.wallpaper import Lattice, Operation, WallpaperGroup
 
 try:
     import cgal

@@ -19,8 +19,9 @@ import peer
 from mpmath import mpc, mpf
 from numpy.typing import NDArray
 
-from voronoi_tiles.site import Site
-from voronoi_tiles.wallpaper import Lattice, Operation, WallpaperGroup
+from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.designs.site import Site
+from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 
 # So that 50 are left where the elements are nearly parallel: they take up to 25.
 mpmath.mp.dps = 80

@@ -16,9 +16,10 @@ import numpy as np
 import pyvoronoi
 from numpy.typing import NDArray
 
-from voronoi_tiles.site import Site
+from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.designs.site import Site
+from voronoi_tiles.groups.wallpaper import Lattice
 from voronoi_tiles.vector.tessellation import TileRecord
-from voronoi_tiles.wallpaper import Lattice, Operation
 
 if TYPE_CHECKING:
     from engine import Case

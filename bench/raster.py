@@ -23,11 +23,11 @@ from report import machine, published
 
 from voronoi_tiles import Design
 from voronoi_tiles.crosscheck import crosscheck
-from voronoi_tiles.raster.candidates import find_candidates
-from voronoi_tiles.raster.copies import Pattern, gather
+from voronoi_tiles.raster.block_lists import find_candidates
 from voronoi_tiles.raster.frame import Frame, cell_frame
 from voronoi_tiles.raster.gl import Device, GlError, Prepared
-from voronoi_tiles.raster.render import LabelImage, Method, Renderer
+from voronoi_tiles.raster.renderer import LabelImage, Method, Renderer
+from voronoi_tiles.raster.scene import Pattern, gather
 
 SIZES = ((2048, 24), (2048, 1000), (4096, 1000), (4096, 10_000))
 HOFF = ((512, 24), (512, 1000), (1024, 1000))

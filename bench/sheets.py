@@ -81,7 +81,7 @@ def svg_peer(product: Product) -> float:
     """Seconds that svgwrite takes for the same paths."""
     from svgwrite import Drawing
 
-    from voronoi_tiles.vector.writers.pathtext import path_texts
+    from voronoi_tiles.formats.svg.path_text import path_texts
 
     layer = product.drawing.layers[-1]
     texts = [data.decode() for data in path_texts(layer.paths, layer.items, product.drawing.height)]

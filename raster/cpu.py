@@ -10,10 +10,10 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from voronoi_tiles.raster.candidates import Candidates
-from voronoi_tiles.raster.copies import Labels
-from voronoi_tiles.raster.frame import BLOCK, Complexes, Floats, Frame
-from voronoi_tiles.raster.ragged import ranges
+from voronoi_tiles.base.arrays import Complexes, Floats, owned_ranges
+from voronoi_tiles.raster.block_lists import BlockLists
+from voronoi_tiles.raster.frame import BLOCK, Frame
+from voronoi_tiles.raster.scene import Labels
 
 _RUNS = 192
 """Runs that a thread works on at once: with BLOCK^2 float64 each they stay within a core's cache."""
@@ -25,7 +25,7 @@ Heights = Callable[[Floats, Floats], Floats]
 
 
 def render(
-    candidates: Candidates, frame: Frame, *, heights: Heights | None = None
+    candidates: BlockLists, frame: Frame, *, heights: Heights | None = None
 ) -> tuple[Labels, Labels, Floats, Floats]:
     """The owner of every sample, the nearest different copy, and both distances: arrays (height, width).
 
@@ -56,7 +56,7 @@ def render(
     )
 
 
-def _run_squares(candidates: Candidates, part: slice, frame: Frame, heights: Heights | None) -> Floats:
+def _run_squares(candidates: BlockLists, part: slice, frame: Frame, heights: Heights | None) -> Floats:
     """The squared distance of each run of some blocks from the blocks' samples: (runs, BLOCK^2).
 
     Longest runs first, step k takes the k-th element of all runs that have so many: these are the first ones.
@@ -75,7 +75,7 @@ def _run_squares(candidates: Candidates, part: slice, frame: Frame, heights: Hei
     unit, length = scene.unit[element], scene.length[element]
     home = np.repeat(candidates.centre[block], size[order])
     place = np.empty(len(element), np.intp)
-    place[ranges(start - span.start, start - span.start + size[order])[0]] = np.arange(len(element))
+    place[owned_ranges(start - span.start, start - span.start + size[order])[0]] = np.arange(len(element))
     away = home[place] - scene.middle[element]
     step = np.arange(BLOCK) - BLOCK / 2
     nearest = np.full((len(runs), BLOCK, BLOCK), np.inf)
@@ -106,7 +106,7 @@ def _run_squares(candidates: Candidates, part: slice, frame: Frame, heights: Hei
     return nearest.reshape(len(runs), -1)[back]
 
 
-def _two_nearest(candidates: Candidates, square: Floats, part: slice) -> tuple[Labels, Labels, Floats, Floats]:
+def _two_nearest(candidates: BlockLists, square: Floats, part: slice) -> tuple[Labels, Labels, Floats, Floats]:
     """The labels of the two nearest copies of some blocks' samples and their distances."""
     start = candidates.run_start[part] - candidates.run_start[part.start]
     size = np.diff(candidates.run_start[part.start : part.stop + 1])

@@ -5,12 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from voronoi_tiles.wallpaper import Lattice
-
-Complexes = NDArray[np.complex128]
-Floats = NDArray[np.float64]
+from voronoi_tiles.base.arrays import Complexes, Floats
+from voronoi_tiles.groups.wallpaper import Lattice
 
 BLOCK = 16
 """Samples along the side of a block, the part of an image that shares one list of candidates."""

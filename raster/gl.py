@@ -18,9 +18,10 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from voronoi_tiles.raster.candidates import Candidates
-from voronoi_tiles.raster.copies import Labels
-from voronoi_tiles.raster.frame import BLOCK, Floats, Frame
+from voronoi_tiles.base.arrays import Floats
+from voronoi_tiles.raster.block_lists import BlockLists
+from voronoi_tiles.raster.frame import BLOCK, Frame
+from voronoi_tiles.raster.scene import Labels
 
 _TEXTURE_WIDTH = 4096
 _LONGEST_LIST = 60_000
@@ -159,7 +160,7 @@ class Device:
         return self.context.texture((_TEXTURE_WIDTH, lines), components, padded.tobytes(), dtype=dtype)
 
     def render_exact(
-        self, candidates: Candidates, frame: Frame, *, compute: bool | None = None
+        self, candidates: BlockLists, frame: Frame, *, compute: bool | None = None
     ) -> tuple[Labels, Labels, Floats32, Floats32]:
         """The owner of every sample, the nearest different copy, and both distances: arrays (height, width).
 
@@ -188,7 +189,7 @@ def float32_error(distance: Floats | float, frame: Frame) -> Any:
 class Prepared:
     """A frame whose lists lie on the device: `draw` renders it, `read` fetches it."""
 
-    def __init__(self, device: Device, candidates: Candidates, frame: Frame, *, compute: bool) -> None:
+    def __init__(self, device: Device, candidates: BlockLists, frame: Frame, *, compute: bool) -> None:
         """Upload the lists. Raises GlError."""
         device.check()
         rounds = np.diff(candidates.element_start[candidates.run_start]) + np.diff(candidates.run_start)
@@ -266,7 +267,7 @@ class Prepared:
             item.release()
 
 
-def element_records(candidates: Candidates, frame: Frame) -> Floats32:
+def element_records(candidates: BlockLists, frame: Frame) -> Floats32:
     """The elements of all lists as the shader wants them: middle x, y from the block's centre, half x, y, in pixels.
 
     The points of a block have their nearest points on an element within r of the centre's nearest point: the rest of a

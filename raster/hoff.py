@@ -13,10 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from voronoi_tiles.raster.candidates import Candidates
-from voronoi_tiles.raster.copies import Labels
-from voronoi_tiles.raster.frame import WINDOW, Floats, Frame
+from voronoi_tiles.base.arrays import Floats
+from voronoi_tiles.raster.block_lists import BlockLists
+from voronoi_tiles.raster.frame import WINDOW, Frame
 from voronoi_tiles.raster.gl import Device, Floats32, gl_errors
+from voronoi_tiles.raster.scene import Labels
 
 SIDES = 128
 """Sides of a cone; a multiple of 4."""
@@ -48,7 +49,7 @@ def heights(along: Floats, across: Floats, sides: int = SIDES) -> Floats:
     return np.where(along > 0.0, distance * np.cos(turn) * (2.0 / (1.0 + cosine)), np.abs(across))
 
 
-def reaches(candidates: Candidates) -> tuple[NDArray[np.intp], Floats]:
+def reaches(candidates: BlockLists) -> tuple[NDArray[np.intp], Floats]:
     """The elements that matter anywhere in the frame, and how far from each: cones need be no wider."""
     reach = np.full(len(candidates.scene), -1.0)
     np.maximum.at(reach, candidates.element, candidates.from_centres() + candidates.radius)
@@ -79,7 +80,7 @@ def template(sides: int = SIDES) -> Floats32:
 
 
 def render_hoff(
-    device: Device, candidates: Candidates, frame: Frame, *, sides: int = SIDES
+    device: Device, candidates: BlockLists, frame: Frame, *, sides: int = SIDES
 ) -> tuple[Labels, Labels, Floats32, Floats32, float]:
     """The owner of every sample, the nearest different copy, both distances, and the farthest distance drawn.
 
@@ -104,7 +105,7 @@ class _Meshes:
     def __init__(
         self,
         device: Device,
-        candidates: Candidates,
+        candidates: BlockLists,
         frame: Frame,
         used: NDArray[np.intp],
         reach: Floats,

@@ -14,12 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from voronoi_tiles.colouring import Colouring, palette
-from voronoi_tiles.raster.colouring import colour
-from voronoi_tiles.raster.copies import Pattern
-from voronoi_tiles.raster.frame import Complexes, rectangle_frame
-from voronoi_tiles.raster.lines import coverage
-from voronoi_tiles.raster.render import LabelImage, Provenance, Renderer
+from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.groups.periodic_colouring import PeriodicColouring, palette
+from voronoi_tiles.raster.frame import rectangle_frame
+from voronoi_tiles.raster.image_colouring import colour
+from voronoi_tiles.raster.line_coverage import coverage
+from voronoi_tiles.raster.renderer import LabelImage, Provenance, Renderer
+from voronoi_tiles.raster.scene import Pattern
 
 Pixels = NDArray[np.uint8]
 Region = tuple[float, float, float, float]
@@ -41,7 +42,7 @@ class Overlay:
 
 
 @dataclass(frozen=True)
-class Style:
+class PictureStyle:
     """How a picture is drawn: widths in pixels.
 
     `border` is the width of the tiles' borders, `site` that of the sites' strokes, 0 for none; every pixel is the mean
@@ -53,7 +54,7 @@ class Style:
     supersampling: int
 
     @classmethod
-    def of_size(cls, width: int, height: int) -> Style:
+    def of_size(cls, width: int, height: int) -> PictureStyle:
         """The widths that suit a picture of so many pixels; large ones are not supersampled."""
         side = math.sqrt(width * height)
         return cls(max(1.0, side / 600), max(2.0, side / 220), 2 if side <= 4096 else 1)
@@ -71,19 +72,19 @@ class Picture:
         *,
         renderer: Renderer,
         overlays: Sequence[Overlay] = (),
-        style: Style | None = None,
+        style: PictureStyle | None = None,
     ) -> None:
         """Prepare a picture. Raises ValueError where the region or the picture is empty."""
         self.pattern, self.renderer, self.overlays = pattern, renderer, tuple(overlays)
         self.width, self.height = width, height
-        self.style = style or Style.of_size(width, height)
+        self.style = style or PictureStyle.of_size(width, height)
         self.fine = self.style.supersampling
         self.grid = rectangle_frame(region, width, height)
         self.frame = rectangle_frame(region, width * self.fine, height * self.fine)
         self.provenance: Provenance = renderer.provenance()
         self.renderers: dict[str, None] = {}
         """Who has rendered, in turn: more than one where OpenGL has failed between two bands."""
-        self.colouring: Colouring = colour(pattern)
+        self.colouring: PeriodicColouring = colour(pattern)
 
     def bands(self) -> Iterator[Pixels]:
         """Render from the top: pixels (rows, width, 3), red, green, blue; `provenance` says by whom, in the end."""

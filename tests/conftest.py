@@ -5,31 +5,20 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from helpers.outlines import ABOVE, RIGHT, CommandLine, polygon
 from hypothesis import settings
 
 from voronoi_tiles.raster import gl
-from voronoi_tiles.vector.arcs import Arc, LineArc, Neighbour, ParabolaArc
+from voronoi_tiles.vector.arcs import ParabolaArc
 from voronoi_tiles.vector.outline import Outline
-from voronoi_tiles.wallpaper import Operation
 
 # How long an example takes says how busy the machine is; timings live in bench/.
 settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
-
-RIGHT = Neighbour("bird", Operation.parse("x+1,y"))
-ABOVE = Neighbour("bird", Operation.parse("-x,-y+1"))
-
-CommandLine = Callable[..., subprocess.CompletedProcess[str]]
-
-
-def polygon(*points: complex, neighbour: Neighbour = RIGHT) -> list[Arc]:
-    """Make a ring of straight edges."""
-    ends = [*points[1:], points[0]]
-    return [LineArc(start, end, neighbour) for start, end in zip(points, ends, strict=True)]
 
 
 @pytest.fixture

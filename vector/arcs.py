@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.vector.contour import Complexes
-from voronoi_tiles.wallpaper import Operation
+from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.base.operations import Operation
 
 
 class Neighbour(NamedTuple):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from voronoi_tiles.vector.contour import Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints
 from voronoi_tiles.vector.outline import Outline
 
 _SAMPLES = np.linspace(0.0, 1.0, 9)

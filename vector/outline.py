@@ -15,14 +15,16 @@ from typing import TYPE_CHECKING, assert_never
 import numpy as np
 from numpy.typing import NDArray
 
+from voronoi_tiles.base.arrays import Complexes, Floats
+from voronoi_tiles.base.maps import Isometry
+from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.paths.paths import LINE, QUAD, Paths
+from voronoi_tiles.paths.quadratics import quadratic_lengths
 from voronoi_tiles.vector.arcs import Arc, LineArc, Neighbour, ParabolaArc
-from voronoi_tiles.wallpaper import Isometry, Operation
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon, Polygon
 
-ComplexArray = NDArray[np.complex128]
-FloatArray = NDArray[np.float64]
 
 _SPLITTER = 134217729.0  # 2**27 + 1 cuts a float64 into two halves of 26 bits (Dekker 1971)
 
@@ -37,12 +39,12 @@ class Outline:
     `ring_offsets[k + 1]` (intp, r + 1). Outer rings run counter-clockwise and come first, holes run clockwise.
     """
 
-    start: ComplexArray
-    control: ComplexArray
-    end: ComplexArray
+    start: Complexes
+    control: Complexes
+    end: Complexes
     curved: NDArray[np.bool_]
-    focus: ComplexArray
-    directrix: ComplexArray
+    focus: Complexes
+    directrix: Complexes
     neighbour: NDArray[np.intp]
     neighbours: tuple[Neighbour, ...]
     ring_offsets: NDArray[np.intp]
@@ -102,6 +104,18 @@ class Outline:
         return tuple(tuple(arcs[ring]) for ring in self._ring_slices())
 
     @cached_property
+    def paths(self) -> Paths:
+        """The rings as closed paths."""
+        return Paths(
+            start=self.start,
+            end=self.end,
+            control=np.column_stack((np.where(self.curved, self.control, 0), np.zeros(len(self)))),
+            kind=np.where(self.curved, QUAD, LINE).astype(np.uint8),
+            offsets=self.ring_offsets,
+            closed=np.ones(len(self.ring_offsets) - 1, np.bool_),
+        )
+
+    @cached_property
     def area(self) -> float:
         """The enclosed area in square units, holes taken off; correctly rounded but for one division by six."""
         return self._area_of(slice(None))
@@ -112,7 +126,7 @@ class Outline:
         return tuple(self._area_of(ring) for ring in self._ring_slices())
 
     @cached_property
-    def lengths(self) -> FloatArray:
+    def lengths(self) -> Floats:
         """The length of each arc in units: float64 (n,)."""
         lengths = np.abs(self.end - self.start)
         bent = np.flatnonzero(self.curved)
@@ -142,7 +156,7 @@ class Outline:
         low_y, high_y = _extent(self.start.imag, self.control.imag, self.end.imag, self.curved)
         return low_x, low_y, high_x, high_y
 
-    def flatten(self, *, accuracy: float) -> list[ComplexArray]:
+    def flatten(self, *, accuracy: float) -> list[Complexes]:
         """Replace every parabolic arc by chords that stay within `accuracy` (in units) of it.
 
         Returns one complex128 array per ring, closed implicitly: the first point is not repeated. An arc and its
@@ -179,7 +193,7 @@ class Outline:
         if len(outer) < 2:
             return shapely.Polygon(*outer, holes=holes)
         shells = [shapely.Polygon(ring) for ring in outer]
-        inside: list[list[FloatArray]] = [[] for _ in shells]
+        inside: list[list[Floats]] = [[] for _ in shells]
         for hole in holes:
             patch = shapely.Polygon(hole)
             around = [k for k, shell in enumerate(shells) if shell.covers(patch)]
@@ -225,42 +239,7 @@ class Outline:
         return fsum(np.concatenate([term.ravel() for term in terms]).tolist()) / 6
 
 
-def quadratic_lengths(start: ComplexArray, control: ComplexArray, end: ComplexArray) -> FloatArray:
-    """Give the lengths of quadratic Bezier curves, float64 (n,), to a few units in the last place.
-
-    Half the derivative runs linearly from p = control - start to q = end - control. With coordinates x along q - p
-    and y across it, the length is (|p| + |q|)/2 + (x_p + x_q)^2 / (2 (|p| + |q|)) + y^2 (asinh(x_q/y) - asinh(x_p/y)) /
-    |q - p|: three terms that are never negative, so nothing cancels. Degenerate: q = p (no bend) is a segment, y = 0
-    (folded upon itself) drops the last term.
-
-    Source: the integral of sqrt(x^2 + y^2), with asinh b - asinh a = asinh(b sqrt(1 + a^2) - a sqrt(1 + b^2)).
-    """
-    p, q = control - start, end - control
-    bend = np.abs(q - p)
-    length_p, length_q = np.abs(p), np.abs(q)
-    total = length_p + length_q
-    straight = bend <= 0.0
-    safe_bend = np.where(straight, 1.0, bend)
-    along = (q - p) / safe_bend
-    x_p = p.real * along.real + p.imag * along.imag
-    x_q = q.real * along.real + q.imag * along.imag
-    # Across: the same for p and q; the shorter one gives it with the smaller error.
-    short = np.where(length_p < length_q, p, q)
-    y = np.abs(along.real * short.imag - along.imag * short.real)
-    folded = straight | (y <= 1e-100 * total)  # then the last term is below 1e-197 of the length
-    safe_y = np.where(folded, 1.0, y)
-    one_side = x_p * x_q > 0.0
-    denominator = np.where(one_side, x_q * length_p + x_p * length_q, 1.0)
-    near = np.arcsinh((x_p + x_q) * bend / denominator)
-    across = np.arcsinh(x_q / safe_y) - np.arcsinh(x_p / safe_y)
-    turn = np.where(folded, 0.0, y * y * np.where(one_side, near, across) / safe_bend)
-    safe_total = np.where(total == 0.0, 1.0, total)
-    curve = total / 2 + (x_p + x_q) ** 2 / (2 * safe_total) + turn
-    lengths: FloatArray = np.where(straight, total, curve)
-    return lengths
-
-
-def _extent(start: FloatArray, control: FloatArray, end: FloatArray, curved: NDArray[np.bool_]) -> tuple[float, float]:
+def _extent(start: Floats, control: Floats, end: Floats, curved: NDArray[np.bool_]) -> tuple[float, float]:
     """Give the least and greatest value of one coordinate over all arcs."""
     bend = start - 2 * control + end
     turns = curved & ((start - control) * (end - control) > 0.0) & (bend != 0.0)
@@ -271,14 +250,14 @@ def _extent(start: FloatArray, control: FloatArray, end: FloatArray, curved: NDA
     return float(values.min()), float(values.max())
 
 
-def _exact_cross(u: ComplexArray, v: ComplexArray) -> FloatArray:
+def _exact_cross(u: Complexes, v: Complexes) -> Floats:
     """Give the cross products u x v as four floats each, (4, n), whose exact sum is the exact product."""
     gain = _exact_product(u.real, v.imag)
     loss = _exact_product(u.imag, v.real)
     return np.concatenate((gain, -loss))
 
 
-def _exact_product(a: FloatArray, b: FloatArray) -> FloatArray:
+def _exact_product(a: Floats, b: Floats) -> Floats:
     """Give the products a*b as rounded value and rounding error, (2, n) (Dekker 1971)."""
     product = a * b
     wide_a, wide_b = _SPLITTER * a, _SPLITTER * b

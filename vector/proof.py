@@ -16,11 +16,14 @@ from math import fsum
 import numpy as np
 import numpy.typing as npt
 
-from voronoi_tiles.tolerance import PROOF_LIMIT
-from voronoi_tiles.vector.contour import Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints
+from voronoi_tiles.base.errors import ProofError
+from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.base.tolerance import PROOF_LIMIT
+from voronoi_tiles.designs.site import Site
+from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.vector.outline import Outline
-from voronoi_tiles.vector.tessellation import LocalTile, TileRecord
-from voronoi_tiles.wallpaper import Lattice, Operation, WallpaperGroup
+from voronoi_tiles.vector.tessellation import LocalTile, TileRecord, tessellate
 
 # Where on an arc its points are tested; its end is the next one's start.
 _PARAMETERS = (0.0, 0.25, 0.5, 0.75)
@@ -28,6 +31,24 @@ _PARAMETERS = (0.0, 0.25, 0.5, 0.75)
 _UNDECIDED = 1e-7
 # Up to this many nodes, asking for each is quicker than finding out which hang together.
 _FEW = 256
+
+
+def proved_tiles(
+    sites: Sequence[Site], group: WallpaperGroup, lattice: Lattice
+) -> tuple[list[TileRecord], ProofReport]:
+    """Return the tile of each site, and the proof that they are right.
+
+    Raises TouchingCopiesError where two copies touch, ProofError where the result fails its proof.
+    """
+    tiles = tessellate(sites, group, lattice)
+    proof = prove(group, lattice, tiles)
+    if not proof.passed:
+        tiles[0].refuse_touching()
+        tiles = tessellate(sites, group, lattice, without_short=True)
+        proof = prove(group, lattice, tiles)
+    if not proof.passed:
+        raise ProofError("the result failed its proof: " + "; ".join(proof.failures), proof)
+    return tiles, proof
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +120,7 @@ def prove(group: WallpaperGroup, lattice: Lattice, records: Sequence[TileRecord]
     )
 
 
-class _Site:
+class _ProvedSite:
     """A site and shapely's tree of its elements: distances of points from it."""
 
     def __init__(self, tile: LocalTile) -> None:
@@ -129,7 +150,7 @@ class _Site:
 
 def _distances(group: WallpaperGroup, lattice: Lattice, tiles: Sequence[LocalTile]) -> tuple[float, float]:
     """Return the largest error of equidistance, and by how much any copy is too near, over points of all edges."""
-    sites = {tile.name: _Site(tile) for tile in tiles}
+    sites = {tile.name: _ProvedSite(tile) for tile in tiles}
     equidistance = emptiness = 0.0
     for tile in tiles:
         points, arc = _sample(tile.outline)
@@ -148,7 +169,7 @@ def _distances(group: WallpaperGroup, lattice: Lattice, tiles: Sequence[LocalTil
 
 
 def _nearest_translate(
-    lattice: Lattice, operation: Operation, site: _Site, points: Complexes, enough: Floats
+    lattice: Lattice, operation: Operation, site: _ProvedSite, points: Complexes, enough: Floats
 ) -> Floats:
     """Return each point's distance from the nearest of the site's copies under an operation and all translations.
 

@@ -15,9 +15,9 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from voronoi_tiles.vector.contour import Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints
+from voronoi_tiles.base.maps import Isometry
 from voronoi_tiles.vector.outline import Outline
-from voronoi_tiles.wallpaper import Isometry
 
 QUANTUM: Final = 2.0**-24
 """What coordinates are rounded to; sample steps. Far above the rounding of a copy's coordinates (2^-40 for thousands of
@@ -66,7 +66,7 @@ class Grid:
         return np.asarray(self.origin + (s * self.a + t * self.b))
 
 
-class Crossings(NamedTuple):
+class ScanCrossings(NamedTuple):
     """Where an outline crosses the rows or columns of a grid.
 
     Attributes:
@@ -116,7 +116,7 @@ class OwnerImage:
     count: npt.NDArray[np.int32]
 
 
-def crossings(outline: Outline, isometry: Isometry, grid: Grid, axis: Literal[0, 1] = 0) -> Crossings:
+def crossings(outline: Outline, isometry: Isometry, grid: Grid, axis: Literal[0, 1] = 0) -> ScanCrossings:
     """Return where the image of an outline crosses the lines of samples: rows along a (axis 0), columns along b (1).
 
     An arc's pieces between its ends and its turning point meet the rows j with ceil(low) <= j < ceil(high), where low
@@ -161,7 +161,7 @@ def crossings(outline: Outline, isometry: Isometry, grid: Grid, axis: Literal[0,
     # To the right of what rises lies what is outside, unless the plane is turned over.
     flips = isometry.conj ^ (grid.det < 0.0) ^ (axis == 1)
     enters = (rising ^ turned[arc]) == flips
-    return Crossings(arc, base_y.astype(np.intp)[arc] + j, position, np.where(enters, 1, -1))
+    return ScanCrossings(arc, base_y.astype(np.intp)[arc] + j, position, np.where(enters, 1, -1))
 
 
 def scan_spans(copies: Sequence[tuple[Outline, Isometry]], grid: Grid) -> Spans:

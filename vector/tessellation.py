@@ -8,38 +8,36 @@ from functools import cached_property
 
 import numpy as np
 
-from voronoi_tiles.errors import ProofError
-from voronoi_tiles.site import Site
-from voronoi_tiles.tolerance import PROOF_LIMIT, SAME_POINT
+from voronoi_tiles.base.arrays import Complexes, Ints
+from voronoi_tiles.base.errors import ProofError
+from voronoi_tiles.base.maps import move
+from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.base.tolerance import PROOF_LIMIT, SAME_POINT
+from voronoi_tiles.designs.site import Site
+from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.vector.arcs import Neighbour, parabola_controls
-from voronoi_tiles.vector.bisectors import TouchingElementsError
-from voronoi_tiles.vector.candidates import build_hierarchy
-from voronoi_tiles.vector.cells import Parts, UnboundedCellError, bound_cells
-from voronoi_tiles.vector.contour import Complexes, Contour, Ints, enclosed, trace_contour
-from voronoi_tiles.vector.copies import (
+from voronoi_tiles.vector.cells.bisectors import TouchingElementsError
+from voronoi_tiles.vector.cells.candidates import build_hierarchy
+from voronoi_tiles.vector.cells.cells import Parts, UnboundedCellError, bound_cells
+from voronoi_tiles.vector.cells.half_edges import Contour, enclosed, trace_contour
+from voronoi_tiles.vector.cells.images import surround
+from voronoi_tiles.vector.cells.pencils import Rows, make_rows
+from voronoi_tiles.vector.cells.touching import refuse_touching
+from voronoi_tiles.vector.cells.trace import Boundary, OpenBoundaryError, trace_boundary
+from voronoi_tiles.vector.complex.edges import Edge, Traced, UnpairedEdgeError, long_edges, pair_edges
+from voronoi_tiles.vector.complex.shared import SharedOutline, share_edges
+from voronoi_tiles.vector.copies import Copies, Placed, copies_near, place, translation
+from voronoi_tiles.vector.motions import (
     IDENTITY,
     Action,
-    Copies,
     Motion,
-    Placed,
     compose,
-    copies_near,
     modulo_lattice,
-    move,
-    place,
     reverses_orientation,
     to_motion,
     to_operation,
-    translation,
 )
-from voronoi_tiles.vector.edges import Edge, Traced, UnpairedEdgeError, long_edges, pair_edges
 from voronoi_tiles.vector.outline import Outline
-from voronoi_tiles.vector.rows import Rows, make_rows
-from voronoi_tiles.vector.shared import SharedOutline, share_edges
-from voronoi_tiles.vector.surroundings import surround
-from voronoi_tiles.vector.touching import refuse_touching
-from voronoi_tiles.vector.trace import Boundary, OpenBoundaryError, trace_boundary
-from voronoi_tiles.wallpaper import Lattice, Operation, WallpaperGroup
 
 # A gap this small between copies, relative to the cell's size, makes the engine look whether they touch.
 _SUSPICIOUS = 1e-9

@@ -8,10 +8,10 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING
 
+from voronoi_tiles.base.version import __version__
+
 if TYPE_CHECKING:
-    from voronoi_tiles.crosscheck import CheckReport
-    from voronoi_tiles.design import Design
-    from voronoi_tiles.errors import (
+    from voronoi_tiles.base.errors import (
         CheckError,
         DesignError,
         OutputError,
@@ -20,15 +20,18 @@ if TYPE_CHECKING:
         TouchingCopiesError,
         VoronoiTilesError,
     )
+    from voronoi_tiles.base.maps import Isometry
+    from voronoi_tiles.base.operations import Operation
+    from voronoi_tiles.crosscheck import CheckReport
+    from voronoi_tiles.designs.design import Design
+    from voronoi_tiles.designs.site import Site
     from voronoi_tiles.fabrication import Job, JobError, Product
-    from voronoi_tiles.picture import render
-    from voronoi_tiles.site import Site
+    from voronoi_tiles.groups.wallpaper import GROUPS, Lattice, WallpaperGroup
+    from voronoi_tiles.pictures.rendering import render
     from voronoi_tiles.tiling import Tile, Tiling
     from voronoi_tiles.vector.arcs import Arc, LineArc, Neighbour, ParabolaArc
     from voronoi_tiles.vector.outline import Outline
-    from voronoi_tiles.wallpaper import GROUPS, Isometry, Lattice, Operation, WallpaperGroup
 
-__version__ = "0.1.0"
 
 __all__ = [
     "GROUPS",
@@ -62,8 +65,8 @@ __all__ = [
 
 _HOMES = {
     "voronoi_tiles.crosscheck": ("CheckReport",),
-    "voronoi_tiles.design": ("Design",),
-    "voronoi_tiles.errors": (
+    "voronoi_tiles.designs.design": ("Design",),
+    "voronoi_tiles.base.errors": (
         "CheckError",
         "DesignError",
         "OutputError",
@@ -73,12 +76,12 @@ _HOMES = {
         "VoronoiTilesError",
     ),
     "voronoi_tiles.fabrication": ("Job", "JobError", "Product"),
-    "voronoi_tiles.picture": ("render",),
-    "voronoi_tiles.site": ("Site",),
+    "voronoi_tiles.pictures.rendering": ("render",),
+    "voronoi_tiles.designs.site": ("Site",),
     "voronoi_tiles.tiling": ("Tile", "Tiling"),
     "voronoi_tiles.vector.arcs": ("Arc", "LineArc", "Neighbour", "ParabolaArc"),
     "voronoi_tiles.vector.outline": ("Outline",),
-    "voronoi_tiles.wallpaper": ("GROUPS", "Isometry", "Lattice", "Operation", "WallpaperGroup"),
+    "voronoi_tiles.groups.wallpaper": ("GROUPS", "Isometry", "Lattice", "Operation", "WallpaperGroup"),
 }
 _HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -10,21 +11,20 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
-from voronoi_tiles import __version__
-from voronoi_tiles.errors import CheckError, OutputError, ProofError
-from voronoi_tiles.files import write_whole, writing
-from voronoi_tiles.site import Site
+from voronoi_tiles.base.errors import CheckError, OutputError
+from voronoi_tiles.base.files import write_whole, writing
+from voronoi_tiles.designs.site import Site
 
 if TYPE_CHECKING:
     from shapely import MultiPolygon, Polygon
 
+    from voronoi_tiles.base.operations import Operation
     from voronoi_tiles.crosscheck import CheckReport
-    from voronoi_tiles.design import Design
+    from voronoi_tiles.designs.design import Design
     from voronoi_tiles.fabrication import Job, Product
     from voronoi_tiles.vector.outline import Outline
     from voronoi_tiles.vector.proof import ProofReport
     from voronoi_tiles.vector.tessellation import Tessellation, TileRecord
-    from voronoi_tiles.wallpaper import Operation
 
 FORMATS = ("svg", "json", "dxf", "pdf", "lbrn2")
 
@@ -69,15 +69,15 @@ class Tile:
 
     def svg_path(self) -> str:
         """Write the outline as exact SVG path data in units about the design's origin, y turned to run down."""
-        from voronoi_tiles.vector.writers.svg import path_data
+        from voronoi_tiles.formats.svg.path_text import path_data
 
-        return path_data(self.outline)
+        return path_data(self.outline.paths)
 
     def _repr_svg_(self) -> str:
         """Draw the tile and its site: notebooks show this."""
-        from voronoi_tiles.vector.writers.svg import preview
+        from voronoi_tiles.pictures.notebook import tile_picture
 
-        return preview(self.outline, self.site.elements)
+        return tile_picture(self.outline, self.site.elements)
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +129,10 @@ class Tiling:
         from voronoi_tiles.crosscheck import DEFAULT_SAMPLES, crosscheck
 
         count = DEFAULT_SAMPLES if samples is None else samples
-        return crosscheck(self, samples=count, renderer=renderer, device=device, method=method, notice=notice)
+        outlines = [tile.outline for tile in self.tiles]
+        return crosscheck(
+            self.design, outlines, samples=count, renderer=renderer, device=device, method=method, notice=notice
+        )
 
     def _proof_rows(self) -> list[dict[str, Any]]:
         """Give the figures of the proof in the types of JSON."""
@@ -152,7 +155,7 @@ class Tiling:
 
         With a cross-check's report a last key, "evidence", holds what was proved and checked.
         """
-        from voronoi_tiles.vector.writers.document import outline_document, tile_record
+        from voronoi_tiles.vector.document import outline_document, tile_record
 
         document = outline_document(
             self.design.units,
@@ -167,7 +170,7 @@ class Tiling:
 
     def json(self, check: CheckReport | None = None) -> str:
         """Write the outline document as JSON text, floats with 17 significant digits."""
-        from voronoi_tiles.vector.writers.document import document_text
+        from voronoi_tiles.vector.document import document_text
 
         return document_text(self.document(check))
 
@@ -176,15 +179,16 @@ class Tiling:
 
         With a cross-check's report the metadata hold what was proved and checked.
         """
-        from voronoi_tiles.vector.writers.svg import cut_file
+        from voronoi_tiles.fabrication.exact import design_recipe, exact_drawing
+        from voronoi_tiles.formats.svg.writer import write_svg
 
-        return cut_file(
-            [(tile.site.name, tile.outline) for tile in self.tiles],
-            unit_mm=self.design.unit_mm,
-            version=__version__,
-            design=self.design.source,
-            evidence=None if check is None else self.evidence(check),
-        )
+        tiles = [(tile.site.name, tile.outline) for tile in self.tiles]
+        drawing = exact_drawing(tiles, self.design.unit_mm, design_recipe(self.design))
+        if check is not None:
+            drawing = drawing.with_evidence(self.evidence(check))
+        buffer = io.BytesIO()
+        write_svg(drawing, buffer, exact=True)
+        return buffer.getvalue().decode()
 
     def text(self, file_format: str, check: CheckReport | None = None) -> str:
         """Give the exact tiles as a text, "svg" or "json". Raises ValueError for another format."""
@@ -203,7 +207,7 @@ class Tiling:
         """
         from voronoi_tiles.fabrication import make
 
-        return make(self, job, file_format)
+        return make(self.design, self.tessellation, job, file_format)
 
     def write(
         self, path: str | os.PathLike[str], file_format: str, *, job: Job | None, check: CheckReport | None = None
@@ -300,17 +304,9 @@ def tessellate(design: Design) -> Tiling:
 
     Raises TouchingCopiesError where two copies touch, ProofError where the result fails its proof.
     """
-    from voronoi_tiles.vector.proof import prove
-    from voronoi_tiles.vector.tessellation import tessellate as tessellate_sites
+    from voronoi_tiles.vector.proof import proved_tiles
 
-    records = tessellate_sites(design.sites, design.group, design.lattice)
-    proof = prove(design.group, design.lattice, records)
-    if not proof.passed:
-        records[0].refuse_touching()
-        records = tessellate_sites(design.sites, design.group, design.lattice, without_short=True)
-        proof = prove(design.group, design.lattice, records)
-    if not proof.passed:
-        raise ProofError("the result failed its proof: " + "; ".join(proof.failures), proof)
+    records, proof = proved_tiles(design.sites, design.group, design.lattice)
     tiles = tuple(
         Tile(site, record.outline, design.group.order // len(record.symmetry), record.symmetry, record)
         for site, record in zip(design.sites, records, strict=True)

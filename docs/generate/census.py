@@ -15,11 +15,11 @@ from shapes import Shape, congruent
 from straight_lines import endless_lines, mirror_lines, same_line
 
 import voronoi_tiles as vt
-from voronoi_tiles.raster.copies import Pattern, distances, gather
-from voronoi_tiles.symmetry import symmetry_elements
+from voronoi_tiles.groups.symmetry_elements import symmetry_elements
+from voronoi_tiles.groups.wallpaper import GROUPS, Lattice, WallpaperGroup
+from voronoi_tiles.raster.scene import Pattern, distances, gather
 from voronoi_tiles.tiling import Tiling
 from voronoi_tiles.vector.outline import Outline
-from voronoi_tiles.wallpaper import GROUPS, Lattice, WallpaperGroup
 
 Complexes = NDArray[np.complex128]
 Bools = NDArray[np.bool_]

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from voronoi_tiles.symmetry import placed, symmetry_elements
-from voronoi_tiles.wallpaper import Lattice, WallpaperGroup
+from voronoi_tiles.groups.symmetry_elements import placed, symmetry_elements
+from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 
 Complexes = NDArray[np.complex128]
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from census import POINTS, Census
 
-from voronoi_tiles.wallpaper import GROUPS
+from voronoi_tiles.groups.wallpaper import GROUPS
 
 ROUNDING = 1e-12
 """How far from its chamber, beside the cell's longer side, a tile may reach that lies in it: what outlines are off."""

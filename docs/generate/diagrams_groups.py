@@ -8,8 +8,8 @@ from diagrams_tables import cell_of, determinant
 from matplotlib.axes import Axes
 
 from voronoi_tiles import GROUPS, Design, Lattice, Operation, Tiling, WallpaperGroup
-from voronoi_tiles.strokes import catmull_rom_pieces
-from voronoi_tiles.symmetry import placed, symmetry_elements
+from voronoi_tiles.designs.strokes import catmull_rom_pieces
+from voronoi_tiles.groups.symmetry_elements import placed, symmetry_elements
 
 _MOTIF = 1.15 * np.array([-2.6 + 0.8j, 1.2 - 0.7j, 3.6 + 0.5j, 2.5 + 2.6j])
 _WINDOW = 44.0

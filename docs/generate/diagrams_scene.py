@@ -2,7 +2,7 @@
 
 A scene has a site whose cells are looked at and other sites, or the copies of one site under a group. Its rows, their
 bisectors and their lower envelopes come from voronoi_tiles.vector; here they are only put into the plane, as
-voronoi_tiles.vector.rows says.
+voronoi_tiles.vector.cells.pencils says.
 """
 
 from __future__ import annotations
@@ -15,13 +15,14 @@ from diagrams_style import Complexes
 from numpy.typing import NDArray
 
 from voronoi_tiles import Design
-from voronoi_tiles.vector.bisectors import Pieces, bisector_pieces
-from voronoi_tiles.vector.candidates import Bounds, Candidates
-from voronoi_tiles.vector.contour import Contour, trace_contour
-from voronoi_tiles.vector.copies import IDENTITY, Action, Copies, copies_near, place
-from voronoi_tiles.vector.envelope import NOTHING, lower_envelope
-from voronoi_tiles.vector.rows import Rows, make_rows
-from voronoi_tiles.vector.surroundings import Surroundings, surround
+from voronoi_tiles.vector.cells.bisectors import PartialQuadratics, bisector_pieces
+from voronoi_tiles.vector.cells.candidates import Bounds, Candidates
+from voronoi_tiles.vector.cells.envelope import NOTHING, lower_envelope
+from voronoi_tiles.vector.cells.half_edges import Contour, trace_contour
+from voronoi_tiles.vector.cells.images import Surroundings, surround
+from voronoi_tiles.vector.cells.pencils import Rows, make_rows
+from voronoi_tiles.vector.copies import Copies, copies_near, place
+from voronoi_tiles.vector.motions import IDENTITY, Action
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
@@ -39,7 +40,7 @@ class Scene:
 
     contour: Contour
     rows: Rows
-    pieces: Pieces
+    pieces: PartialQuadratics
     row: Ints
     start: Floats
     end: Floats

@@ -12,7 +12,7 @@ from shapely import LineString, Point, Polygon
 from shapely.ops import polygonize, unary_union
 
 from voronoi_tiles import GROUPS, Lattice, WallpaperGroup
-from voronoi_tiles.symmetry import Line, placed, symmetry_elements
+from voronoi_tiles.groups.symmetry_elements import Line, placed, symmetry_elements
 
 PAGE = Path(__file__).parents[1] / "groups.md"
 

@@ -16,7 +16,7 @@ from random_sites import TOLERANCE
 from running import ROOT, Command, command_block, image_table, run_all
 
 from voronoi_tiles import Design
-from voronoi_tiles.wallpaper import GROUPS
+from voronoi_tiles.groups.wallpaper import GROUPS
 
 SITES = 1000
 """Random sites per group; a count."""

@@ -19,14 +19,14 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from voronoi_tiles import Design
-from voronoi_tiles.colouring import palette
-from voronoi_tiles.files import writing
-from voronoi_tiles.raster.colouring import colour
-from voronoi_tiles.raster.copies import Pattern
+from voronoi_tiles.base.files import writing
+from voronoi_tiles.formats.png import PngStream
+from voronoi_tiles.groups.periodic_colouring import palette
 from voronoi_tiles.raster.frame import rectangle_frame
+from voronoi_tiles.raster.image_colouring import colour
 from voronoi_tiles.raster.picture import INK, Region
-from voronoi_tiles.raster.png import PngStream
-from voronoi_tiles.raster.render import LabelImage, Renderer
+from voronoi_tiles.raster.renderer import LabelImage, Renderer
+from voronoi_tiles.raster.scene import Pattern
 
 Floats = NDArray[np.float64]
 

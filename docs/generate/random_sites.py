@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from voronoi_tiles.wallpaper import GROUPS
+from voronoi_tiles.groups.wallpaper import GROUPS
 
 CELLS: dict[str, dict[str, float]] = {
     "oblique": {"a": 60.0, "b": 47.0, "angle": 73.0},

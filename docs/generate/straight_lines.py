@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from voronoi_tiles.symmetry import symmetry_elements
+from voronoi_tiles.groups.symmetry_elements import symmetry_elements
+from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.tiling import Tiling
-from voronoi_tiles.wallpaper import Lattice, WallpaperGroup
 
 Complexes = NDArray[np.complex128]
 

@@ -1,51 +1,6 @@
-"""The cross-check: the exact outlines of the vector stage against an image of the raster stage, both ways.
+"""The cross-check: the exact outlines of the vector stage against an image of the raster stage, both ways."""
 
-The two stages share no code but the vocabulary: what one has computed the other has not seen. Every threshold follows
-from a precision that one of them states; none is tuned.
-"""
-
-from __future__ import annotations
-
-from collections.abc import Callable
-from typing import TYPE_CHECKING
-
-from voronoi_tiles.crosscheck.edges import compare_crossings, compare_points
-from voronoi_tiles.crosscheck.labels import compare_labels
-from voronoi_tiles.crosscheck.report import CheckReport, Figure, Marks
-from voronoi_tiles.crosscheck.subject import Subject
-from voronoi_tiles.raster.copies import Pattern
-from voronoi_tiles.raster.frame import cell_frame
-from voronoi_tiles.raster.render import Choice, Method, Renderer
-
-if TYPE_CHECKING:
-    from voronoi_tiles.tiling import Tiling
+from voronoi_tiles.crosscheck.check_report import CheckReport, Figure, Marks
+from voronoi_tiles.crosscheck.comparison import DEFAULT_SAMPLES, crosscheck
 
 __all__ = ["DEFAULT_SAMPLES", "CheckReport", "Figure", "Marks", "crosscheck"]
-
-DEFAULT_SAMPLES = 1024
-"""Samples along the side of a cell where the caller names no number."""
-
-
-def crosscheck(
-    tiling: Tiling,
-    *,
-    samples: int = DEFAULT_SAMPLES,
-    renderer: Choice = "auto",
-    device: int | None = None,
-    method: Method = "exact",
-    notice: Callable[[str], None] | None = None,
-) -> CheckReport:
-    """Compare a tiling's outlines with an image of the same design over one cell, which stands for the whole plane.
-
-    The image has about samples x samples samples. `renderer`, `device`, `method` and `notice` are those of Renderer.
-    Raises RenderError where there is no image to be had, ValueError where an outline is open (which the proof refuses).
-    """
-    design = tiling.design
-    pattern = Pattern(design.sites, design.group, design.lattice)
-    frame = cell_frame(design.lattice, samples, centre=complex(design.sites[0].nodes.mean()))
-    image = Renderer(renderer, device=device, method=method, notice=notice).render(pattern, frame)
-    subject = Subject(tiling, pattern, image)
-    owned, figures = compare_labels(subject)
-    figures += compare_crossings(subject, owned)
-    figures.append(compare_points(subject))
-    return CheckReport(image.provenance, frame, design.units, tuple(figures))

@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from voronoi_tiles.crosscheck.report import Figure, Marks
-from voronoi_tiles.crosscheck.subject import Codes, Floats, Ints, Subject
-from voronoi_tiles.raster.judge import decode, encode
-from voronoi_tiles.raster.ragged import first_least
+from voronoi_tiles.base.arrays import Floats, Ints, first_least
+from voronoi_tiles.crosscheck.check_report import Figure, Marks
+from voronoi_tiles.crosscheck.subject import Codes, Subject
+from voronoi_tiles.raster.reference import decode, encode
 from voronoi_tiles.vector.scan import QUANTUM, owners
 
 
@@ -59,7 +59,7 @@ def compare_labels(subject: Subject) -> tuple[Owners, list[Figure]]:
         int(wrong.sum()),
         float(excess[np.isfinite(excess)].max(initial=0.0)),
         limit,
-        subject.tiling.design.units,
+        subject.units,
         "2 (accuracy + rounding), and 2^-23 of a sample for the scan; where the image's two distances are within twice "
         f"its error ({float(np.max(bound)):.2g} at most) float64 decides: {int(undecided.sum()):,} times",
         _marks(subject, column[wrong], row[wrong], excess[wrong]),
@@ -105,8 +105,9 @@ def _area(subject: Subject, owner: NDArray[np.int32], codes: Codes) -> Figure:
     counts = np.bincount(owner.ravel(), minlength=len(codes))
     by_site = np.bincount(site_of[decode(codes)[:, 0]], weights=counts, minlength=len(pattern.sites))
     deviations = []
-    for tile, count in zip(subject.tiling.tiles, by_site.tolist(), strict=True):
-        true = tile.area * tile.copies_per_cell
+    copies = np.bincount(site_of, minlength=len(pattern.sites)).tolist()
+    for outline, per_cell, count in zip(subject.outlines, copies, by_site.tolist(), strict=True):
+        true = outline.area * per_cell
         deviations.append(abs(count * subject.frame.area_per_sample - true) / true)
     return Figure(
         "area",

@@ -5,25 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from voronoi_tiles.raster.copies import Pattern
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints
+from voronoi_tiles.base.tolerance import PROOF_LIMIT
 from voronoi_tiles.raster.frame import Frame
-from voronoi_tiles.raster.judge import Judge, decode, encode
-from voronoi_tiles.raster.render import LabelImage
-from voronoi_tiles.tolerance import PROOF_LIMIT
+from voronoi_tiles.raster.reference import Judge, decode, encode
+from voronoi_tiles.raster.renderer import LabelImage
+from voronoi_tiles.raster.scene import Pattern
 from voronoi_tiles.vector.outline import Outline
 from voronoi_tiles.vector.scan import Grid
 
-if TYPE_CHECKING:
-    from voronoi_tiles.tiling import Tiling
-
-Ints = NDArray[np.intp]
-Floats = NDArray[np.float64]
-Complexes = NDArray[np.complex128]
 Codes = NDArray[np.int64]
 
 STRANGER = -1
@@ -32,9 +26,10 @@ STRANGER = -1
 
 @dataclass(frozen=True, eq=False)
 class Subject:
-    """A tiling, and an image of the same pattern over one cell."""
+    """The outline of each site's tile, in `units`, and an image of the same pattern over one cell."""
 
-    tiling: Tiling
+    units: str
+    outlines: tuple[Outline, ...]
     pattern: Pattern
     image: LabelImage
 
@@ -42,11 +37,6 @@ class Subject:
     def frame(self) -> Frame:
         """The frame of the image."""
         return self.image.frame
-
-    @cached_property
-    def outlines(self) -> tuple[Outline, ...]:
-        """The outline of each site's tile."""
-        return tuple(tile.outline for tile in self.tiling.tiles)
 
     @cached_property
     def accuracy(self) -> float:

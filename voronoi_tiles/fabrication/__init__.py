@@ -3,6 +3,6 @@
 from __future__ import annotations
 
 from voronoi_tiles.fabrication.job import Job, JobError
-from voronoi_tiles.fabrication.making import Product, colour_names, make, make_colours
+from voronoi_tiles.fabrication.product import Product, colour_names, make, make_colours
 
 __all__ = ["Job", "JobError", "Product", "colour_names", "make", "make_colours"]

@@ -7,17 +7,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from voronoi_tiles.fabrication.bridges import bridged
-from voronoi_tiles.fabrication.colouring import Colouring
+from voronoi_tiles.base.arrays import Bools
+from voronoi_tiles.fabrication.clipping import OUTSIDE, Strands
+from voronoi_tiles.fabrication.edge_tabs import bridged
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.layout import Contours, Layout
-from voronoi_tiles.presets import Role
-from voronoi_tiles.vector.curves.areas import ring_areas
-from voronoi_tiles.vector.curves.paths import Bools, Paths
-from voronoi_tiles.vector.curves.tabs import with_tabs
-from voronoi_tiles.vector.sheet.strands import OUTSIDE, Strands
-from voronoi_tiles.vector.sheet.tour import short_tour
-from voronoi_tiles.vector.sheet.trails import find_trails, joined
+from voronoi_tiles.fabrication.tile_colouring import TileColouring
+from voronoi_tiles.fabrication.tour import short_tour
+from voronoi_tiles.fabrication.trails import find_trails, joined
+from voronoi_tiles.formats.presets import Role
+from voronoi_tiles.paths.areas import ring_areas
+from voronoi_tiles.paths.contour_tabs import with_tabs
+from voronoi_tiles.paths.paths import Paths
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +76,7 @@ def _tabbed(paths: Paths, width: float) -> Paths:
     return Paths.concatenate([tabbed, paths.take(np.flatnonzero(~long))])
 
 
-def cut_pieces(contours: Contours, colouring: Colouring, job: Job) -> list[Cut]:
+def cut_pieces(contours: Contours, colouring: TileColouring, job: Job) -> list[Cut]:
     """The contours of pieces, holes first, each colour on its own."""
     outer = ring_areas(contours.paths) > 0
     of = np.repeat(np.arange(len(contours.copy)), np.diff(contours.items))

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
-from voronoi_tiles.fabrication.art import draw_art
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.fabrication.artwork import draw_art
 from voronoi_tiles.fabrication.job import LABEL_MIN, Job, JobError
 from voronoi_tiles.fabrication.layout import Contours, Layout, Sheet
-from voronoi_tiles.lettering import fitting_height, label_position, place_labels, printable
-from voronoi_tiles.marks import BAR_MM, bar_height, reference_bar, registration_marks
-from voronoi_tiles.vector.contour import Bools, Complexes, Floats, Ints
-from voronoi_tiles.vector.curves.conversion import to_lines
-from voronoi_tiles.vector.curves.paths import Paths
-
-if TYPE_CHECKING:
-    from voronoi_tiles.tiling import Tiling
+from voronoi_tiles.fabrication.lettering import fitting_height, label_position, place_labels, printable
+from voronoi_tiles.fabrication.marks import BAR_MM, bar_height, reference_bar, registration_marks
+from voronoi_tiles.paths.conversion import to_lines
+from voronoi_tiles.paths.paths import Paths
 
 _ROOM: Final = 0.9
 """The part of the room in a tile that a label takes."""
@@ -48,20 +45,18 @@ class Engraving:
     notes: tuple[str, ...] = ()
 
 
-def engrave(
-    tiling: Tiling, layout: Layout, contours: Contours | None, sheet: Sheet, shown: Bools, *, fills: bool
-) -> Engraving:
+def engrave(layout: Layout, contours: Contours | None, sheet: Sheet, shown: Bools, *, fills: bool) -> Engraving:
     """Draw what a job asks for beside its cuts; art on those tiles on the page that are `shown`.
 
     With `fills` the target engraves what is filled: then all lines are scored. Raises DesignError where the art of a
     site cannot be used, JobError where marks or the bar have no room.
     """
     job = layout.job
-    art = draw_art(tiling, layout, shown, fills=fills)
+    art = draw_art(layout, shown, fills=fills)
     lines: list[Paths] = []
     notes: list[str] = list(art.left_out)
     if job.labels != "none":
-        labels, small = _labels(tiling, layout, contours if contours is not None else layout.contours)
+        labels, small = _labels(layout, contours if contours is not None else layout.contours)
         lines.append(labels)
         if small:
             notes.append(f"{small} pieces are too small for a label of {LABEL_MIN:g} mm")
@@ -73,7 +68,7 @@ def engrave(
 # --- labels -----------------------------------------------------------------------------------------------------
 
 
-def _labels(tiling: Tiling, layout: Layout, contours: Contours) -> tuple[Paths, int]:
+def _labels(layout: Layout, contours: Contours) -> tuple[Paths, int]:
     """A label in every piece of a tile, and how many pieces are too small for one.
 
     Numbers run as one reads: from left to right, line by line from above; lines are half a tile high.
@@ -83,7 +78,7 @@ def _labels(tiling: Tiling, layout: Layout, contours: Contours) -> tuple[Paths, 
     pieces = np.flatnonzero(contours.copy >= 0)
     line = np.round(-place[pieces].imag / (0.5 * float(np.sqrt(np.median(layout.tile_areas)))))
     pieces = pieces[np.lexsort((place[pieces].real, line))]
-    names = [printable(site.name) for site in tiling.design.sites]
+    names = [printable(site.name) for site in layout.design.sites]
     sites = layout.site[contours.copy[pieces]]
     texts = [str(k + 1) if job.labels == "number" else names[sites[k]] for k in range(len(pieces))]
     unit = {text: fitting_height(text, 1.0, _WANTED) if text.strip() else 1.0 for text in set(texts)}

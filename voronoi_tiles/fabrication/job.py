@@ -6,8 +6,8 @@ import math
 from dataclasses import asdict, dataclass
 from typing import Any, Literal, get_args
 
-from voronoi_tiles.errors import DesignError, VoronoiTilesError
-from voronoi_tiles.lengths import parse_length, parse_size
+from voronoi_tiles.base.errors import DesignError, VoronoiTilesError
+from voronoi_tiles.base.units import parse_length, parse_size
 
 Fit = Literal["whole", "clip", "frame"]
 Edges = Literal["once", "pieces"]

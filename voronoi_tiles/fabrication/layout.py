@@ -5,31 +5,32 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
 import numpy as np
 
-from voronoi_tiles.fabrication.dressing import Dressing
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
+from voronoi_tiles.base.maps import unit_at
+from voronoi_tiles.designs.design import Design
+from voronoi_tiles.fabrication.best_offset import best_shift
+from voronoi_tiles.fabrication.clipping import Strands, clipped_strands, whole_strands
+from voronoi_tiles.fabrication.contours import ClosedPieces, clipped_pieces, frame_pieces
 from voronoi_tiles.fabrication.job import Job, JobError
-from voronoi_tiles.vector.contour import Bools, Complexes, Floats, Ints
-from voronoi_tiles.vector.copies import Motion, Placed, compose, inverse, reverses_orientation
-from voronoi_tiles.vector.curves.areas import ring_areas
-from voronoi_tiles.vector.curves.conversion import to_lines
-from voronoi_tiles.vector.curves.offset import OffsetError, offset
-from voronoi_tiles.vector.curves.paths import Paths, ranges
-from voronoi_tiles.vector.curves.pieces import item_boxes
-from voronoi_tiles.vector.sheet.best import best_shift
-from voronoi_tiles.vector.sheet.faces import Pieces, clipped_pieces, frame_pieces
-from voronoi_tiles.vector.sheet.orbits import approximated
-from voronoi_tiles.vector.sheet.period import Period, make_period
-from voronoi_tiles.vector.sheet.placement import Placement, place_tiles
-from voronoi_tiles.vector.sheet.pulling import UNSTRETCHED, Stretch, pulled_apart, spread
-from voronoi_tiles.vector.sheet.region import Region
-from voronoi_tiles.vector.sheet.strands import Strands, clipped_strands, whole_strands
-from voronoi_tiles.wallpaper import unit_at
-
-if TYPE_CHECKING:
-    from voronoi_tiles.tiling import Tiling
+from voronoi_tiles.fabrication.kerf import Dressing
+from voronoi_tiles.fabrication.region import Region
+from voronoi_tiles.fabrication.spacing import UNSTRETCHED, Stretch, pulled_apart, spread
+from voronoi_tiles.fabrication.tile_placement import TilePlacement, place_tiles
+from voronoi_tiles.paths.areas import ring_areas
+from voronoi_tiles.paths.conversion import to_lines
+from voronoi_tiles.paths.offset import OffsetError, offset
+from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.paths.segments import item_boxes
+from voronoi_tiles.vector.complex.orbits import approximated
+from voronoi_tiles.vector.complex.period import Period, make_period
+from voronoi_tiles.vector.copies import Placed
+from voronoi_tiles.vector.motions import IDENTITY, Motion, compose, inverse, reverses_orientation
+from voronoi_tiles.vector.outline import Outline
+from voronoi_tiles.vector.tessellation import Tessellation
 
 FRAME = -1
 """The site of a piece of a frame."""
@@ -55,7 +56,7 @@ class Sheet:
 
 
 @dataclass(frozen=True, eq=False)
-class Copies:
+class PlacedTiles:
     """The tiles on the page, n of them: tile of the period, lattice vector, whether it is there as a whole.
 
     `moved_by` is how far each was pulled from its place, millimetres.
@@ -85,14 +86,22 @@ class Layout:
     """A tiling on the page of a job, in millimetres, y up."""
 
     def __init__(
-        self, tiling: Tiling, job: Job, sheet: Sheet, fit: Callable[[Paths], Paths] | None, *, refit: bool = True
+        self,
+        design: Design,
+        tessellation: Tessellation,
+        job: Job,
+        sheet: Sheet,
+        fit: Callable[[Paths], Paths] | None,
+        *,
+        refit: bool = True,
     ) -> None:
         """Place tiles; `fit` replaces the exact curves (in the design's units), `refit` what kerf and fillet leave."""
-        tessellation = tiling.tessellation
+        self.design = design
+        self._tessellation = tessellation
         self.job = job
         self.sheet = sheet
         self.action = tessellation.action
-        self.design_units = tiling.design.unit_mm
+        self.design_units = design.unit_mm
         period = make_period(tessellation)
         if fit is not None:
             period = approximated(period, tessellation.action, fit)
@@ -113,7 +122,13 @@ class Layout:
         if self._field is not None and job.offset is None and job.fit != "clip":
             self._move(self.spread.inverse(best_shift(self.spaced, self._field)))
         self.placement = self._place(tessellation.placed)
-        self.copies = Copies(self.placement.tile, self.placement.step, self.placement.whole, self._pull(self.placement))
+        self.copies = PlacedTiles(
+            self.placement.tile, self.placement.step, self.placement.whole, self._pull(self.placement)
+        )
+
+    def outline(self, site: int) -> Outline:
+        """The exact outline of a site's tile, in the design's units."""
+        return self._tessellation.outline(site, IDENTITY)
 
     def _refuse_crowd(self, region: Region) -> None:
         """Refuse a sheet that would hold more than memory does."""
@@ -194,7 +209,7 @@ class Layout:
             area = np.append(area, piece_areas(rest)[of] * share)
         return Contours(paths, items, copy, area)
 
-    def rest(self) -> Pieces | None:
+    def rest(self) -> ClosedPieces | None:
         """What there is beside the whole tiles: what the border leaves of those that it cuts, or the frame."""
         if self.region is None or self.job.fit == "whole":
             return None
@@ -212,17 +227,17 @@ class Layout:
         outlines, items = self.period.own_outlines
         return np.asarray(np.add.reduceat(ring_areas(outlines), items[:-1]))
 
-    def _place(self, placed: list[Placed]) -> Placement:
+    def _place(self, placed: list[Placed]) -> TilePlacement:
         """Find the tiles on the page."""
         if self.region is None:
             sites, first = np.unique(self.period.site, return_index=True)
             shifts = np.array([placed[site].shift for site in sites.tolist()], np.intp)
-            return Placement(first, shifts, np.ones(len(first), np.bool_))
+            return TilePlacement(first, shifts, np.ones(len(first), np.bool_))
         assert self._field is not None
         placement = place_tiles(self.spaced, self._field)
         if self.job.fit != "clip":
             kept = np.flatnonzero(placement.whole)
-            placement = Placement(placement.tile[kept], placement.step[kept], placement.whole[kept])
+            placement = TilePlacement(placement.tile[kept], placement.step[kept], placement.whole[kept])
         if not len(placement.tile):
             x0, y0, x1, y1 = item_boxes(*self.period.own_outlines)[0].tolist()
             other = ", or --fit clip" if self.job.fit != "clip" else ""
@@ -289,7 +304,7 @@ class Layout:
         except ValueError as error:
             raise JobError(str(error), remedy="Use --edges once, or leave --sheet out: pieces lie in a row.") from error
 
-    def _row(self, placement: Placement, apart: float) -> Complexes:
+    def _row(self, placement: TilePlacement, apart: float) -> Complexes:
         """How far tiles are moved so that their boxes stand beside each other, from where the first one is."""
         right, moves = None, []
         for tile, step in zip(placement.tile.tolist(), placement.step, strict=True):
@@ -299,7 +314,7 @@ class Layout:
             right = high_x + here + moves[-1]
         return np.array(moves, np.complex128)
 
-    def _pull(self, placement: Placement) -> Complexes:
+    def _pull(self, placement: TilePlacement) -> Complexes:
         """How far each tile is pulled; without a sheet, into a row."""
         if self.region is None and self.job.apart is not None:
             return self._row(placement, self.job.apart)
@@ -310,7 +325,7 @@ class Layout:
         return self.spread(away) - away
 
 
-def piece_areas(pieces: Pieces) -> Floats:
+def piece_areas(pieces: ClosedPieces) -> Floats:
     """The area of each piece, its holes taken off."""
     return np.asarray(np.add.reduceat(ring_areas(pieces.paths), pieces.items[:-1]))
 

@@ -6,11 +6,11 @@ import numpy as np
 
 from voronoi_tiles.fabrication.job import SHEET_MAX, SHEET_MIN, Job, JobError
 from voronoi_tiles.fabrication.layout import Sheet
-from voronoi_tiles.fabrication.rings import oriented, simple
-from voronoi_tiles.vector.curves.biarcs import to_arcs
-from voronoi_tiles.vector.curves.offset import OffsetError, offset
-from voronoi_tiles.vector.curves.paths import Paths
-from voronoi_tiles.vector.sheet.region import Region
+from voronoi_tiles.fabrication.region import Region
+from voronoi_tiles.paths.biarcs import to_arcs
+from voronoi_tiles.paths.offset import OffsetError, offset
+from voronoi_tiles.paths.orientation import oriented, simple
+from voronoi_tiles.paths.paths import Paths
 
 _CLOSED = 1e-3
 """How far apart the ends of a path may be that is meant to be closed; millimetres."""
@@ -44,7 +44,7 @@ def read_sheet(job: Job) -> Sheet:
 
 def _drawn_sheet(name: str, job: Job) -> Sheet:
     """Read the closed paths of a drawing as a sheet."""
-    from voronoi_tiles.drawings import read_drawing
+    from voronoi_tiles.formats.reading import read_drawing
 
     drawing = read_drawing(name)
     rings = Paths.concatenate([shape.paths for shape in drawing.shapes])

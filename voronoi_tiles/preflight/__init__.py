@@ -8,13 +8,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from voronoi_tiles.drawings import DrawingError, ReadDrawing, read_drawing
-from voronoi_tiles.drawings.recipe import tab_width
-from voronoi_tiles.preflight.lines import line_findings
-from voronoi_tiles.preflight.page import page_findings
-from voronoi_tiles.preflight.report import DEFAULT_LIMITS, Finding, LayerUse, Limits, PreflightReport, report_text
-from voronoi_tiles.preflight.subject import cut_shapes, layer_uses, subject_of
-from voronoi_tiles.vector.curves.paths import Paths
+from voronoi_tiles.formats.reading import DrawingError, ReadDrawing, read_drawing
+from voronoi_tiles.formats.recipe import tab_width
+from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.preflight.cut_lines import cut_shapes, layer_uses, subject_of
+from voronoi_tiles.preflight.file_findings import page_findings
+from voronoi_tiles.preflight.findings import DEFAULT_LIMITS, Finding, LayerUse, Limits, PreflightReport, report_text
+from voronoi_tiles.preflight.line_findings import line_findings
 
 __all__ = ["Finding", "LayerUse", "Limits", "PreflightReport", "judge", "preflight", "report_text"]
 

@@ -10,12 +10,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from voronoi_tiles.vector.curves.paths import ARC, CUBIC, QUAD, Paths, ranges
-
-Complexes = NDArray[np.complex128]
-Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
-Bools = NDArray[np.bool_]
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
+from voronoi_tiles.paths.paths import ARC, CUBIC, QUAD, Paths
 
 CHORDS_MAX: Final = 2_000
 """Most chords of one piece; a count. A circle of a kilometre has them at a tenth of a millimetre."""

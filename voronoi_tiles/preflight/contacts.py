@@ -6,17 +6,12 @@ from dataclasses import dataclass, fields
 from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.preflight.chord_distance import cross, distinct, divisor, dot, nearest, runs
+from voronoi_tiles.preflight.chord_search import FOUND_MAX, pairs, too_many
 from voronoi_tiles.preflight.chords import Chords
-from voronoi_tiles.preflight.pairs import cross, distinct, divisor, dot, nearest, runs
-from voronoi_tiles.preflight.search import FOUND_MAX, pairs, too_many
-from voronoi_tiles.vector.curves.paths import Paths
-
-Complexes = NDArray[np.complex128]
-Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
-Bools = NDArray[np.bool_]
 
 OVERLAP: Final = 40.0
 """From which length on lines that run along each other are cut twice; in tolerances. Two lines that part at an angle of

@@ -5,19 +5,14 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from voronoi_tiles.preflight import search
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.preflight import chord_search
+from voronoi_tiles.preflight.chord_distance import divisor, dot
 from voronoi_tiles.preflight.chords import Chords
-from voronoi_tiles.preflight.pairs import divisor, dot
-
-Complexes = NDArray[np.complex128]
-Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
-Bools = NDArray[np.bool_]
 
 
-class Ends(NamedTuple):
+class PathEnds(NamedTuple):
     """The ends of the paths that are no rings, beginnings and ends in turn.
 
     `point` is complex128 (n,), `path` (intp, n) whose end it is; `distance` (float64, n) is how far the nearest other
@@ -33,7 +28,7 @@ class Ends(NamedTuple):
     free: Bools
 
 
-def find_ends(chords: Chords, tolerance: float, gap: float) -> Ends:
+def find_ends(chords: Chords, tolerance: float, gap: float) -> PathEnds:
     """The ends of paths, and what is near to them.
 
     An end's own path counts only where it comes back: further along it than three gaps, or half of its length. Raises
@@ -48,10 +43,10 @@ def find_ends(chords: Chords, tolerance: float, gap: float) -> Ends:
     near, which = point.copy(), np.full(len(point), -1, np.intp)
     margin = complex(gap, gap)
     count = 0
-    for end, chord in search.chords_in(chords, point - margin, point + margin):
+    for end, chord in chord_search.chords_in(chords, point - margin, point + margin):
         count += len(end)
-        if count > search.CANDIDATES_MAX:
-            raise search.too_dense()
+        if count > chord_search.CANDIDATES_MAX:
+            raise chord_search.too_dense()
         start, way = chords.start[chord], chords.end[chord] - chords.start[chord]
         length = dot(way, way)
         share = np.clip(dot(point[end] - start, way) / divisor(length), 0.0, 1.0)
@@ -65,4 +60,4 @@ def find_ends(chords: Chords, tolerance: float, gap: float) -> Ends:
         ends = end[order]
         firsts = order[np.append(True, ends[1:] != ends[:-1])] if len(order) else order
         nearest[end[firsts]], near[end[firsts]], which[end[firsts]] = distance[firsts], foot[firsts], chord[firsts]
-    return Ends(point, path, nearest, near, which, nearest > tolerance)
+    return PathEnds(point, path, nearest, near, which, nearest > tolerance)

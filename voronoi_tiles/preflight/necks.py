@@ -6,18 +6,12 @@ from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
+from voronoi_tiles.preflight.chord_distance import Nearest, distinct, divisor, dot, nearest, runs
+from voronoi_tiles.preflight.chord_search import FOUND_MAX, pairs, too_dense, too_many
 from voronoi_tiles.preflight.chords import Chords, lines
 from voronoi_tiles.preflight.contacts import run_beside
-from voronoi_tiles.preflight.pairs import Nearest, distinct, divisor, dot, nearest, runs
-from voronoi_tiles.preflight.search import FOUND_MAX, pairs, too_dense, too_many
-from voronoi_tiles.vector.curves.paths import ranges
-
-Complexes = NDArray[np.complex128]
-Floats = NDArray[np.float64]
-Ints = NDArray[np.intp]
-Bools = NDArray[np.bool_]
 
 _APPROACH: Final = 1e-6
 """By how much of its length a line may come nearer to be still parallel; no unit. Rounding leaves 1e-10."""

@@ -1,0 +1,1 @@
+"""What tests share: strategies, oracles, makers of input, readers of files, and the fuzz."""

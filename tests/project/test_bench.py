@@ -1,0 +1,221 @@
+"""The benches: they run at their smallest size, and their checks can fail."""
+
+from __future__ import annotations
+
+import os
+import sys
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+import mpmath
+import numpy as np
+import pytest
+
+# At the end: tests/ has a module `sheets` too.
+sys.path.append(str(Path(__file__).parents[2] / "bench"))
+
+import accuracy
+import cgal
+import engine
+import exact
+import peer
+import report
+
+from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.designs.site import Site
+from voronoi_tiles.groups.wallpaper import GROUPS
+from voronoi_tiles.vector.outline import Outline
+
+SEGMENTS = 5
+
+
+class Problem(NamedTuple):
+    """A design with its true plane."""
+
+    drawing: accuracy.Drawing
+    outline: Outline
+    plane: exact.Plane
+    number: dict[Operation, int]
+
+
+@pytest.fixture(scope="module")
+def problem() -> Problem:
+    """A curve of a few segments in p4."""
+    drawing, record = accuracy.draw(GROUPS["p4"], "curve", SEGMENTS, np.random.default_rng(7))
+    copies = accuracy.surroundings(drawing, record)
+    plane = exact.exact_images(drawing.site, drawing.lattice, drawing.group, copies)
+    return Problem(drawing, record.outline, plane, {copy: k for k, copy in enumerate(copies)})
+
+
+def run_boost(plane: exact.Plane, outline: Outline) -> tuple[exact.Plane, peer.Reading]:
+    """Run Boost.Polygon on the copies that share an edge with the tile."""
+    return accuracy._run_boost(plane, plane.nodes[: len(outline.neighbours) + 1])
+
+
+def row_of(score: accuracy.Score) -> accuracy.Row:
+    """A row of the engine alone."""
+    return accuracy.Row("p4", "curve", SEGMENTS, 1, (score, None, None))
+
+
+# --- 50 digits -----------------------------------------------------------------------------------------------
+
+
+def two_segments() -> exact.Plane:
+    """A segment from 0 to 1, and its copy from 2i to 1 + 2.5i, which is none: the arithmetic does not care."""
+    site = Site("s", np.array([0, 1], dtype=complex), np.array([[0, 1]]))
+    return exact.as_given(site, np.array([[0, 1], [2j, 1 + 2.5j]]), 1.0)
+
+
+def test_vertex_in_closed_form() -> None:
+    """Above the end of a segment the vertex with a line has a closed form."""
+    # On x = 1 the line y = 2 + x/2 is (2.5 - y) 2 / sqrt 5 away, the segment y.
+    vertex = exact.true_vertices(two_segments(), frozenset({1, 2, 5}), 1 + 1.18j)[0]
+    share = 2 / mpmath.sqrt(5)
+    assert abs(vertex.point - mpmath.mpc(1, mpmath.mpf("2.5") * share / (1 + share))) < mpmath.mpf(10) ** -45
+    assert vertex.label == {1, 2, 5}
+
+
+def test_no_vertex_where_another_element_is_nearer() -> None:
+    """The two points 0 and 1 and the upper line have such a point, but the segment between them is nearer to it."""
+    plane = two_segments()
+    z = exact.solve(plane, frozenset({0, 1, 5}), 0.5 + 1j)
+    assert z is not None
+    assert z.real == 0.5
+    assert exact.true_vertices(plane, frozenset({0, 1, 5}), complex(z)) == []
+
+
+def test_images_have_fifty_digits(problem: Problem) -> None:
+    """Six times a sixth of a turn is nothing: to 1e-48 in the exact plane, which doubles cannot give."""
+    group = GROUPS["p6"]
+    site = problem.drawing.site
+    lattice = group.lattice(60.0)
+    sixth = next(o for o in group.operations if lattice.isometry(o).a == complex(0.5, np.sqrt(3) / 2))
+    plane = exact.exact_images(site, lattice, group, [group.operations[0], sixth])
+    first, turned = plane.node(0, 0), plane.node(1, 0)
+    assert abs((turned / first) ** 6 - 1) < mpmath.mpf(10) ** -48
+    assert abs((mpmath.mpc(complex(plane.nodes[1, 0])) / first) ** 6 - 1) > mpmath.mpf(10) ** -20
+
+
+# --- accuracy ------------------------------------------------------------------------------------------------
+
+
+def test_engine_is_measured(problem: Problem) -> None:
+    """Every vertex of a good outline is found, and is as near as doubles go."""
+    _, outline, plane, number = problem
+    score, true = accuracy.score_engine(plane, outline, number)
+    assert len(true) == len(outline) == len(score.errors)
+    assert max(score.errors) < 1e-14
+    assert max(score.edges) < 1e-14
+    assert not accuracy.failures([row_of(score)])
+
+
+def test_moved_vertex_is_seen(problem: Problem) -> None:
+    """A vertex that is a millionth off is measured as such, and the verdict is that the limit is broken."""
+    _, outline, plane, number = problem
+    start, end = outline.start.copy(), outline.end.copy()
+    start[3] += 6e-5
+    end[2] = start[3]
+    score, _ = accuracy.score_engine(plane, replace(outline, start=start, end=end), number)
+    assert max(score.errors) == pytest.approx(1e-6, rel=1e-6)
+    assert max(score.edges) > 1e-8
+    assert accuracy.failures([row_of(score)])
+
+
+def test_boost_is_measured(problem: Problem) -> None:
+    """Boost.Polygon has every vertex; its rounded input is what it is off by."""
+    _, outline, plane, number = problem
+    _, true = accuracy.score_engine(plane, outline, number)
+    given, reading = run_boost(plane, outline)
+    score, more = accuracy.score_peer(plane, given, true, reading)
+    assert (score.missing, score.merged, score.extra, score.untrue, more) == (0, 0, 0, 0, [])
+    assert max(score.own) < 1e-14 < max(score.errors) < 1e-5
+
+
+def test_vertices_that_one_side_lacks_are_counted(problem: Problem) -> None:
+    """What the peer lacks is missing; what the true list lacks is found through the peer."""
+    _, outline, plane, number = problem
+    _, true = accuracy.score_engine(plane, outline, number)
+    given, reading = run_boost(plane, outline)
+    score, more = accuracy.score_peer(plane, given, true[1:], reading)
+    assert score.extra == 1
+    assert [vertex.label for vertex in more] == [true[0].label]
+    less = peer.Reading(reading.cells[: len(reading.cells) // 2], reading.owner)
+    assert accuracy.score_peer(plane, given, true, less)[0].missing > 0
+
+
+# --- speed ---------------------------------------------------------------------------------------------------
+
+
+def test_comparison_runs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """The smallest curves, with Boost.Polygon; the tables have a row for each."""
+    monkeypatch.setattr(engine, "has_cgal", lambda: False)
+    timings = engine.compare("p4", (1, 3), 3, 3)
+    engine.print_ratios(timings)
+    engine.print_times(timings)
+    rows = [line for line in capsys.readouterr().out.splitlines() if "| p4 |" in line]
+    assert len(rows) == 4
+    assert all(len(timing.engine) == len(timing.blocks[0].boost) == 3 for timing in timings)
+    assert [len(timing.blocks) for timing in timings] == [2, 2]
+
+
+def test_wrong_area_stops_the_comparison(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A peer with another tile is not timed."""
+    area = peer.tile_area
+    monkeypatch.setattr(peer, "tile_area", lambda *given: 1.00001 * area(*given))
+    with pytest.raises(AssertionError, match="area is off"):
+        engine.compare("p4", (1,), 1, 3)
+
+
+def test_cgal_gives_the_same_tile(monkeypatch: pytest.MonkeyPatch) -> None:
+    """CGAL's area is the engine's, where it is installed; VORONOI_TILES_REQUIRE_CGAL=1 makes its absence an error."""
+    try:
+        cgal.version()
+    except cgal.MissingError as error:
+        if os.environ.get("VORONOI_TILES_REQUIRE_CGAL") == "1":
+            raise
+        pytest.skip(str(error))
+    monkeypatch.setattr(cgal, "FLAGS", ("-std=c++17", "-O0", "-frounding-math"))  # compiles in a third of the time
+    case = engine.case_of("p6", 3)
+    record = case.solve()
+    nodes = peer.block_nodes(case.site, case.lattice, engine.peer.neighbours(record))
+    _, reading = cgal.run_cgal(case.site, nodes)
+    segments = peer.block_segments(case.site, nodes)
+    assert peer.tile_area(reading, segments) == pytest.approx(record.outline.area, rel=1e-12)
+    given = exact.as_given(case.site, nodes, 60.0)
+    found = accuracy.outline_vertices(given, reading)
+    gaps = np.abs(record.outline.start[:, None] - np.array([z for z, _ in found])).min(axis=1)
+    assert gaps.max() < 1e-12
+
+
+def test_missing_cgal_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without a compiler the reason is given, in the tables too."""
+    monkeypatch.setattr(cgal.shutil, "which", lambda _: None)
+    monkeypatch.setattr(cgal, "version", cgal.version.__wrapped__)
+    assert "g++ is missing" in cgal.described()
+    assert not engine.has_cgal()
+
+
+# --- the report ----------------------------------------------------------------------------------------------
+
+
+def test_tables_go_between_their_marks(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Only what stands between the marks changes, and what is printed is printed too."""
+    target = tmp_path / "README.md"
+    target.write_text("a\n<!-- x -->\nold\n<!-- end of x -->\nb\n<!-- y -->\n")
+    monkeypatch.setattr(report, "REPORT", target)
+    with report.published("x", write=True):
+        print("new")  # noqa: T201 - what is printed is what is tested
+    assert target.read_text() == "a\n<!-- x -->\n\nnew\n\n<!-- end of x -->\nb\n<!-- y -->\n"
+    assert capsys.readouterr().out == "new\n"
+    with pytest.raises(ValueError, match="no marks"):
+        report.publish("y", "text")
+
+
+def test_report_has_all_marks() -> None:
+    """Every script of `make bench` has its place in the report."""
+    text = report.REPORT.read_text(encoding="utf-8")
+    for name in ("engine", "accuracy", "raster", "sheets"):
+        assert text.count(f"<!-- {name} -->") == text.count(f"<!-- end of {name} -->") == 1

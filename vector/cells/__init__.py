@@ -1,0 +1,1 @@
+"""The cells of the elements of a site, and the boundary that they make."""

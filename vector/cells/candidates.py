@@ -1,0 +1,302 @@
+"""For every row, the elements near enough to shape its cell: branch and bound over a hierarchy of capsules."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.box_join import z_order
+from voronoi_tiles.base.maps import move
+from voronoi_tiles.base.tolerance import EPSILON
+from voronoi_tiles.vector.cells.half_edges import Contour
+from voronoi_tiles.vector.cells.pencils import Rows
+from voronoi_tiles.vector.copies import Copies
+
+# Children of an inner capsule: eight keeps the levels few.
+_BRANCH = 8
+# Relative slack of the pruning tests, far above their rounding errors.
+_SLACK = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """Capsules of all copies that together hold all elements.
+
+    A capsule is all that is within a radius of a segment; it fits a piece of a smooth curve far better than a disc.
+
+    Attributes:
+        start, end: (copies, k) the capsules' segments.
+        radius: (k,).
+        anchor_start, anchor_end: (copies, k) one element in each capsule.
+
+    Capsule j holds the capsules 8 j to 8 j + 7 of the next level.
+    """
+
+    start: Complexes
+    end: Complexes
+    radius: Floats
+    anchor_start: Complexes
+    anchor_end: Complexes
+
+
+@dataclass(frozen=True, slots=True)
+class Hierarchy:
+    """The elements of a site's copies in nested capsules.
+
+    Attributes:
+        levels: from one capsule around each copy to the elements themselves.
+        order: element index of each capsule of the last level; segments first, then isolated nodes.
+    """
+
+    levels: tuple[Level, ...]
+    order: Ints
+
+
+def build_hierarchy(contour: Contour, copies: Copies) -> Hierarchy:
+    """Return the hierarchy of a site's elements, neighbours in the plane being neighbours in the order."""
+    start, end = contour.nodes[contour.source[::2]], contour.nodes[contour.target[::2]]
+    isolated = contour.nodes[contour.corner_node[len(contour.source) :: 4]]
+    if len(isolated):
+        start, end = np.concatenate((start, isolated)), np.concatenate((end, isolated))
+    middle = (start + end) / 2
+    order = z_order(middle) if len(middle) > _BRANCH else np.arange(len(middle))
+    start, end = start[order], end[order]
+    unit, shift, conj = copies.unit[:, None], copies.shift[:, None], copies.conj[:, None]
+    starts, ends = move(start, unit, shift, conj), move(end, unit, shift, conj)
+    levels = [Level(starts, ends, np.zeros(len(order)), starts, ends)]
+    size = _BRANCH
+    while len(levels[0].radius) > 1:
+        first = np.arange(0, len(order), size)
+        from_, to, radius = _capsules(start, end, first)
+        anchor = np.minimum(first + size // 2, len(order) - 1)
+        from_, to = move(from_, unit, shift, conj), move(to, unit, shift, conj)
+        levels.insert(0, Level(from_, to, radius, starts[:, anchor], ends[:, anchor]))
+        size *= _BRANCH
+    return Hierarchy(tuple(levels), order)
+
+
+def _capsules(start: Complexes, end: Complexes, first: Ints) -> tuple[Complexes, Complexes, Floats]:
+    """Return the ends and radii of capsules along the principal axes of runs of segments, which start at `first`."""
+    count = np.diff(np.append(first, len(start)))
+    middle = np.add.reduceat(start + end, first) / (2 * count)
+    which = np.repeat(np.arange(len(first)), count)
+    a, b = start - middle[which], end - middle[which]
+    # The square of a complex number has twice its angle: the sum's half angle is the principal axis.
+    moment = np.add.reduceat(a * a + b * b, first)
+    axis = np.exp(0.5j * np.angle(moment))
+    turned = axis.conj()[which]
+    a, b = a * turned, b * turned
+    low = np.minimum.reduceat(np.minimum(a.real, b.real), first)
+    high = np.maximum.reduceat(np.maximum(a.real, b.real), first)
+    right = np.minimum.reduceat(np.minimum(a.imag, b.imag), first)
+    left = np.maximum.reduceat(np.maximum(a.imag, b.imag), first)
+    across = 1j * (right + left) / 2
+    radius = (left - right) / 2 * (1.0 + _SLACK) + _SLACK * (high - low)
+    return middle + axis * (low + across), middle + axis * (high + across), radius
+
+
+@dataclass(frozen=True, slots=True)
+class Candidates:
+    """Pairs of a row and an element of a copy, sorted by row.
+
+    Attributes:
+        row, copy, element: (k,) indices.
+    """
+
+    row: Ints
+    copy: Ints
+    element: Ints
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """What bounds each row's cell; tightened in place.
+
+    Attributes:
+        rounding: by how much coordinates, and their differences, may be off.
+        height: (rows,) no point of the cell is farther from the element.
+        by_point: (rows,) the best such bound by the bisector with a single point.
+        champion: (rows,) that point, NaN where there is none.
+    """
+
+    rounding: float
+    height: Floats
+    by_point: Floats
+    champion: Complexes
+
+
+class TooManyPairsError(Exception):
+    """So many rows at once would take too much memory."""
+
+
+def find_candidates(
+    rows: Rows, targets: list[Hierarchy], covering_radius: float, most: float
+) -> tuple[list[Candidates], Bounds]:
+    """Return, for each target, a superset of the pairs in which the element shapes the row's cell.
+
+    Raises TooManyPairsError where more than `most` pairs, or four times as many before they are narrowed, would be held
+    at once.
+
+    An element matters only if, for some point of the row's cell, it meets the disc about that point that just reaches
+    the row's element. The row's bisector with a point z, its champion, bounds the cell. The discs about the points of
+    that bisector all pass through z; let h0 and h1 be the radii of those on the outermost rays, a distance w
+    apart. By the powers of points with respect to these circles, every other one lies in the union of these two,
+    their radii enlarged to sqrt(h^2 + w^2 / 4). For a corner's fan, w is 0.
+
+    Each anchor may become the champion: bisectors with a point or a segment are highest at the ends of a row. So the
+    bounds tighten while the capsules shrink, and the number of pairs per row stays small at each level.
+    """
+    none = np.full(len(rows), np.nan, complex)
+    infinite = np.full(len(rows), np.inf)
+    rounding = 16.0 * EPSILON * float(max(np.abs(hierarchy.levels[0].start).max() for hierarchy in targets))
+    bounds = Bounds(rounding, height=np.full(len(rows), covering_radius), by_point=infinite, champion=none)
+    pairs: list[tuple[Ints, Ints, Ints]] = []
+    for hierarchy in targets:
+        count = len(hierarchy.levels[0].start)
+        if len(rows) * count > most:
+            raise TooManyPairsError
+        row = np.repeat(np.arange(len(rows)), count)
+        pairs.append((row, np.tile(np.arange(count), len(rows)), np.zeros(len(row), np.intp)))
+    for depth in range(max(len(hierarchy.levels) for hierarchy in targets)):
+        for t, hierarchy in enumerate(targets):
+            if depth < len(hierarchy.levels):
+                level = hierarchy.levels[depth]
+                if depth and len(pairs[t][0]) * _BRANCH > 4 * most:
+                    raise TooManyPairsError
+                row, copy, place = pairs[t] if depth == 0 else _children(*pairs[t], len(level.radius))
+                pairs[t] = _narrow(rows, row, copy, place, level, bounds)
+    found = [
+        Candidates(row, copy, hierarchy.order[place])
+        for (row, copy, place), hierarchy in zip(pairs, targets, strict=True)
+    ]
+    return found, bounds
+
+
+def _children(row: Ints, copy: Ints, place: Ints, count: int) -> tuple[Ints, Ints, Ints]:
+    """Return the pairs with each capsule replaced by its children on the next level, which has `count` capsules."""
+    child = (place[:, None] * _BRANCH + np.arange(_BRANCH)).reshape(-1)
+    row, copy = np.repeat(row, _BRANCH), np.repeat(copy, _BRANCH)
+    exists = child < count
+    if exists.all():
+        return row, copy, child
+    return row[exists], copy[exists], child[exists]
+
+
+def _narrow(rows: Rows, row: Ints, copy: Ints, place: Ints, level: Level, bounds: Bounds) -> tuple[Ints, Ints, Ints]:
+    """Drop the pairs with capsules that cannot matter; tighten the bounds by their anchors."""
+    kept = _in_reach(rows, row, copy * len(level.radius) + place, level.radius[place], level, bounds)
+    row, copy, place = row[kept], copy[kept], place[kept]
+    flat = copy * len(level.radius) + place
+    anchor = level.anchor_start.reshape(-1)[flat]
+    height = np.maximum(
+        _bisector(rows.base0[row], rows.ray0[row], anchor, bounds.rounding),
+        _bisector(rows.base1[row], rows.ray1[row], anchor, bounds.rounding),
+    )
+    _lower(bounds.by_point, row, height)
+    best = np.flatnonzero((height == bounds.by_point[row]) & (height < np.inf))
+    bounds.champion[row[best]] = anchor[best]
+    np.minimum(bounds.height, bounds.by_point, out=bounds.height)
+    # Points bound rows badly that are long beside their height; segments do it well.
+    wide = np.flatnonzero(_wide(rows, bounds)[row])
+    if len(wide):
+        at, by = row[wide], flat[wide]
+        start, end = level.anchor_start.reshape(-1)[by], level.anchor_end.reshape(-1)[by]
+        height = _bisector_of_segment(rows.base0[at], rows.ray0[at], start, end, bounds.rounding)
+        height = np.maximum(height, _bisector_of_segment(rows.base1[at], rows.ray1[at], start, end, bounds.rounding))
+        _lower(bounds.height, at, height)
+    kept = _in_reach(rows, row, flat, level.radius[place], level, bounds)
+    return row[kept], copy[kept], place[kept]
+
+
+def _wide(rows: Rows, bounds: Bounds) -> Bools:
+    """Tell which rows are long beside their height."""
+    return rows.spread > bounds.height / 8.0
+
+
+def _lower(bound: Floats, row: Ints, height: Floats) -> None:
+    """Lower the rows' bounds to the least of their heights, in place; rows ascend."""
+    if len(row):
+        first = np.flatnonzero(np.concatenate(([True], row[1:] != row[:-1])))
+        which = row[first]
+        bound[which] = np.minimum(bound[which], np.minimum.reduceat(height, first))
+
+
+def _in_reach(rows: Rows, row: Ints, flat: Ints, radius: Floats, level: Level, bounds: Bounds) -> Ints:
+    """Return the pairs whose capsule may hold an element that matters."""
+    start, end = level.start.reshape(-1)[flat], level.end.reshape(-1)[flat]
+    chord = end - start
+    square = chord.real**2 + chord.imag**2
+    square[square == 0.0] = 1.0
+    lone = np.isnan(bounds.champion)
+    near = lone[row]
+    for base, ray in ((rows.base0, rows.ray0), (rows.base1, rows.ray1)):
+        height = np.where(lone, 0.0, _bisector(base, ray, bounds.champion, bounds.rounding))
+        centre, reach = base + height * ray, np.hypot(height, rows.spread) * (1.0 + _SLACK)
+        away = centre[row] - start
+        along = np.minimum(np.maximum((away.real * chord.real + away.imag * chord.imag) / square, 0.0), 1.0)
+        near |= np.abs(away - along * chord) <= reach[row] + radius
+    kept = np.flatnonzero(near)
+    wide = _wide(rows, bounds)[row[kept]]
+    if wide.any():
+        # All discs lie in this box on the row's side of its line, which is the sharper test here.
+        chosen = kept[wide]
+        at, width = row[chosen], radius[chosen] * (1.0 + _SLACK)
+        reach = bounds.height[at] * (1.0 + _SLACK)
+        x0, y0 = _frame(rows.base[at], rows.ray[at], start[chosen])
+        x1, y1 = _frame(rows.base[at], rows.ray[at], end[chosen])
+        inside = ~wide
+        inside[wide] = _enters_box(x0, y0, x1, y1, rows.spread[at] + reach + width, -width, 2.0 * reach + width)
+        kept = kept[inside]
+    return kept
+
+
+def _frame(origin: Complexes, ray: Complexes, points: Complexes) -> tuple[Floats, Floats]:
+    """Return coordinates to the right of rays and along them."""
+    away = points - origin
+    return away.real * ray.imag - away.imag * ray.real, away.real * ray.real + away.imag * ray.imag
+
+
+def _enters_box(x0: Floats, y0: Floats, x1: Floats, y1: Floats, width: Floats, low: Floats, high: Floats) -> Bools:
+    """Tell which segments enter the boxes |x| <= width, low <= y <= high (Liang and Barsky)."""
+    enter, leave = np.zeros(len(x0)), np.ones(len(x0))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for at, step, least, most in ((x0, x1 - x0, -width, width), (y0, y1 - y0, low, high)):
+            one, two = (least - at) / step, (most - at) / step
+            still = step == 0.0
+            inside = (at >= least) & (at <= most)
+            enter = np.maximum(enter, np.where(still, np.where(inside, 0.0, 2.0), np.minimum(one, two)))
+            leave = np.minimum(leave, np.where(still, 1.0, np.maximum(one, two)))
+    return np.asarray(enter <= leave + _SLACK)
+
+
+def _bisector(base: Complexes, ray: Complexes, points: Complexes, rounding: float) -> Floats:
+    """Return bounds on the heights at which rays meet the bisectors of their base and points; infinite if they do not.
+
+    Coordinates are uncertain by `rounding`, which counts where a point is near the base or square to the ray.
+    """
+    away = points - base
+    along = away.real * ray.real + away.imag * ray.imag - rounding
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(along > 0.0, (away.real**2 + away.imag**2) / (2.0 * along), np.inf)
+
+
+def _bisector_of_segment(base: Complexes, ray: Complexes, start: Complexes, end: Complexes, rounding: float) -> Floats:
+    """Return the same for segments.
+
+    Where the base is near a segment's line only its ends count: it may be the row's own.
+    """
+    height = np.minimum(_bisector(base, ray, start, rounding), _bisector(base, ray, end, rounding))
+    chord = end - start
+    away = base - start
+    square = chord.real**2 + chord.imag**2
+    with np.errstate(divide="ignore", invalid="ignore"):
+        length = np.sqrt(square)
+        distance = (chord.real * away.imag - chord.imag * away.real) / length
+        # How fast the distance from the line grows along the ray, away from the side on which its base lies.
+        growth = (chord.real * ray.imag - chord.imag * ray.real) / length * np.sign(distance)
+        touching = np.abs(distance) / (1.0 - growth)
+        foot = chord.real * (away.real + touching * ray.real) + chord.imag * (away.imag + touching * ray.imag)
+        inside = (foot >= 0.0) & (foot <= square) & (np.abs(distance) > rounding / _SLACK) & (growth < 1.0 - _SLACK)
+    return np.where(inside, np.minimum(height, touching), height)

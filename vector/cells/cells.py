@@ -1,0 +1,124 @@
+"""The Voronoi cells of a site's elements: row by row, what bounds them and where."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import inf
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints
+from voronoi_tiles.base.tolerance import EPSILON
+from voronoi_tiles.vector.cells.bisectors import PartialQuadratics, bisector_pieces
+from voronoi_tiles.vector.cells.candidates import Hierarchy, TooManyPairsError, find_candidates
+from voronoi_tiles.vector.cells.envelope import lower_envelope
+from voronoi_tiles.vector.cells.half_edges import Contour
+from voronoi_tiles.vector.cells.images import Surroundings
+from voronoi_tiles.vector.cells.pencils import Rows
+
+# Rows that are worked on at once: enough for numpy's overhead to vanish, few enough for some 100 MB.
+_CHUNK = 1024
+# Pairs of rows and elements held at once; where there are more, the rows are halved. A pair takes some 500 bytes.
+_PAIRS = 1_000_000
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """What bounds the rows' cells, by row and along each row's variable; no part is empty.
+
+    Attributes:
+        row: (k,) indices.
+        target, copy, item: (k,) the element beyond: half-edge i of the site, or its corner c as h + c.
+        begin, end: (k,) the part's ends; consecutive parts of a row share theirs, bit for bit.
+    """
+
+    row: Ints
+    target: Ints
+    copy: Ints
+    item: Ints
+    begin: Complexes
+    end: Complexes
+
+
+class UnboundedCellError(ArithmeticError):
+    """A cell came out unbounded, which happens only where copies touch or cross."""
+
+
+def bound_cells(
+    rows: Rows,
+    contour: Contour,
+    targets: list[tuple[Surroundings, Hierarchy]],
+    covering_radius: float,
+) -> Parts:
+    """Return what bounds every cell of a site.
+
+    Args:
+        rows, contour: of the base site.
+        targets: for each site its copies, and the same in nested capsules.
+        covering_radius: of the lattice.
+
+    Raises:
+        UnboundedCellError: as it says.
+    """
+    found = []
+    hierarchies = [hierarchy for _, hierarchy in targets]
+    waiting = [(start, min(start + _CHUNK, len(rows))) for start in range(0, len(rows), _CHUNK)][::-1]
+    while waiting:
+        start, stop = waiting.pop()
+        chunk = rows.slice(start, stop)
+        most = _PAIRS if stop - start > 1 else inf
+        try:
+            candidates, bounds = find_candidates(chunk, hierarchies, covering_radius, most)
+        except TooManyPairsError:
+            middle = (start + stop) // 2
+            waiting += [(middle, stop), (start, middle)]
+            continue
+        around = [(copies, pairs) for (copies, _), pairs in zip(targets, candidates, strict=True)]
+        pieces = bisector_pieces(chunk, contour, around, bounds)
+        parts = _locate(chunk, pieces, *lower_envelope(pieces, chunk.low, chunk.high))
+        found.append(Parts(parts.row + start, parts.target, parts.copy, parts.item, parts.begin, parts.end))
+    if len(found) == 1:
+        return found[0]
+    return Parts(*(np.concatenate([getattr(parts, name) for parts in found]) for name in Parts.__slots__))
+
+
+def _locate(rows: Rows, pieces: PartialQuadratics, row: Ints, start: Floats, end: Floats, piece: Ints) -> Parts:
+    """Return an envelope's parts with their ends in the plane."""
+    # Where three functions meet, rounding may leave one of them an interval of an ulp: a break would be located by it.
+    null = 4.0 * EPSILON * np.maximum(np.abs(rows.low), np.abs(rows.high))
+    kept = np.flatnonzero(end - start > null[row])
+    row, start, end, piece = row[kept], start[kept], end[kept], piece[kept]
+    first = np.append(True, row[1:] != row[:-1])
+    start[first] = rows.low[row[first]]
+    end[:-1] = np.where(first[1:], end[:-1], start[1:])
+    last = np.append(first[1:], True)
+    end[last] = rows.high[row[last]]
+    if len(np.unique(row)) < len(rows) or (piece < 0).any():
+        raise UnboundedCellError
+    # Each break is located once, with the flatter of the two functions that meet there: an error in x then moves
+    # the point by no more than itself.
+    inner = np.flatnonzero(row[1:] == row[:-1])
+    at_start, at_end = piece.copy(), piece.copy()
+    flatter = np.abs(pieces.slope(piece[inner], end[inner])) <= np.abs(pieces.slope(piece[inner + 1], end[inner]))
+    at_end[inner] = np.where(flatter, piece[inner], piece[inner + 1])
+    at_start[inner + 1] = at_end[inner]
+    value = pieces.value(at_start, start)
+    begin = _point(rows, row, start, value)
+    finish = np.empty(len(row), complex)
+    finish[inner] = begin[inner + 1]
+    finish[last] = _point(rows, row[last], end[last], pieces.value(piece[last], end[last]))
+    return Parts(row, pieces.target[piece], pieces.copy[piece], pieces.item[piece], begin, finish)
+
+
+def _point(rows: Rows, row: Ints, x: Floats, value: Floats) -> Complexes:
+    """Return the points of rows at x where the function has this value."""
+    straight = rows.straight[row]
+    if (value[~straight] >= 0.0).any():
+        raise UnboundedCellError
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = np.where(straight, x, (1.0 - x) * (1.0 + x) / -value)
+        # Where two strokes of the site meet, rounding may put the height below 0.
+        left = np.where(straight, np.maximum(value, 0.0), 2.0 * x / -value)
+    result = np.empty(len(row), complex)
+    result.real, result.imag = along, left
+    return rows.origin[row] + rows.axis[row] * result

@@ -1,0 +1,152 @@
+"""The lower envelope of partial quadratics, for many rows at once."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Floats, Ints
+from voronoi_tiles.vector.cells.bisectors import PartialQuadratics
+
+NOTHING = -1
+# A longer step, relative to the distance of the next root, is not a correction of rounding.
+_NEAR = 1e-3
+
+
+def lower_envelope(pieces: PartialQuadratics, low: Floats, high: Floats) -> tuple[Ints, Floats, Floats, Ints]:
+    """Return the lower envelope of each row's pieces.
+
+    By divide and conquer: each piece is an envelope of its own, and neighbouring envelopes are merged in pairs, all
+    rows at once, until each row has one. In a merge every interval between break points has one function from either
+    side; their crossings cut it into at most three parts, and the middle of each part decides. No tolerance
+    takes part; equal functions count as their first.
+
+    Args:
+        pieces: sorted by row.
+        low, high: (rows,) each row's interval.
+
+    Returns:
+        (row, start, end, piece) of the envelope's parts, by row and start, without gaps from low to high; piece is
+        -1 where no function is defined.
+    """
+    rows = len(low)
+    count = np.bincount(pieces.row, minlength=rows)
+    index = np.arange(len(pieces.row)) - (np.cumsum(count) - count)[pieces.row]
+    stride = int(count.max(initial=0)) or 1
+    group = pieces.row * stride + index
+    # Every envelope starts at its row's low, with nothing where its function is not defined.
+    late = np.flatnonzero(pieces.low > low[pieces.row])
+    early = np.flatnonzero(pieces.high < high[pieces.row])
+    group = np.concatenate((group, group[late], group[early]))
+    start = np.concatenate((pieces.low, low[pieces.row[late]], pieces.high[early]))
+    piece = np.concatenate((np.arange(len(pieces.row)), np.full(len(late) + len(early), NOTHING)))
+    if stride == 1:
+        order = np.lexsort((start, group))
+        group, start, piece = group[order], start[order], piece[order]
+    while stride > 1:
+        row, index = np.divmod(group, stride)
+        stride = (stride + 1) // 2
+        group, start, piece = _merge(pieces, row * stride + (index >> 1), index & 1, start, piece, high, stride)
+    end = np.append(start[1:], 0.0)
+    last = np.append(group[1:] != group[:-1], True)
+    end[last] = high[group[last]]
+    return group, start, end, piece
+
+
+def _merge(
+    pieces: PartialQuadratics, group: Ints, side: Ints, start: Floats, piece: Ints, high: Floats, stride: int
+) -> tuple[Ints, Floats, Ints]:
+    """Merge in each group the envelopes of side 0 and side 1; return their union's (group, start, piece), sorted."""
+    order = np.lexsort((start, group))
+    group, side, start, piece = group[order], side[order], start[order], piece[order]
+    place = np.arange(len(group))
+    fresh = np.empty(len(group), bool)
+    fresh[0] = True
+    np.not_equal(group[1:], group[:-1], out=fresh[1:])
+    opening = np.maximum.accumulate(np.where(fresh, place, 0))
+    # The function of either side that rules from here on: the one that started last.
+    last0 = np.maximum.accumulate(np.where(side == 0, place, -1))
+    last1 = np.maximum.accumulate(np.where(side == 1, place, -1))
+    first = np.where(last0 >= opening, piece[last0], NOTHING)
+    second = np.where(last1 >= opening, piece[last1], NOTHING)
+    end = np.empty(len(group))
+    end[:-1] = start[1:]
+    final = np.append(fresh[1:], True)
+    end[final] = high[group[final] // stride]
+    winner = np.maximum(first, second)
+    wide = end > start
+    contested = np.flatnonzero(wide & (first >= 0) & (second >= 0) & (first != second))
+    if len(contested):
+        extra = _contest(pieces, contested, first, second, start, end, winner)
+        if extra is not None:
+            where, at, who = extra
+            group, start = np.concatenate((group, group[where])), np.concatenate((start, at))
+            winner, wide = np.concatenate((winner, who)), np.concatenate((wide, np.ones(len(where), bool)))
+            order = np.argsort(np.concatenate((place, where)), kind="stable")
+            group, start, winner, wide = group[order], start[order], winner[order], wide[order]
+    kept = np.flatnonzero(wide)
+    group, start, winner = group[kept], start[kept], winner[kept]
+    new = np.empty(len(group), bool)
+    new[0] = True
+    np.not_equal(group[1:], group[:-1], out=new[1:])
+    new[1:] |= winner[1:] != winner[:-1]
+    kept = np.flatnonzero(new)
+    return group[kept], start[kept], winner[kept]
+
+
+def _contest(
+    pieces: PartialQuadratics, index: Ints, first: Ints, second: Ints, start: Floats, end: Floats, winner: Ints
+) -> tuple[Ints, Floats, Ints] | None:
+    """Decide intervals on which both sides have a function.
+
+    Sets `winner` in place for each interval's first part; returns the further parts as (interval, start, piece), in
+    order, or None.
+    """
+    f, g = np.minimum(first[index], second[index]), np.maximum(first[index], second[index])
+    x0, x1 = start[index], end[index]
+    middle, half = (x0 + x1) / 2, (x1 - x0) / 2
+    # The difference about the interval's middle: v + b t + a t^2 for |t| < half.
+    v = pieces.value(f, middle) - pieces.value(g, middle)
+    b = pieces.slope(f, middle) - pieces.slope(g, middle)
+    a = pieces.a[f] - pieces.a[g]
+    winner[index] = np.where(v <= 0.0, f, g)
+    # Without a root in reach the sign at the middle decides; this spares most intervals the formula.
+    reach = np.abs(b) * half + np.abs(a) * half * half
+    near = np.flatnonzero(np.abs(v) <= reach)
+    if not len(near):
+        return None
+    index, f, g, v, b, a = index[near], f[near], g[near], v[near], b[near], a[near]
+    middle, half = middle[near], half[near]
+    discriminant = b * b - 4.0 * a * v
+    with np.errstate(divide="ignore", invalid="ignore"):
+        q = -0.5 * (b + np.copysign(np.sqrt(discriminant), b))
+        r, s = q / a, v / q
+    r = np.where(np.abs(r) < half, r, np.nan)
+    s = np.where(np.abs(s) < half, s, np.nan)
+    low, high = np.fmin(r, s), np.fmax(r, s)
+    cut = np.flatnonzero(~np.isnan(low))
+    if not len(cut):
+        return None
+    index, f, g, v, b, a = index[cut], f[cut], g[cut], v[cut], b[cut], a[cut]
+    middle, half, low, high = middle[cut], half[cut], low[cut], high[cut]
+    x0, x1 = start[index], end[index]
+
+    def lower(t: Floats) -> Ints:
+        return np.where(v + t * (b + t * a) <= 0.0, f, g)
+
+    winner[index] = lower((low - half) / 2)
+    two = np.flatnonzero(high > low)
+    where = np.concatenate((index, index[two]))
+    at = np.concatenate((middle + low, (middle + high)[two]))
+    # About the middle of its interval a steep function is large, and its roots have that many digits fewer: one step of
+    # Newton's method from where the functions themselves are small gives them back.
+    one, other = np.concatenate((f, f[two])), np.concatenate((g, g[two]))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        step = (pieces.value(one, at) - pieces.value(other, at)) / (pieces.slope(one, at) - pieces.slope(other, at))
+    reach = _NEAR * np.where(high > low, np.minimum(high - low, half), half)
+    at = np.where(np.abs(step) <= np.concatenate((reach, reach[two])), at - step, at)
+    # Rounding must not carry a cut over the interval's end: the order of starts is what the next merge relies on.
+    at = np.minimum(np.maximum(at, np.concatenate((x0, x0[two]))), np.concatenate((x1, x1[two])))
+    after_low = np.where(high > low, lower((low + high) / 2), lower((low + half) / 2))
+    who = np.concatenate((after_low, lower((high + half) / 2)[two]))
+    order = np.lexsort((at, where))
+    return where[order], at[order], who[order]

@@ -1,0 +1,155 @@
+"""The contour of a site: its half-edges and corners, in the order in which one walks around its strokes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+
+# A corner that turns left by less than this still counts as an element of the site when other cells are bounded by
+# it: the two segments' lines may miss each other by an ulp there, and the corner's point closes that gap.
+_NEARLY_STRAIGHT = 1e-9
+
+
+@dataclass(frozen=True, slots=True)
+class Contour:
+    """The half-edges and corners of a site.
+
+    Segment k gives half-edge 2k, from its first node to its second, and half-edge 2k + 1 back. The face of a
+    half-edge lies on its left. Corner c lies at the end of half-edge c, between it and the one that follows it around
+    the same face. An isolated node has four corners of a right angle each, which no half-edge bounds: they stand
+    behind the half-edges' corners.
+
+    Attributes:
+        nodes: (m,) positions.
+        source, target: (h,) node indices of each half-edge.
+        direction: (h,) unit vectors from source to target.
+        length: (h,).
+        following: (h,) the next half-edge around the face on the left.
+        corner_node: (c,) node index of each corner, c >= h.
+        arriving, leaving: (c,) unit vectors of the half-edges before and after each corner.
+        turn: (c,) angle by which the contour turns right at the corner, in (-pi, pi].
+    """
+
+    nodes: Complexes
+    source: Ints
+    target: Ints
+    direction: Complexes
+    length: Floats
+    following: Ints
+    corner_node: Ints
+    arriving: Complexes
+    leaving: Complexes
+    turn: Floats
+
+    def faces(self) -> Ints:
+        """Return for each half-edge a number of the cycle that it belongs to: its walk around one face."""
+        following = self.following.tolist()
+        label = [-1] * len(following)
+        number = 0
+        for first in range(len(following)):
+            if label[first] < 0:
+                k = first
+                while label[k] < 0:
+                    label[k] = number
+                    k = following[k]
+                number += 1
+        return np.array(label, np.intp)
+
+    @property
+    def convex(self) -> Bools:
+        """(c,) whether a corner has directions of its own: a wedge at right angles or more to both neighbours."""
+        return self.turn > 0.0
+
+    @property
+    def bounding(self) -> Bools:
+        """(c,) whether a corner counts among the elements that bound other cells."""
+        return self.turn > -_NEARLY_STRAIGHT
+
+
+def trace_contour(nodes: Complexes, segments: Ints) -> Contour:
+    """Return the contour of a site.
+
+    Args:
+        nodes: (m,) positions.
+        segments: (n, 2) indices into nodes; segments meet only at common nodes.
+    """
+    count = len(segments)
+    source = segments.reshape(-1)
+    target = segments[:, ::-1].reshape(-1)
+    step = nodes[target] - nodes[source]
+    length = np.abs(step)
+    direction = step / length
+    half_edges = np.arange(2 * count)
+    order = np.lexsort((np.angle(direction), source))
+    place = np.empty_like(order)
+    place[order] = half_edges
+    degree = np.bincount(source, minlength=len(nodes))
+    first = np.concatenate(([0], np.cumsum(degree)))[:-1]
+    # The next half-edge around the face on the left leaves the target next clockwise from the way back.
+    back = place[half_edges ^ 1]
+    at = first[target]
+    following = order[at + (back - at - 1) % degree[target]]
+    arriving, leaving = direction, direction[following]
+    turn = np.arctan2(
+        arriving.imag * leaving.real - arriving.real * leaving.imag,
+        arriving.real * leaving.real + arriving.imag * leaving.imag,
+    )
+    turn[following == half_edges ^ 1] = np.pi
+    isolated = np.flatnonzero(degree == 0)
+    if len(isolated):
+        axes = np.array([1, -1j, -1, 1j])
+        arriving = np.concatenate((arriving, np.tile(axes, len(isolated))))
+        leaving = np.concatenate((leaving, np.tile(np.roll(axes, -1), len(isolated))))
+        turn = np.concatenate((turn, np.full(4 * len(isolated), np.pi / 2)))
+    return Contour(
+        nodes=nodes,
+        source=source,
+        target=target,
+        direction=direction,
+        length=length,
+        following=following,
+        corner_node=np.concatenate((target, np.repeat(isolated, 4))),
+        arriving=arriving,
+        leaving=leaving,
+        turn=turn,
+    )
+
+
+# A walk around the outside of open strokes encloses nothing, but for rounding; relative to its length squared.
+_AREA = 1e-9
+
+
+def enclosed(contour: Contour, strangers: Complexes, siblings: Complexes) -> Bools:
+    """Tell which half-edges look into a region that the site encloses, and in which no other copy lies.
+
+    Such a region belongs to the site, whatever its elements share of it. A copy of a connected site cannot lie in one
+    of its regions without touching it: it would have to be smaller.
+
+    Args:
+        contour: of the site.
+        strangers: (k,) nodes of copies of other sites.
+        siblings: (l,) nodes of the other copies of this site.
+    """
+    face = contour.faces()
+    result = np.zeros(len(face), bool)
+    if not len(face):
+        return result
+    start, end = contour.nodes[contour.source], contour.nodes[contour.target]
+    origin = start[0]
+    x, y, u, v = (part - at for z in (start, end) for part, at in ((z.real, origin.real), (z.imag, origin.imag)))
+    # Walks around the inside of a closed stroke run counter-clockwise, around the outside of all others clockwise.
+    area = np.bincount(face, x * v - y * u)
+    inside = area > _AREA * np.bincount(face, contour.length) ** 2
+    components = int((~inside).sum()) + (len(contour.corner_node) - len(contour.source)) // 4
+    others = strangers if components == 1 else np.concatenate((strangers, siblings))
+    for number in np.flatnonzero(inside).tolist():
+        member = face == number
+        x, y = start.real[member], start.imag[member]
+        within = (others.real >= x.min()) & (others.real <= x.max())
+        within &= (others.imag >= y.min()) & (others.imag <= y.max())
+        if not within.any():
+            result |= member
+    return result

@@ -1,0 +1,123 @@
+"""The rows of a site: pencils of rays on the sides of its segments and in its convex corners."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.vector.cells.half_edges import Contour
+
+# A corner's rows span at most this angle, and a half-edge's rows at most this part of the covering radius: within
+# narrow rows one bound on the height holds well.
+_WIDEST_FAN = np.pi / 4
+_LONGEST_PART = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Rows:
+    """The frames of the elements' Voronoi cells: a row is a pencil of rays, with one variable x in [low, high].
+
+    The rays of a half-edge's rows are parallel: the point at x and height h is origin + (x + i h) axis, with the
+    half-edge's direction as axis. Those of a corner's rows fan out over its wedge: the point at x and distance r is
+    origin + r axis (1 + i x)^2 / (1 + x^2), with the wedge's middle as axis; x is the tangent of half the angle
+    from it.
+
+    Attributes:
+        half_edge: (rows,) index of the half-edge, or -1.
+        corner: (rows,) index of the corner, or -1.
+        origin, axis, low, high: (rows,) as above.
+        base0, ray0, base1, ray1: the first and last ray's origin and unit direction.
+        base, ray: those of a ray between them.
+        spread: how far along the half-edge the rays' origins are from that ray's; 0 in a corner.
+    """
+
+    half_edge: Ints
+    corner: Ints
+    origin: Complexes
+    axis: Complexes
+    low: Floats
+    high: Floats
+    base0: Complexes
+    ray0: Complexes
+    base1: Complexes
+    ray1: Complexes
+    base: Complexes
+    ray: Complexes
+    spread: Floats
+
+    def __len__(self) -> int:
+        return len(self.half_edge)
+
+    @property
+    def straight(self) -> Bools:
+        """(rows,) whether the row belongs to a half-edge."""
+        return self.corner < 0
+
+    def slice(self, start: int, stop: int) -> Rows:
+        """Return the rows from start to stop."""
+        return Rows(*(getattr(self, name)[start:stop] for name in self.__slots__))
+
+
+def make_rows(contour: Contour, covering_radius: float, without: Bools) -> Rows:
+    """Return the rows of a contour: those of half-edges in order, then those of convex corners in order.
+
+    Long half-edges and wide corners have several rows, by ascending x.
+
+    Args:
+        contour: of the site.
+        covering_radius: of the lattice.
+        without: (h,) half-edges that get no rows, nor do the corners at their ends.
+    """
+    wanted = np.flatnonzero(~without)
+    edge, part, parts = _divide(contour.length[wanted] / (_LONGEST_PART * covering_radius))
+    edge = wanted[edge]
+    start, end, along = (
+        contour.nodes[contour.source[edge]],
+        contour.nodes[contour.target[edge]],
+        contour.direction[edge],
+    )
+    low, high = contour.length[edge] * (part / parts), contour.length[edge] * ((part + 1) / parts)
+    normal = 1j * along
+    kept = contour.convex
+    kept[: len(without)] &= ~without
+    convex = np.flatnonzero(kept)
+    corner, part, parts_of_corner = _divide(contour.turn[convex] / _WIDEST_FAN)
+    corner = convex[corner]
+    turn, point = contour.turn[corner], contour.nodes[contour.corner_node[corner]]
+    before, after = contour.arriving[corner], contour.leaving[corner]
+    # Each formula for the middle of the wedge loses its digits where the other one is good.
+    axis = np.where(turn < np.pi / 2, 1j * (before + after), before - after)
+    axis /= np.abs(axis)
+    low_x, high_x = np.tan(turn / 2 * np.stack((part / parts_of_corner, (part + 1) / parts_of_corner)) - turn / 4)
+    ray0, ray1, middle = _ray(axis, np.stack((low_x, high_x, (low_x + high_x) / 2)))
+    count = len(edge)
+    return Rows(
+        half_edge=np.concatenate((edge, np.full(len(corner), -1))),
+        corner=np.concatenate((np.full(count, -1), corner)),
+        origin=np.concatenate((start, point)),
+        axis=np.concatenate((along, axis)),
+        low=np.concatenate((low, low_x)),
+        high=np.concatenate((high, high_x)),
+        base0=np.concatenate((start + low * along, point)),
+        ray0=np.concatenate((normal, ray0)),
+        base1=np.concatenate((np.where(high == contour.length[edge], end, start + high * along), point)),
+        ray1=np.concatenate((normal, ray1)),
+        base=np.concatenate((start + (low + high) / 2 * along, point)),
+        ray=np.concatenate((normal, middle)),
+        spread=np.concatenate(((high - low) / 2, np.zeros(len(corner)))),
+    )
+
+
+def _divide(size: Floats) -> tuple[Ints, Ints, Floats]:
+    """Divide things of these sizes into parts of size at most 1; return (thing, part's number, parts' count)."""
+    parts = np.maximum(np.ceil(size), 1.0)
+    thing = np.repeat(np.arange(len(size)), parts.astype(np.intp))
+    part = np.arange(len(thing)) - (np.cumsum(parts) - parts)[thing]
+    return thing, part.astype(np.intp), parts[thing]
+
+
+def _ray(axis: Complexes, x: Floats) -> Complexes:
+    """Return the unit directions at x from the axes."""
+    return axis * ((1.0 - x) * (1.0 + x) + 2j * x) / (1.0 + x * x)

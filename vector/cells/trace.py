@@ -1,0 +1,159 @@
+"""From the bounds of single cells to the closed boundary of a tile."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints
+from voronoi_tiles.vector.cells.cells import Parts
+from voronoi_tiles.vector.cells.half_edges import Contour
+from voronoi_tiles.vector.cells.pencils import Rows
+
+# Up to this many loose ends the matrix of their distances is quicker than a tree.
+_DENSE = 256
+
+
+@dataclass(frozen=True, slots=True)
+class Boundary:
+    """The closed boundary of a tile: its interior lies to the left of every arc.
+
+    Attributes:
+        part: (n,) the part that each arc is, ring after ring.
+        vertex: (n,) where each arc starts; it ends where the next of its ring starts.
+        ring: (n,) index of the ring.
+    """
+
+    part: Ints
+    vertex: Complexes
+    ring: Ints
+
+
+class OpenBoundaryError(ArithmeticError):
+    """The parts do not close to rings, which happens only where copies touch or cross."""
+
+
+def trace_boundary(rows: Rows, contour: Contour, parts: Parts, inner: Bools, null: float) -> Boundary:
+    """Chain the parts that face other copies to rings.
+
+    Args:
+        rows, contour, parts: of the site.
+        inner: (k,) whether a part faces another element of the site itself.
+        null: arcs whose ends are no farther apart are left out.
+
+    Raises:
+        OpenBoundaryError: as it says.
+    """
+    straight = rows.straight[parts.row]
+    # Counter-clockwise around the tile, x falls along half-edges and rises along corners.
+    start, end = np.where(straight, parts.end, parts.begin), np.where(straight, parts.begin, parts.end)
+    following = _links(rows, contour, parts, inner, straight)
+    outer = np.flatnonzero(~inner)
+    if not len(outer):
+        raise OpenBoundaryError
+    loose = outer[following[outer] < 0]
+    entered = np.zeros(len(inner), bool)
+    entered[following[outer][following[outer] >= 0]] = True
+    entries = outer[~entered[outer]]
+    following[loose] = entries[_match(end[loose], start[entries])]
+    # A walk along a permutation is a loop of look-ups: a list is quicker at it than any array trick.
+    successor = following.tolist()
+    seen = inner.tolist()
+    order: list[int] = []
+    ring: list[int] = []
+    number = 0
+    for first in outer.tolist():
+        if seen[first]:
+            continue
+        k = first
+        while not seen[k]:
+            seen[k] = True
+            order.append(k)
+            ring.append(number)
+            k = successor[k]
+        number += 1
+    return _without_null(np.array(order), start[order], np.array(ring), null)
+
+
+def _links(rows: Rows, contour: Contour, parts: Parts, inner: Bools, straight: Bools) -> Ints:
+    """Return for each outer part the next one where that is plain from the order of the contour, else -1."""
+    count = len(parts.row)
+    following = np.full(count, -1)
+    same = np.flatnonzero(parts.row[1:] == parts.row[:-1])
+    falling, rising = same[straight[same]], same[~straight[same]]
+    following[falling + 1] = falling
+    following[rising] = rising + 1
+    first = np.searchsorted(parts.row, np.arange(len(rows)))
+    last = np.append(first[1:], count) - 1
+    # Rows of one half-edge or corner follow each other by ascending x.
+    again = (rows.half_edge[1:] == rows.half_edge[:-1]) & (rows.corner[1:] == rows.corner[:-1])
+    before = np.flatnonzero(again)
+    falling, rising = before[rows.straight[before]], before[~rows.straight[before]]
+    following[first[falling + 1]] = last[falling]
+    following[last[rising]] = first[rising + 1]
+    # The first and last row of each half-edge and corner.
+    opening, closing = np.flatnonzero(np.append(True, ~again)), np.flatnonzero(np.append(~again, True))
+    half_edges = len(contour.source)
+    edge_first, edge_last = _ends(rows.half_edge, half_edges, opening, closing, first, last)
+    corner_first, corner_last = _ends(rows.corner, len(contour.corner_node), opening, closing, first, last)
+    # The corner between half-edges a and b = following[a]: counter-clockwise around the tile, from b over it to a.
+    b = contour.following
+    present, round_corner = edge_first >= 0, corner_first[:half_edges] >= 0
+    has, bare = np.flatnonzero(present & round_corner), np.flatnonzero(present & ~round_corner)
+    following[edge_first[b[has]]] = corner_first[has]
+    following[corner_last[has]] = edge_last[has]
+    following[edge_first[b[bare]]] = edge_last[bare]
+    # An isolated node's four corners are numbered clockwise.
+    lone = np.arange(half_edges, len(contour.corner_node))
+    following[corner_last[lone]] = corner_first[lone - 1 + 4 * ((lone - half_edges) % 4 == 0)]
+    following[inner | inner[following]] = -1
+    return following
+
+
+def _ends(owner: Ints, count: int, opening: Ints, closing: Ints, first: Ints, last: Ints) -> tuple[Ints, Ints]:
+    """Return the first and last part of each half-edge or corner, -1 where it has no rows."""
+    result = np.full((2, count), -1)
+    rows = np.flatnonzero(owner[opening] >= 0)
+    which = owner[opening[rows]]
+    result[0, which], result[1, which] = first[opening[rows]], last[closing[rows]]
+    return result[0], result[1]
+
+
+def _match(ends: Complexes, starts: Complexes) -> Ints:
+    """Return for each end the index of the start that continues it: each other's nearest, then among those left."""
+    if len(ends) != len(starts):
+        raise OpenBoundaryError
+    partner = np.full(len(ends), -1)
+    left, right = np.arange(len(ends)), np.arange(len(starts))
+    while len(left):
+        there, back = _nearest(ends[left], starts[right]), _nearest(starts[right], ends[left])
+        mutual = np.flatnonzero(back[there] == np.arange(len(left)))
+        partner[left[mutual]] = right[there[mutual]]
+        left, right = np.delete(left, mutual), np.delete(right, there[mutual])
+    return partner
+
+
+def _nearest(points: Complexes, among: Complexes) -> Ints:
+    """Return for each point the index of the nearest of the others."""
+    if len(points) <= _DENSE:
+        return np.asarray(np.abs(points[:, None] - among).argmin(axis=1))
+    from scipy.spatial import cKDTree
+
+    tree = cKDTree(np.stack((among.real, among.imag), axis=1))
+    return np.asarray(tree.query(np.stack((points.real, points.imag), axis=1))[1])
+
+
+def _without_null(part: Ints, vertex: Complexes, ring: Ints, null: float) -> Boundary:
+    """Leave out arcs without length, and rings that have no other."""
+    while len(part):
+        opening = np.flatnonzero(np.append(True, ring[1:] != ring[:-1]))
+        following = np.arange(1, len(part) + 1)
+        following[np.append(opening[1:], len(part)) - 1] = opening
+        kept = np.abs(vertex[following] - vertex) > null
+        if kept.all():
+            break
+        part, vertex, ring = part[kept], vertex[kept], ring[kept]
+    if not len(part):
+        raise OpenBoundaryError
+    return Boundary(part, vertex, ring)

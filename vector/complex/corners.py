@@ -1,0 +1,125 @@
+"""The corners of the tiling, where edges meet: each an image of one representative."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+
+import numpy as np
+
+from voronoi_tiles.vector.arcs import parabola_controls
+from voronoi_tiles.vector.complex.edges import Corner, Edge, Traced
+from voronoi_tiles.vector.complex.representatives import Builder
+from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, inverse
+
+Corners = dict[Corner, tuple[int, Motion]]
+"""For each corner its representative and the motion from there."""
+
+
+def find_corners(builder: Builder, traced: list[Traced], edges: list[Edge]) -> Corners:
+    """Return all corners as images of representatives, and put those on rotation centres and mirrors there."""
+    related: defaultdict[Corner, list[tuple[Corner, Motion]]] = defaultdict(list)
+    ends: defaultdict[Corner, list[tuple[Edge, int]]] = defaultdict(list)
+    images: set[Edge] = set()
+    for edge in edges:
+        ends[edge.start].append((edge, 0))
+        ends[edge.end].append((edge, -1))
+        for motion, image, flips in edge.images:
+            if image is not edge and edge not in images:
+                images.add(image)
+            there = (image.end, image.start) if flips else (image.start, image.end)
+            for corner, other in zip((edge.start, edge.end), there, strict=True):
+                related[corner].append((other, motion))
+                related[other].append((corner, inverse(motion)))
+    found: Corners = {}
+    for edge in edges:
+        first = edge.start
+        if first in found:
+            continue
+        reached = {first: IDENTITY}
+        stack = [first]
+        fixing: set[Motion] = set()
+        while stack:
+            corner = stack.pop()
+            for other, motion in related[corner]:
+                there_by = compose(motion, reached[corner])
+                if other not in reached:
+                    reached[other] = there_by
+                    stack.append(other)
+                elif reached[other] != there_by:
+                    fixing.add(compose(inverse(reached[other]), there_by))
+        where = complex(edge.vertex[0])
+        for corner, motion in reached.items():
+            sources = [(e, place) for e, place in ends[corner] if e not in images]
+            where = _sharpened(builder.action, traced[corner[0]], where, motion, sources, ends[corner])
+        stabilizer = _generated(fixing)
+        number = builder.add_fixed(where, stabilizer, _across(traced, ends[first]))
+        found.update({corner: (number, motion) for corner, motion in reached.items()})
+    return found
+
+
+# Nodes this near to each other, relative to a vertex's distance, determine it badly across their bisector.
+_NEAR = 1e-4
+
+
+def _sharpened(
+    action: Action,
+    boundary: Traced,
+    where: complex,
+    motion: Motion,
+    sources: list[tuple[Edge, int]],
+    ends: list[tuple[Edge, int]],
+) -> complex:
+    """Return a corner's representative, moved onto the bisector of two nodes that are near to each other.
+
+    Copies that nearly touch leave a corner uncertain across the bisector between them: by eps R^2 / d at a distance R
+    from nodes a distance d apart. Where the edge passes between these nodes this matters; along the other edge that
+    ends there the corner may be moved freely.
+    """
+    for edge, place in sources:
+        one, two = boundary.nodes[edge.arcs[place]].tolist()
+        here = action.apply_to_point(motion, where)
+        gap = abs(two - one)
+        if not gap < _NEAR * abs(here - one):
+            continue
+        normal = (two - one) / gap
+        off = gap / 2 - (normal.conjugate() * (here - one)).real
+        tangents = [_tangent(boundary, e, p) for e, p in ends if e is not edge]
+        best = max(tangents, key=lambda t: abs((normal.conjugate() * t).real) / abs(t), default=0j)
+        across = (normal.conjugate() * best).real
+        if abs(across) > 1e-3 * abs(best):
+            where = action.apply_to_point(inverse(motion), here + best * (off / across))
+    return where
+
+
+def _across(traced: list[Traced], ends: list[tuple[Edge, int]]) -> complex | None:
+    """Return the direction of an edge at a corner, of one that does not lie on a mirror."""
+    for edge, place in ends:
+        if not any(image is edge and motion != IDENTITY and not flips for motion, image, flips in edge.images):
+            return _tangent(traced[edge.tile], edge, place)
+    return None
+
+
+def _tangent(boundary: Traced, edge: Edge, place: int) -> complex:
+    """Return the direction of an edge at its start (place 0) or end (place -1)."""
+    arc, (start, end) = edge.arcs[place], edge.vertex[[place, place + 1] if place == 0 else [-2, -1]]
+    if not boundary.curved[arc]:
+        return complex(end - start)
+    this = edge.arcs[[place]]
+    control = parabola_controls(np.array([start]), np.array([end]), boundary.focus[this], boundary.directrix[this])[0]
+    return complex(control - start if place == 0 else end - control)
+
+
+def _generated(motions: set[Motion]) -> tuple[Motion, ...]:
+    """Return the finite group that motions with a common fixed point generate, in a fixed order."""
+    group = {IDENTITY}
+    stack = [IDENTITY]
+    while stack:
+        element = stack.pop()
+        for motion in motions:
+            product = compose(motion, element)
+            if product not in group:
+                group.add(product)
+                stack.append(product)
+                # A point of a plane pattern has a symmetry of order 12 at most.
+                assert len(group) <= 12, "motions without a common fixed point"
+    return tuple(sorted(group))

@@ -1,0 +1,117 @@
+"""Points of outlines as images of representatives: the same point has the same bits from wherever it is reached."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints
+from voronoi_tiles.vector.motions import Action, Motion, compose, reverses_orientation
+
+
+@dataclass(frozen=True, slots=True)
+class Points:
+    """Images of representatives.
+
+    Attributes:
+        index: (n,) into the representatives.
+        motion: (n,) into `motions`.
+        motions: the motions that occur.
+    """
+
+    index: Ints
+    motion: Ints
+    motions: tuple[Motion, ...]
+
+    def moved(self, outer: Motion) -> Points:
+        """Return the images under one more motion."""
+        return Points(self.index, self.motion, tuple(compose(outer, motion) for motion in self.motions))
+
+    def take(self, places: Ints) -> Points:
+        """Return the points at these places."""
+        return Points(self.index[places], self.motion[places], self.motions)
+
+
+@dataclass(frozen=True)
+class Representatives:
+    """The points that all others are images of.
+
+    Attributes:
+        action: the group.
+        position: (m,).
+        stabilizer: for those that motions of the group fix, these motions.
+    """
+
+    action: Action
+    position: Complexes
+    stabilizer: dict[int, tuple[Motion, ...]]
+
+    @cached_property
+    def _special(self) -> Bools:
+        """(m,) whether a representative has a stabilizer."""
+        special = np.zeros(len(self.position), bool)
+        special[list(self.stabilizer)] = True
+        return special
+
+    def locate(self, points: Points) -> Complexes:
+        """Return the positions of images of representatives."""
+        result = np.empty(len(points.index), complex)
+        for number, motion in enumerate(points.motions):
+            chosen = points.motion == number
+            result[chosen] = self.action.apply(motion, self.position[points.index[chosen]])
+        for k in np.flatnonzero(self._special[points.index]).tolist():
+            point = int(points.index[k])
+            # Several motions lead to this point: the first in a fixed order stands for all.
+            motion = min(compose(points.motions[points.motion[k]], s) for s in self.stabilizer[point])
+            result[k] = self.action.apply_to_point(motion, complex(self.position[point]))
+        return result
+
+
+class Builder:
+    """Collects representatives."""
+
+    def __init__(self, action: Action) -> None:
+        self.action = action
+        self._positions: list[Complexes] = []
+        self._count = 0
+        self._stabilizer: dict[int, tuple[Motion, ...]] = {}
+
+    def add(self, positions: Complexes) -> Ints:
+        """Add representatives; return their indices."""
+        self._positions.append(positions)
+        self._count += len(positions)
+        return np.arange(self._count - len(positions), self._count)
+
+    def add_fixed(self, position: complex, stabilizer: tuple[Motion, ...], tangent: complex | None = None) -> int:
+        """Add a representative that these motions fix, put exactly where they do; return its index.
+
+        Onto a mirror it is moved along `tangent`, if one is given.
+        """
+        place = self._centred(position, stabilizer)
+        if tangent is not None and any(map(reverses_orientation, stabilizer)) and len(stabilizer) == 2:
+            # A vertex on a mirror from which the site keeps little distance is known badly across the mirror, but is
+            # exactly on the other edge that ends there.
+            off = place - position
+            square = (tangent.conjugate() * off).real
+            if square != 0.0:
+                along = tangent * (abs(off) ** 2 / square)
+                if abs(along) <= 1e3 * abs(off):
+                    place = self._centred(position + along, stabilizer)
+        number = int(self.add(np.array([place]))[0])
+        if len(stabilizer) > 1:
+            self._stabilizer[number] = stabilizer
+        return number
+
+    def _centred(self, position: complex, stabilizer: tuple[Motion, ...]) -> complex:
+        """Return the mean of a point's images, which all the motions fix."""
+        return sum(self.action.apply_to_point(motion, position) for motion in stabilizer) / len(stabilizer)
+
+    def last(self) -> complex:
+        """Return the position of the representative added last."""
+        return complex(self._positions[-1][-1])
+
+    def snapshot(self) -> Representatives:
+        """Return the representatives so far."""
+        return Representatives(self.action, np.concatenate(self._positions), self._stabilizer)

@@ -1,1 +1,0 @@
-"""Tiles on a sheet: one period, the tiles that a region holds, their lines each once, closed pieces, the order."""

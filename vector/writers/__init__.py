@@ -1,1 +1,0 @@
-"""Files: SVG, DXF, PDF, LightBurn, the outline document."""

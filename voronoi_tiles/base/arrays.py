@@ -1,0 +1,60 @@
+"""Arrays: the names of their types, and indices into rows of different lengths that stand one after the other."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+Complexes = NDArray[np.complex128]
+Floats = NDArray[np.float64]
+Ints = NDArray[np.intp]
+Bools = NDArray[np.bool_]
+
+
+def ranges(first: Ints, counts: Ints) -> Ints:
+    """The numbers first[0], first[0] + 1, ... (counts[0] of them), then those from first[1], and so on."""
+    total = int(counts.sum())
+    if not total:
+        return np.zeros(0, np.intp)
+    before = np.cumsum(counts) - counts
+    return np.asarray(np.arange(total) + np.repeat(first - before, counts), np.intp)
+
+
+def owned_ranges(first: Ints, last: Ints) -> tuple[Ints, Ints]:
+    """The numbers from first[k] up to, not including, last[k], one k after the other; and the k of each."""
+    counts = last - first
+    return ranges(first, counts), np.repeat(np.arange(len(counts)), counts)
+
+
+def counting(counts: Ints) -> tuple[Ints, Ints]:
+    """The numbers 0 ... counts[k] - 1, one k after the other; and the k of each."""
+    return owned_ranges(np.zeros_like(counts), counts)
+
+
+def next_in_ring(offsets: Ints) -> Ints:
+    """The index of what follows each entry in its ring, the last one by the first.
+
+    Args:
+        offsets: (r + 1,) the entries of ring k are offsets[k] to offsets[k + 1]; no ring is empty.
+    """
+    following = np.arange(1, int(offsets[-1]) + 1)
+    following[offsets[1:] - 1] = offsets[:-1]
+    return following
+
+
+def backwards(offsets: Ints) -> Ints:
+    """The order in which each ring is run through backwards, ring after ring; `offsets` as in `next_in_ring`."""
+    ring = np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))
+    return np.asarray((offsets[:-1] + offsets[1:] - 1)[ring] - np.arange(int(offsets[-1])))
+
+
+def starts(values: NDArray[np.generic]) -> Ints:
+    """Where runs of equal values begin; the array is not empty."""
+    return np.flatnonzero(np.append(True, values[1:] != values[:-1]))
+
+
+def first_least(value: NDArray[np.float64], of: Ints, count: int) -> Ints:
+    """The index of the first least value of each owner 0 ... count - 1; `of` ascends and has them all."""
+    start = np.searchsorted(of, np.arange(count))
+    hit = np.flatnonzero(value == np.minimum.reduceat(value, start)[of])
+    return hit[np.searchsorted(of[hit], np.arange(count))]

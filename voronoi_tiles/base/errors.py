@@ -1,0 +1,147 @@
+"""The errors of voronoi_tiles: one root, and leaves that carry what went wrong as data.
+
+Every leaf also inherits the built-in error that a caller would expect (ValueError, ArithmeticError,
+OSError), and `exit_code` is what the command line returns for it.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+if TYPE_CHECKING:
+    from voronoi_tiles.base.operations import Operation
+
+
+class VoronoiTilesError(Exception):
+    """Root of all errors that voronoi_tiles raises on purpose; `str()` is one message for the user.
+
+    `file` is the design's file where `str()` begins with it, else None.
+    """
+
+    exit_code: ClassVar[int] = 2
+    file: str | None = None
+
+
+class DesignError(VoronoiTilesError, ValueError):
+    """A design, or a part of it, that cannot be used.
+
+    `message` says what is wrong, without a full stop; `remedy` is a sentence that says what to write
+    instead; `key` is the path of the key ("site[0].strokes[2].segment"); `line` counts from 1 and is None
+    where the parser does not know it. `str()` joins them: "bird.toml, line 7, site[0].strokes[2].segment:
+    <message>. <remedy>".
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        file: str | None = None,
+        key: str | None = None,
+        line: int | None = None,
+        remedy: str | None = None,
+    ) -> None:
+        super().__init__(message)
+        self.message = message
+        self.file = file
+        self.key = key
+        self.line = line
+        self.remedy = remedy
+
+    def __str__(self) -> str:
+        line = None if self.line is None else f"line {self.line}"
+        place = ", ".join(part for part in (self.file, line, self.key) if part)
+        text = f"{place}: {self.message}" if place else self.message
+        return f"{text}. {self.remedy}" if self.remedy else f"{text}."
+
+    def with_file(self, file: str | None) -> Self:
+        """A copy of this error that names `file`; a file that is already named stays."""
+        return type(self)(self.message, file=self.file or file, key=self.key, line=self.line, remedy=self.remedy)
+
+    def under(self, key: str) -> Self:
+        """A copy of this error with `key` before its own: "segment[1]" under "site[0]" is "site[0].segment[1]"."""
+        own = self.key or ""
+        path = f"{key}.{own}" if own and not own.startswith("[") else key + own
+        return type(self)(self.message, file=self.file, key=path, line=self.line, remedy=self.remedy)
+
+
+class TouchingCopiesError(VoronoiTilesError, ValueError):
+    """Two different copies of sites touch or cross, so that a region would belong to nobody.
+
+    `site` is the site of the base cell, `other` the site whose image under `operation` touches it at `place`
+    (in the units of the design).
+    """
+
+    def __init__(
+        self, site: str, other: str, operation: Operation | str, place: complex, *, file: str | None = None
+    ) -> None:
+        super().__init__(site, other, operation, place)
+        self.site = site
+        self.other = other
+        self.operation = operation
+        self.place = complex(place)
+        self.file = file
+
+    def __str__(self) -> str:
+        place = f"({self.place.real:.6g}, {self.place.imag:.6g})"
+        if self.site == self.other:
+            what = f'site "{self.site}" touches its own copy under {self.operation} at {place}'
+        else:
+            what = f'site "{self.site}" touches the copy of site "{self.other}" under {self.operation} at {place}'
+        text = f"{self.file}: {what}" if self.file else what
+        return f"{text}. Move or shorten the strokes there, or make the cell larger: copies must keep apart."
+
+    def with_file(self, file: str | None) -> Self:
+        """A copy of this error that names `file`; a file that is already named stays."""
+        return type(self)(self.site, self.other, self.operation, self.place, file=self.file or file)
+
+
+class _ResultError(VoronoiTilesError, ArithmeticError):
+    """A result that is not right: `message`, without a full stop; `report` has all figures."""
+
+    exit_code: ClassVar[int] = 1
+
+    def __init__(self, message: str, report: Any = None) -> None:
+        super().__init__(message)
+        self.message = message
+        self.report = report
+
+    def __str__(self) -> str:
+        return f"{self.message}."
+
+
+class ProofError(_ResultError):
+    """A result that failed its proof: `message`, without a full stop; `report` is the ProofReport with all figures."""
+
+
+class CheckError(_ResultError):
+    """A result that failed its cross-check: `message`, without a full stop; `report` is the CheckReport."""
+
+
+class _RemediedError(VoronoiTilesError):
+    """What cannot be done; `message` and `remedy` are those of DesignError."""
+
+    def __init__(self, message: str, *, remedy: str | None = None) -> None:
+        super().__init__(message)
+        self.message = message
+        self.remedy = remedy
+
+    def __str__(self) -> str:
+        return f"{self.message}. {self.remedy}" if self.remedy else f"{self.message}."
+
+
+class RenderError(_RemediedError, RuntimeError):
+    """An image that could not be rendered; `message` and `remedy` are those of DesignError."""
+
+    exit_code: ClassVar[int] = 1
+
+
+class OutputError(_RemediedError, OSError):
+    """A file that could not be written; `path` is the file, which is as it was before.
+
+    `message` and `remedy` are those of DesignError.
+    """
+
+    def __init__(self, message: str, path: str | os.PathLike[str] | None = None, *, remedy: str | None = None) -> None:
+        super().__init__(message, remedy=remedy)
+        self.path = path

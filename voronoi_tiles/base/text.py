@@ -1,0 +1,13 @@
+"""Texts of others, made safe to show."""
+
+from __future__ import annotations
+
+
+def printable(text: str) -> str:
+    """Escape control characters, and bytes that are not UTF-8, as names of files may hold them."""
+
+    def escaped(sign: str) -> str:
+        # Python keeps the byte b of such a name as U+DC00 + b.
+        return f"\\x{ord(sign) - 0xDC00:02x}" if "\udc80" <= sign <= "\udcff" else repr(sign)[1:-1]
+
+    return "".join(sign if sign.isprintable() else escaped(sign) for sign in text)

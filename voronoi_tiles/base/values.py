@@ -1,0 +1,109 @@
+"""Reading values of tables, as TOML and JSON give them: every value is checked before it is used.
+
+Whatever is passed, only DesignError comes out. Its key is relative to the value that was read ("[1]" for
+the second item); callers put their own key before it with `within`.
+"""
+
+from __future__ import annotations
+
+import math
+import reprlib
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+
+from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.base.tolerance import COORDINATE_MAX, NUMBER_MIN
+
+Table = Mapping[str, Any]
+
+_LARGER = "Write a larger number, or use smaller units."  # where 0 is refused too
+
+
+@contextmanager
+def within(key: str) -> Iterator[None]:
+    """Put `key` before the keys of the errors that come out of the block."""
+    try:
+        yield
+    except DesignError as error:
+        raise error.under(key) from None
+
+
+def shown(value: object) -> str:
+    """Give a short form of any value, for messages."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, Mapping):
+        return "a table"
+    if value is None:
+        return "nothing"
+    try:
+        return reprlib.repr(value)
+    except Exception:  # noqa: BLE001 - a value whose own repr fails, as an int of 5,000 digits does
+        return f"this {type(value).__name__}"
+
+
+def table(value: object, known: Collection[str], remedy: str) -> Table:
+    """Read a table that has no other than the known keys."""
+    if not isinstance(value, Mapping):
+        raise DesignError(f"must be a table, not {shown(value)}", remedy=remedy)
+    for name in value:
+        if not (isinstance(name, str) and name in known):
+            listed = f"The keys here are {', '.join(known)}."
+            close = closest(name, known)
+            raise DesignError(
+                f"unknown key {shown(name)}", remedy=f'Did you mean "{close}"? {listed}' if close else listed
+            )
+    return value
+
+
+def closest(word: object, known: Collection[str]) -> str | None:
+    """Find the known word that was probably meant; None where nothing is near."""
+    if not isinstance(word, str) or len(word) > 40:
+        return None
+    import difflib
+
+    return next(iter(difflib.get_close_matches(word.lower(), known, n=1)), None)
+
+
+def required(of: Table, name: str, remedy: str) -> Any:
+    """Get the value of a key that has to be there."""
+    if name not in of:
+        raise DesignError("is missing", key=name, remedy=remedy)
+    return of[name]
+
+
+def number(
+    value: Any, remedy: str = "Write a number, such as 60.0.", tiny: str = "Write 0, or use smaller units."
+) -> float:
+    """Read a finite number of sane size; true and false are none. `tiny` is the remedy for one too near to 0."""
+    if not isinstance(value, int | float | np.integer | np.floating) or isinstance(value, bool):
+        raise DesignError(f"must be a number, not {shown(value)}", remedy=remedy)
+    size: Any = abs(value)
+    if not size <= COORDINATE_MAX:
+        if isinstance(value, int) or math.isfinite(value):
+            raise DesignError(f"number beyond {COORDINATE_MAX:g}", remedy="Use units that keep the numbers small.")
+        raise DesignError(f"must be a finite number, not {float(value)}", remedy=remedy)
+    result = float(value)
+    if result != 0.0 and abs(result) < NUMBER_MIN:
+        raise DesignError(f"number below {NUMBER_MIN:g}", remedy=tiny)
+    return result
+
+
+def positive(value: object) -> float:
+    """Read a number greater than 0."""
+    result = number(value, tiny=_LARGER)
+    if result <= 0.0:
+        raise DesignError(f"must be greater than 0, not {result:g}", remedy="Write a positive number.")
+    return result
+
+
+def sequence(value: object, remedy: str) -> list[Any] | tuple[Any, ...]:
+    """Read an array."""
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if not isinstance(value, list | tuple):
+        raise DesignError(f"must be an array, not {shown(value)}", remedy=remedy)
+    return value

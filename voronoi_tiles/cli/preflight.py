@@ -1,0 +1,99 @@
+"""The command `preflight`: whether a drawing can be cut as it is, and where it cannot."""
+
+from __future__ import annotations
+
+import click
+
+from voronoi_tiles.cli.common import EXIT_USAGE, PATH, refuse_output, report_error, say, shown
+from voronoi_tiles.cli.options import LENGTH, Length
+
+_APART = Length(least=1e-6)
+"""A length from a nanometre on."""
+
+
+@click.command()
+@click.argument("file", type=PATH)
+@click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
+@click.option(
+    "-o",
+    "--output",
+    metavar="MARKED",
+    type=PATH,
+    help="Write a picture (.svg) of the drawing with a numbered mark at every finding.",
+)
+@click.option(
+    "--neck",
+    default="1mm",
+    metavar="LENGTH",
+    type=LENGTH,
+    help="Warn of material that is narrower; 0 for never [default: 1mm].",
+)
+@click.option(
+    "--feature",
+    default="1mm",
+    metavar="LENGTH",
+    type=LENGTH,
+    help="Warn of contours that are smaller [default: 1mm].",
+)
+@click.option(
+    "--tolerance",
+    default="0.005mm",
+    metavar="LENGTH",
+    type=_APART,
+    help="Lines and ends that are nearer are one [default: 0.005mm].",
+)
+@click.option(
+    "--tabs",
+    metavar="LENGTH",
+    type=LENGTH,
+    help="Gaps up to this width are tabs [default: what a file of our own says].",
+)
+@click.option(
+    "--layer",
+    "layers",
+    multiple=True,
+    metavar="NAME",
+    help="Judge this layer, or colour (#ff0000), as cut, and no other; may be repeated "
+    "[default: all but those named engrave, score, ...].",
+)
+def preflight(
+    file: str,
+    as_json: bool,
+    output: str | None,
+    neck: float,
+    feature: float,
+    tolerance: float,
+    tabs: float | None,
+    layers: tuple[str, ...],
+) -> None:
+    """Find what would spoil the cut of an SVG or DXF file: open, doubled and crossing lines, wrong size, thin necks.
+
+    Places are in millimetres as the file's own program shows them: SVG from the upper left corner, y down; DXF y up.
+    The exit code is 1 where something would spoil the cut, 2 where the file cannot be read.
+    """
+    from voronoi_tiles.base.files import STDOUT, write_whole
+    from voronoi_tiles.preflight import Limits, report_text
+    from voronoi_tiles.preflight import preflight as find
+
+    refuse_output(file, output, (".svg",))
+    if output == STDOUT:
+        raise click.UsageError("The report goes to standard output: give the picture a file, -o marked.svg.")
+    try:
+        limits = Limits(tolerance=tolerance, neck=neck, feature=feature, tabs=tabs)
+        report = find(file, limits=limits, layers=layers)
+        if output is not None:
+            from voronoi_tiles.preflight.annotated import marked_svg
+
+            write_whole(output, marked_svg(report).encode())
+            say(f"wrote {output}")
+    except MemoryError as error:
+        say(f"Error: {shown(file)}: there is not enough memory for this drawing. Split it, or simplify its curves.")
+        raise click.exceptions.Exit(EXIT_USAGE) from error
+    except Exception as error:
+        raise click.exceptions.Exit(report_error(file, error)) from error
+    write_whole(STDOUT, (report.json() if as_json else report_text(report)).encode())
+    if not report.passed:
+        errors = sum(finding.severity == "error" for finding in report.findings)
+        findings = "1 finding" if errors == 1 else f"{errors:,} findings"
+        say(f"Error: {shown(file)}: {findings} would spoil the cut.")
+        raise click.exceptions.Exit(1)

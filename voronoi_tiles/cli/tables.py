@@ -1,0 +1,213 @@
+"""What the command line prints for people: tables, and names that are safe to print."""
+
+from __future__ import annotations
+
+import io
+import sys
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from voronoi_tiles.base.text import printable
+
+
+def info_text(figures: dict[str, Any]) -> str:
+    """Write the figures of a tiling (Tiling.figures) as tables."""
+    units = figures["units"]
+    cell = figures["cell"]
+    page = _TextTable()
+    page.head(
+        {
+            "design": printable(figures["design"]),
+            "group": f"{figures['group']}, {figures['order']} copies per cell",
+            "cell": f"a = {_vector(cell['a'])}, b = {_vector(cell['b'])} {units}, area {_entry(cell['area'])} {units}²",
+        }
+    )
+    page.table(
+        "Tiles",
+        ["site", f">area {units}²", f">perimeter {units}", ">lines", ">parabolas", ">curved", ">copies", "symmetry"],
+        [
+            (
+                tile["site"],
+                tile["area"],
+                tile["perimeter"],
+                tile["edges"]["line"],
+                tile["edges"]["parabola"],
+                f"{tile['curved_share']:.1%}",
+                tile["copies_per_cell"],
+                "  ".join(tile["symmetry"]),
+            )
+            for tile in figures["tiles"]
+        ],
+    )
+    page.table(
+        "Neighbours",
+        ["tile", "neighbour", "operation", ">edges", f">length {units}"],
+        [
+            (tile["site"], other["site"], other["operation"], other["edges"], other["length"])
+            for tile in figures["tiles"]
+            for other in tile["neighbours"]
+        ],
+    )
+    _proof(page, figures["proof"])
+    return page.text()
+
+
+def report_text(figures: dict[str, Any]) -> str:
+    """Write the figures of a job (fabrication.report_figures) as tables."""
+    page = _TextTable()
+    sheet, use, cut, pieces = figures["page"], figures["use"], figures["cut"], figures["pieces"]
+    accuracy = "" if figures["curves"] == "exact" else f", within {figures['accuracy']:g} mm"
+    page.head(
+        {
+            "design": f"{printable(figures['design'])}, {figures['group']}",
+            "page": f"{sheet['width']:.6g} x {sheet['height']:.6g} mm, {use['share']:.1%} of it tiles, "
+            f"{use['whole_share']:.1%} whole ones",
+            "pieces": f"{pieces['count']:,}, {pieces['whole']:,} of them whole tiles, "
+            f"{pieces['turned_over']:,} turned over",
+            "colours": f"{figures['colours']} suffice for the whole tessellation",
+            "cut": f"{cut['length'] / 1000:.3f} m, {cut['pierces']:,} pierces, {cut['travel'] / 1000:.3f} m of travel",
+            "curves": f"{figures['curves']}{accuracy}; the shortest segment is {figures['shortest_piece']:.3g} mm",
+            "time": f"{figures['time'] / 60:.1f} min, acceleration not counted",
+        }
+    )
+    page.table(
+        "Pieces",
+        ["site", "turned over", "whole", ">colour", ">count"],
+        [
+            (
+                row["site"],
+                "yes" if row["turned_over"] else "no",
+                "yes" if row["whole"] else "no",
+                "-" if row["colour"] is None else row["colour"],
+                f"{row['count']:,}",
+            )
+            for row in pieces["kinds"]
+        ],
+    )
+    page.table(
+        "Layers in the order of work",
+        ["layer", "work", "colour", ">paths", ">closed", ">length m", ">travel m", ">minutes"],
+        [
+            (
+                row["name"],
+                row["work"],
+                row["colour"],
+                f"{row['paths']:,}",
+                f"{row['closed']:,}",
+                f"{row['length'] / 1000:.3f}",
+                f"{row['travel'] / 1000:.3f}",
+                f"{row['time'] / 60:.1f}",
+            )
+            for row in figures["layers"]
+        ],
+    )
+    return page.text()
+
+
+def check_text(document: dict[str, Any]) -> str:
+    """Write what `check --json` prints as tables."""
+    page = _TextTable()
+    check = document["check"]
+    across, down = check["samples"]
+    spots = f", {check['spot_checks']:,} samples compared with float64" if check["spot_checks"] else ""
+    page.head(
+        {
+            "design": f"{printable(document['design'])}, {document['group']}",
+            "image": f"{across} x {down} samples of {check['sample_size']:.4g} {check['units']} over one cell",
+            "by": f"{check['method']} on {check['renderer']} ({check['device']}), {check['precision']}{spots}",
+        }
+    )
+    _proof(page, document["proof"])
+    page.table(
+        "Cross-check: outlines against the image",
+        ["figure", ">checked", ">wrong", ">worst", ">limit", "unit", ""],
+        [
+            (
+                row["name"],
+                f"{row['checked']:,}",
+                f"{row['wrong']:,}",
+                _short(row["worst"]),
+                _short(row["limit"]),
+                row["unit"],
+                "ok" if row["passed"] else "FAILED",
+            )
+            for row in check["figures"]
+        ],
+    )
+    for row in check["figures"]:
+        page.line(f"{row['name']:<14}{row['what']}")
+        page.line(f"{'':<14}limit: {row['basis']}")
+        if row["places"]:
+            places = ", ".join(f"({x:.6g}, {y:.6g})" for x, y in row["places"][:3])
+            page.line(f"{'':<14}wrong at {places}" + (" and elsewhere" if row["wrong"] > 3 else ""))
+    failed = [row["name"] for row in check["figures"] if not row["passed"]]
+    page.line(f"\nThe outlines and the image {'differ: ' + ', '.join(failed) if failed else 'agree'}.")
+    return page.text()
+
+
+def _proof(page: _TextTable, rows: Iterable[dict[str, Any]]) -> None:
+    """Add the table of a proof's figures."""
+    page.table(
+        "Proof",
+        ["figure", ">value", ">limit", ""],
+        [
+            (row["name"], f"{row['value']:.3g}", f"{row['limit']:.3g}", "ok" if row["passed"] else "FAILED")
+            for row in rows
+        ],
+    )
+
+
+class _TextTable:
+    """Tables and lines on the way to standard output, in its width and with its colours where it is a terminal."""
+
+    def __init__(self) -> None:
+        from rich.console import Console
+
+        terminal = sys.stdout.isatty()
+        self._output = io.StringIO()
+        self._console = Console(
+            file=self._output, width=None if terminal else 110, force_terminal=terminal, legacy_windows=False
+        )
+
+    def head(self, entries: dict[str, str]) -> None:
+        """Add named lines."""
+        for key, value in entries.items():
+            self.line(f"{key:<8}{value}")
+
+    def line(self, text: str) -> None:
+        """Add one line, as long as it is."""
+        from rich.text import Text
+
+        self._console.print(Text(text), soft_wrap=True)
+
+    def table(self, title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+        """Add a table; the columns whose names begin with > are flush right."""
+        from rich import box
+        from rich.table import Table
+        from rich.text import Text
+
+        table = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD, title_style="bold")
+        for column in columns:
+            table.add_column(column.lstrip(">"), justify="right" if column.startswith(">") else "left")
+        for row in rows:
+            table.add_row(*(Text(_entry(item)) for item in row))
+        self._console.print(table)
+
+    def text(self) -> str:
+        """Give the page."""
+        return "\n".join(line.rstrip() for line in self._output.getvalue().splitlines()) + "\n"
+
+
+def _entry(item: object) -> str:
+    """Write one entry of a table: ten digits are enough to read."""
+    return f"{item:.10g}" if isinstance(item, float) else str(item)
+
+
+def _short(value: float | None) -> str:
+    """Write a deviation, or a limit; three digits are enough to compare."""
+    return "" if value is None else f"{value:.3g}"
+
+
+def _vector(vector: Sequence[float]) -> str:
+    """Write a vector."""
+    return f"({', '.join(_entry(float(part)) for part in vector)})"

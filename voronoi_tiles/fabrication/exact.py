@@ -1,0 +1,47 @@
+"""The exact tiles of a design where they lie in the plane, as a drawing: nothing is rounded, nothing approximated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Final
+
+import numpy as np
+
+from voronoi_tiles.base.version import __version__
+from voronoi_tiles.designs.design import Design
+from voronoi_tiles.formats.page import Drawing, Layer, page_length
+from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.vector.outline import Outline
+
+CUT_LAYER: Final = "cut"
+CUT_COLOUR: Final = "#000000"
+HAIRLINE_MM: Final = 0.025
+
+
+def design_recipe(design: Design) -> dict[str, str]:
+    """What files say of the program and the design that they were made from."""
+    return {"program": "voronoi-tiles", "version": __version__, "design": design.source}
+
+
+def exact_drawing(tiles: Sequence[tuple[str, Outline]], unit_mm: float, recipe: Mapping[str, str]) -> Drawing:
+    """Draw the named outlines of tiles, in units of `unit_mm` millimetres, one object each.
+
+    The page is the tiles' bounding box, rounded up to six digits. Its upper left corner is at 0: then a file
+    whose y runs down has differences of the outlines' coordinates, rounded no further where the unit is the millimetre.
+    """
+    outlines = [outline for _, outline in tiles]
+    bounds = np.array([outline.bounds for outline in outlines])
+    left, bottom = bounds[:, :2].min(axis=0).tolist()
+    right, top = bounds[:, 2:].max(axis=0).tolist()
+    width, height = (page_length(length * unit_mm) for length in (right - left, top - bottom))
+    paths = Paths.concatenate([outline.paths for outline in outlines])
+    layer = Layer(
+        name=CUT_LAYER,
+        work="cut",
+        colour=CUT_COLOUR,
+        stroke=HAIRLINE_MM,
+        paths=paths.moved(1.0, -complex(left, top)).moved(unit_mm, 0j),
+        items=np.append(0, np.cumsum([len(outline.paths) for outline in outlines])).astype(np.intp),
+        labels=tuple(name for name, _ in tiles),
+    )
+    return Drawing(width, height, (layer,), recipe=recipe, bottom=-height)

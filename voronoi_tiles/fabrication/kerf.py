@@ -1,0 +1,99 @@
+"""What kerf and fillets do to the contours of pieces, and what they lose by it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from itertools import pairwise
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Ints
+from voronoi_tiles.fabrication.arc_fitting import fewer_arcs
+from voronoi_tiles.fabrication.contours import ClosedPieces
+from voronoi_tiles.fabrication.job import Job, JobError
+from voronoi_tiles.paths.areas import ring_areas
+from voronoi_tiles.paths.offset import Offset, OffsetError, offset, round_corners
+from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.paths.winding import item_winding
+
+_LOSSES = {
+    "ring": "a piece vanishes",
+    "neck": "a neck breaks",
+    "gap": "a gap closes",
+    "part": "a thin part vanishes",
+}
+
+
+class Dressing:
+    """Applies the kerf and the fillet of a job; `losses` says in sentences what pieces have lost so far."""
+
+    def __init__(self, job: Job, *, refit: bool) -> None:
+        """Where `refit`, the many short arcs that kerf and fillet leave become the fewest."""
+        self.job = job
+        self.refit = refit
+        self.losses: list[str] = []
+
+    def tile(self, rings: Paths) -> Paths:
+        """Apply them to a whole tile, which must keep all its rings. Raises JobError where it does not."""
+        return self._refitted(self._dress(rings, whole=True))
+
+    def pieces(self, pieces: ClosedPieces) -> tuple[ClosedPieces, Ints]:
+        """Apply fillet and kerf to pieces one by one; also gives of which of them each of the pieces now is."""
+        if not self.job.dressed:
+            return pieces, np.arange(len(pieces.tile))
+        done: list[Paths] = []
+        of: list[int] = []
+        for k, (a, b) in enumerate(pairwise(pieces.items.tolist())):
+            parts = _parts(self._dress(pieces.paths.take(np.arange(a, b)), whole=False))
+            done += parts
+            of += [k] * len(parts)
+        items = np.append(0, np.cumsum([len(rings) for rings in done])).astype(np.intp)
+        owner = np.array(of, np.intp)
+        return ClosedPieces(self._refitted(Paths.concatenate(done)), items, pieces.tile[owner]), owner
+
+    def _dress(self, rings: Paths, *, whole: bool) -> Paths:
+        """Round the corners of a piece and let its contour keep half the kerf.
+
+        A tile that is `whole` must leave all its rings; of a part of one, or of a frame, less may be left, or nothing.
+        """
+        job = self.job
+        if job.fillet > 0.0:
+            rings = self._kept(round_corners, rings, job.fillet, "fillet", whole=whole)
+        if job.kerf > 0.0 and len(rings):
+            rings = self._kept(offset, rings, job.kerf / 2, "kerf", whole=whole)
+        return rings
+
+    def _kept(
+        self, change: Callable[[Paths, float], Offset], rings: Paths, size: float, name: str, *, whole: bool
+    ) -> Paths:
+        """Apply a change to a piece, and note what is lost by it."""
+        try:
+            result = change(rings, size)
+        except OffsetError as error:
+            raise JobError(
+                f"--{name} cannot be applied at ({error.place.real:.4g}, {error.place.imag:.4g}) mm of the page",
+                remedy=f"Change --{name} a little, and please report the design.",
+            ) from error
+        given = getattr(self.job, name)
+        for lost in result.lost:
+            place = f"({lost.place.real:.4g}, {lost.place.imag:.4g}) mm"
+            if whole and (lost.kind in ("ring", "neck") or len(result.paths) != len(rings)):
+                raise JobError(
+                    f"--{name} {given:g}mm is too much: {_LOSSES[lost.kind]} at {place} of the page",
+                    remedy=f"Use a smaller --{name}, or a larger design.",
+                )
+            self.losses.append(f"--{name} {given:g}mm: {_LOSSES[lost.kind]} at {place} of the page")
+        return result.paths
+
+    def _refitted(self, rings: Paths) -> Paths:
+        """Replace the many short arcs that kerf and fillet leave by the fewest within what is left of the accuracy."""
+        return fewer_arcs(rings, self.job.accuracy) if self.job.dressed and self.refit else rings
+
+
+def _parts(rings: Paths) -> list[Paths]:
+    """The parts that rings bound: an outer one each, and the holes in it."""
+    areas = ring_areas(rings)
+    outer, holes = np.flatnonzero(areas > 0), np.flatnonzero(areas <= 0)
+    shells = rings.take(outer)
+    inside = item_winding(shells, shells.offsets, rings.start[rings.offsets[:-1]][holes]) > 0
+    return [rings.take(np.append(one, holes[held])) for one, held in zip(outer, inside, strict=True)]

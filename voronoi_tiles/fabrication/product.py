@@ -1,0 +1,265 @@
+"""From a tiling and a job to the drawing that is written, and to the figures of a report."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from io import RawIOBase
+from math import fsum
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Bools, ranges
+from voronoi_tiles.designs.design import Design
+from voronoi_tiles.fabrication.arc_fitting import curve_fit
+from voronoi_tiles.fabrication.cutting import Cut, cut_once, cut_pieces, toured
+from voronoi_tiles.fabrication.engraving import Engraving, engrave
+from voronoi_tiles.fabrication.exact import design_recipe
+from voronoi_tiles.fabrication.inventory import Inventory, contour_pieces, cut_free
+from voronoi_tiles.fabrication.job import Job, JobError
+from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, Sheet
+from voronoi_tiles.fabrication.sheets import read_sheet
+from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_tiles
+from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
+from voronoi_tiles.formats.page import Drawing, Layer, Work
+from voronoi_tiles.formats.presets import Format, Preset, Role, load_preset
+from voronoi_tiles.formats.writing import FORMATS, write_drawing
+from voronoi_tiles.groups.periodic_colouring import palette
+from voronoi_tiles.paths.biarcs import to_arcs
+from voronoi_tiles.paths.conversion import to_cubics, to_lines
+from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.vector.tessellation import Tessellation
+
+
+@dataclass(frozen=True, eq=False)
+class Product:
+    """What a job makes of a tiling, for a format of files.
+
+    `notes` say in sentences what was lost to kerf or fillet; `colours` is how many the whole tessellation takes.
+    """
+
+    form: Format
+    drawing: Drawing
+    pieces: Inventory
+    colours: int
+    notes: tuple[str, ...]
+    curves: str
+    accuracy: float
+
+    def with_evidence(self, evidence: Mapping[str, Any]) -> Product:
+        """The same with what was proved and checked in the recipe."""
+        return replace(self, drawing=self.drawing.with_evidence(evidence))
+
+    def summary(self) -> str:
+        """Say in a line what it comes to."""
+        cuts = [layer.paths for layer in self.drawing.layers if layer.work == "cut"]
+        length = fsum(float(paths.lengths.sum()) for paths in cuts) / 1000
+        strokes = sum(map(len, cuts))
+        count, area = len(self.pieces.site), self.drawing.width * self.drawing.height
+        return (
+            f"{count:,} piece{'s' * (count != 1)}, {self.pieces.tile_area / area:.1%} of {self.drawing.width:.5g} x "
+            f"{self.drawing.height:.5g} mm, {length:.3g} m of cuts in {strokes:,} path{'s' * (strokes != 1)}"
+        )
+
+    def write(self, file: BinaryIO | RawIOBase) -> None:
+        """Write the drawing."""
+        write_drawing(self.drawing, file, self.form, curves=self.curves, accuracy=self.accuracy)
+
+
+def make(design: Design, tessellation: Tessellation, job: Job, file_format: str = "svg") -> Product:
+    """Make what a job asks for, in the curves that a format takes.
+
+    Raises JobError where the job cannot be done, DesignError where the preset or the sheet's drawing is broken.
+    """
+    form = _format(file_format)
+    if job.colours == "files" and job.only_colour is None:
+        raise JobError(
+            "a file for each colour is several drawings, and one is asked for",
+            remedy="Use make_colours, or put the colours on layers.",
+        )
+    return _Plan.of(design, tessellation, job, form).product(job)
+
+
+def make_colours(
+    design: Design, tessellation: Tessellation, job: Job, file_format: str = "svg"
+) -> list[tuple[str, Product]]:
+    """Make a drawing for each colour that a job has pieces of, and one for a frame; each with a name for its file.
+
+    Raises what `make` does.
+    """
+    plan = _Plan.of(design, tessellation, job, _format(file_format))
+    return [(name, plan.product(replace(job, only_colour=number))) for number, name in plan.colours()]
+
+
+def colour_names(
+    design: Design, tessellation: Tessellation, job: Job, file_format: str = "svg"
+) -> list[tuple[int, str]]:
+    """Give the colours that a job has pieces of, each with a name for its file; FRAME for the frame."""
+    return _Plan.of(design, tessellation, job, _format(file_format)).colours()
+
+
+@dataclass(frozen=True, eq=False)
+class _Plan:
+    """What the drawings of a job share: the tiles on the page, in the curves that a format takes, and their colours.
+
+    `rest` is what approximating the tiles has left of the accuracy; millimetres.
+    """
+
+    form: Format
+    preset: Preset
+    curves: str
+    rest: float
+    layout: Layout
+    colouring: TileColouring
+
+    @classmethod
+    def of(cls, design: Design, tessellation: Tessellation, job: Job, form: Format) -> _Plan:
+        """Lay out the tiles."""
+        preset = load_preset(job.preset)
+        preset.require(form)
+        curves = _curves(job, preset, form)
+        fit, rest = curve_fit(job, curves, design.unit_mm)
+        layout = Layout(design, tessellation, job, read_sheet(job), fit, refit=curves != "polyline")
+        return cls(form, preset, curves, rest, layout, colour_tiles(layout))
+
+    def colours(self) -> list[tuple[int, str]]:
+        """The colours that the page has pieces of, each with a name for its file; FRAME for the frame."""
+        copies = np.arange(len(self.layout.copies.tile))
+        found = np.unique(self.colouring.of_copies(copies)).tolist()
+        if self.layout.job.fit == "frame" and self.layout.rest() is not None:
+            found.append(FRAME)
+        return [(number, "frame" if number == FRAME else str(number + 1)) for number in found]
+
+    def product(self, job: Job) -> Product:
+        """Draw what a job asks for, which is that of the plan, or one of its colours."""
+        layout, colouring, preset = self.layout, self.colouring, self.preset
+        if job.pieces:
+            contours = _of_colour(layout.contours, colouring, job)
+            cuts = cut_pieces(contours, colouring, job)
+            pieces = contour_pieces(layout, contours, colouring)
+        else:
+            cuts = [Cut("cut", "", None, cut_once(layout, job))]
+            contours = None
+            pieces = cut_free(layout, colouring)
+        shown = _shown(colouring, layout, job)
+        engraving = engrave(layout, contours, layout.sheet, shown, fills=preset.fill_engraving)
+        layers = _layers(preset, self.form, job, cuts, engraving, _converter(self.curves, self.rest))
+        drawing = _page(layers, layout.sheet, job, layout.design)
+        said = (*layout.dressing.losses, *engraving.notes, *_doubled(layout, job), *_untabbed(cuts, job))
+        notes = tuple(dict.fromkeys(said))
+        return Product(self.form, drawing, pieces, colouring.count, notes, self.curves, job.accuracy)
+
+
+def _format(name: str) -> Format:
+    """The format of drawings that has this name. Raises JobError where none has."""
+    if name not in FORMATS:
+        raise JobError(f"no drawing can be made as {name!r}", remedy=f"Use one of {', '.join(FORMATS)}.")
+    return name
+
+
+def _untabbed(cuts: list[Cut], job: Job) -> list[str]:
+    """Say how many pieces are too small for tabs, where there are any."""
+    small = sum(int(cut.paths.closed.sum()) for cut in cuts) if job.tabs > 0.0 and job.pieces else 0
+    return [f"{small:,} contours are too short for tabs of {job.tabs:g} mm, and fall out"] if small else []
+
+
+def _doubled(layout: Layout, job: Job) -> list[str]:
+    """Say that neighbours' contours lie on each other, where they do."""
+    if not job.pieces or job.apart is not None or len(layout.copies.tile) < 2 or job.sheet is None:
+        return []
+    return ["neighbouring contours lie on each other, and are cut twice: --edges once, or --gap 1mm, avoids it"]
+
+
+def _of_colour(contours: Contours, colouring: TileColouring, job: Job) -> Contours:
+    """The pieces of the only colour that is asked for."""
+    if job.only_colour is None:
+        return contours
+    chosen = np.flatnonzero(colouring.of_copies(contours.copy) == job.only_colour)
+    if not len(chosen):
+        raise JobError(
+            f"no piece has the colour {job.only_colour + 1}",
+            remedy=f"The tessellation has {colouring.count} colours; colour_names says which of them a job has.",
+        )
+    rings = ranges(contours.items[chosen], np.diff(contours.items)[chosen])
+    items = np.append(0, np.cumsum(np.diff(contours.items)[chosen])).astype(np.intp)
+    return Contours(contours.paths.take(rings), items, contours.copy[chosen], contours.area[chosen])
+
+
+def _shown(colouring: TileColouring, layout: Layout, job: Job) -> Bools:
+    """Tell which tiles on the page are drawn."""
+    colour = colouring.of_copies(np.arange(len(layout.copies.tile)))
+    return np.ones(len(colour), np.bool_) if job.only_colour is None else np.asarray(colour == job.only_colour)
+
+
+def _curves(job: Job, preset: Preset, form: Format) -> str:
+    """What the curves become."""
+    wanted = job.curves
+    if wanted is None:
+        by_preset = {"svg": preset.svg_curves, "dxf": preset.dxf_curves}.get(form, "exact")
+        wanted = "spline" if by_preset == "cubic" else by_preset
+    if form == "dxf" and wanted == "exact":
+        wanted = "spline"
+    return wanted
+
+
+def _converter(curves: str, accuracy: float) -> Callable[[Paths], Paths]:
+    """What is still to be done to paths so that they hold only what the file takes."""
+    match curves:
+        case "polyline":
+            return lambda paths: to_lines(paths, accuracy=accuracy)
+        case "arc":
+            return lambda paths: to_arcs(paths, accuracy=accuracy)
+        case "spline":
+            return lambda paths: to_cubics(paths, accuracy=CUBIC_ACCURACY_MM)
+        case _:
+            return lambda paths: paths
+
+
+def _layers(
+    preset: Preset, form: Format, job: Job, cuts: list[Cut], engraving: Engraving, convert: Callable[[Paths], Paths]
+) -> list[Layer]:
+    """The layers in the order of work: engraving, scores, cuts inside, cuts around."""
+    stroke = preset.stroke_width(job.kerf)
+
+    def layer(role: Role, work: Work, paths: Paths) -> Layer:
+        """A layer as the preset calls and colours it."""
+        return Layer.of_paths(preset.layer_name(role, form), work, preset.colours[role], stroke, paths)
+
+    layers = []
+    if len(engraving.filled):
+        filled = layer("engrave", "engrave", convert(engraving.filled))
+        layers.append(replace(filled, items=engraving.items, filled=True))
+    if len(engraving.engraved):
+        layers.append(layer("engrave", "engrave", convert(toured(engraving.engraved))))
+    if len(engraving.scored):
+        layers.append(layer("score", "score", convert(toured(engraving.scored))))
+    for cut in cuts:
+        plain = layer(cut.role, "cut", convert(cut.paths))
+        coloured = cut.colour is not None and cut.colour >= 0 and cut.role == "cut"
+        colour = _palette(preset, cut.colour) if cut.colour is not None and coloured else plain.colour
+        layers.append(replace(plain, name=plain.name + cut.suffix, colour=colour))
+    return layers
+
+
+def _palette(preset: Preset, number: int) -> str:
+    """The colour of a layer of cuts; the first is the preset's own."""
+    colours = (preset.colours["cut"], *preset.palette)
+    if number < len(colours):
+        return colours[number]
+    red, green, blue = palette(number + 1)[number].tolist()
+    return f"#{red:02x}{green:02x}{blue:02x}"
+
+
+def _page(layers: list[Layer], sheet: Sheet, job: Job, design: Design) -> Drawing:
+    """Put the layers on the page; without a sheet, on one that fits them."""
+    width, height = sheet.width, sheet.height
+    if sheet.region is None:
+        boxes = np.array([layer.paths.bounds for layer in layers if len(layer.paths)])
+        low, high = boxes[:, :2].min(axis=0) - job.margin, boxes[:, 2:].max(axis=0) + job.margin
+        shift = -complex(*low.tolist())
+        width, height = (high - low).tolist()
+        layers = [replace(layer, paths=layer.paths.moved(1.0, shift)) for layer in layers]
+    recipe = {**design_recipe(design), "job": json.dumps(job.recipe(), sort_keys=True)}
+    return Drawing(width, height, tuple(layers), f"{design.name} ({design.group.name})", recipe)

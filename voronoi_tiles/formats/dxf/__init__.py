@@ -1,0 +1,1 @@
+"""DXF: a reader of anybody's files, and the writer of ours."""

@@ -1,0 +1,182 @@
+"""DXF's lines and curves, drawn by a pen in the drawing's units."""
+
+from __future__ import annotations
+
+import cmath
+import math
+from typing import Any, Final
+
+import numpy as np
+from ezdxf.math import Vec2, Vec3
+
+from voronoi_tiles.base.maps import Affine
+from voronoi_tiles.formats.dxf.splines import bezier_spans, fitted_cubics
+from voronoi_tiles.formats.pen import Pen
+from voronoi_tiles.formats.shapes import CURVE_ACCURACY, DrawingError
+
+_MIRRORED: Final = Affine(0j, -1 + 0j, 0j)  # seen from below, x runs to the left
+_UPRIGHT: Final = 1e-9  # how far an axis may lean; relative. Programs write axes with 10 digits or more.
+_DEGREE_MAX: Final = 25
+
+
+class Tilted(Exception):  # noqa: N818 - it is no error, but a reason to leave something out
+    """An entity that does not lie in the plane of the drawing."""
+
+
+def draw_entity(pen: Pen, entity: Any, to_page: Affine) -> None:
+    """Draw a LINE, ARC, CIRCLE, ELLIPSE, LWPOLYLINE, POLYLINE or SPLINE.
+
+    `to_page` is the map with which the pen has begun the shape. Raises Tilted for what stands in space, DrawingError
+    for what is broken.
+    """
+    dxf = entity.dxf
+    _check_numbers(dxf)
+    match entity.dxftype():
+        case "LINE":
+            pen.move(_point(dxf.start))
+            pen.line(_point(dxf.end))
+        case "ARC":
+            turn = math.radians(dxf.end_angle - dxf.start_angle) % math.tau or math.tau
+            _draw_arc(pen, entity, to_page, math.radians(dxf.start_angle), turn)
+        case "CIRCLE":
+            _draw_arc(pen, entity, to_page, 0.0, math.tau)
+        case "ELLIPSE":
+            _draw_ellipse(pen, dxf)
+        case "LWPOLYLINE":
+            begin_seen(pen, entity, to_page)
+            _draw_bulges(pen, [(complex(x, y), b) for x, y, b in entity.get_points("xyb")], bool(entity.closed))
+        case "POLYLINE":
+            _draw_polyline(pen, entity, to_page)
+        case _:
+            _draw_spline(pen, entity, to_page)
+
+
+def _check_numbers(dxf: Any) -> None:
+    """Refuse what is infinite or no number among the attributes of an entity."""
+    for name, value in dxf.all_existing_dxf_attribs().items():
+        parts = value if isinstance(value, (Vec2, Vec3)) else (value,)
+        for part in parts:
+            if isinstance(part, float) and not math.isfinite(part):
+                raise DrawingError(f"its {name.replace('_', ' ')} is {part}, no number", remedy="Remove it.")
+
+
+def begin_seen(pen: Pen, entity: Any, to_page: Affine) -> None:
+    """Begin a shape whose coordinates are those of its own plane, seen from above or from below."""
+    axis = entity.dxf.get("extrusion")
+    if axis is None:
+        return
+    if not math.hypot(axis.x, axis.y) <= _UPRIGHT * abs(axis.z):
+        raise Tilted("tilted in space")
+    if axis.z < 0:
+        pen.cancel()
+        pen.begin(to_page @ _MIRRORED)
+
+
+def _point(vector: Any) -> complex:
+    return complex(vector.x, vector.y)
+
+
+def _radius(value: float) -> float:
+    if not value > 0.0:
+        raise DrawingError(f"its radius must be greater than 0, not {value:g}", remedy="Remove it.")
+    return value
+
+
+def _draw_arc(pen: Pen, entity: Any, to_page: Affine, begin: float, turn: float) -> None:
+    """An ARC or a CIRCLE."""
+    begin_seen(pen, entity, to_page)
+    dxf = entity.dxf
+    _draw_about(pen, _point(dxf.center), Affine(complex(_radius(dxf.radius)), 0j, 0j), begin, turn)
+
+
+def _draw_about(pen: Pen, centre: complex, to_ellipse: Affine, begin: float, turn: float) -> None:
+    """An arc about its centre; a whole turn is closed."""
+    whole = turn >= math.tau - 1e-9
+    start = centre + to_ellipse(cmath.rect(1.0, begin))
+    pen.move(start)
+    if whole:
+        pen.ellipse(centre, to_ellipse, begin, math.tau, start)
+        pen.close()
+    else:
+        pen.ellipse(centre, to_ellipse, begin, turn, centre + to_ellipse(cmath.rect(1.0, begin + turn)))
+
+
+def _draw_ellipse(pen: Pen, dxf: Any) -> None:
+    axis = dxf.extrusion
+    if not math.hypot(axis.x, axis.y) <= _UPRIGHT * abs(axis.z):
+        raise Tilted("tilted in space")
+    major = _point(dxf.major_axis)
+    _radius(abs(major))
+    minor = 1j * major * _radius(abs(dxf.ratio)) * math.copysign(1.0, dxf.ratio) * math.copysign(1.0, axis.z)
+    to_ellipse = Affine((major - 1j * minor) / 2, (major + 1j * minor) / 2, 0j)
+    turn = (dxf.end_param - dxf.start_param) % math.tau or math.tau
+    if abs(dxf.end_param - dxf.start_param) >= math.tau - 1e-9:
+        turn = math.tau
+    _draw_about(pen, _point(dxf.center), to_ellipse, dxf.start_param, turn)
+
+
+def _draw_bulges(pen: Pen, vertices: list[tuple[complex, float]], closed: bool) -> None:
+    """Lines and arcs through vertices; a vertex's bulge, the tangent of a quarter of the angle, is of what follows."""
+    if len(vertices) < 2:
+        return
+    pen.move(vertices[0][0])
+    following = [*vertices[1:], *(vertices[:1] if closed else [])]
+    for (start, bulge), (end, _) in zip(vertices, following, strict=False):
+        if bulge:
+            pen.arc((start + end) / 2 - 0.5j * (end - start) * bulge, end)
+        else:
+            pen.line(end)
+    if closed:
+        pen.close()
+
+
+def _draw_polyline(pen: Pen, entity: Any, to_page: Affine) -> None:
+    """A POLYLINE in the plane, or one in space seen from above; meshes are none."""
+    if not (entity.is_2d_polyline or entity.is_3d_polyline):
+        raise Tilted("mesh")
+    if entity.is_2d_polyline:
+        begin_seen(pen, entity, to_page)
+    frame = 16  # the control points of a spline that the other vertices follow
+    vertices = [
+        (_point(vertex.dxf.location), float(vertex.dxf.get("bulge", 0.0)))
+        for vertex in entity.vertices
+        if not int(vertex.dxf.get("flags", 0)) & frame
+    ]
+    _draw_bulges(pen, vertices, bool(entity.is_closed))
+
+
+def _draw_spline(pen: Pen, entity: Any, to_page: Affine) -> None:
+    curve = entity.construction_tool()
+    degree = int(curve.degree)
+    points = np.array([_point(point) for point in curve.control_points], np.complex128)
+    knots = np.array(curve.knots(), np.float64)
+    if not 1 <= degree <= _DEGREE_MAX or len(points) <= degree or len(knots) != len(points) + degree + 1:
+        raise DrawingError("its degree, knots and control points do not fit", remedy="Draw it again.")
+    if not (np.isfinite(knots).all() and np.isfinite(points).all() and (np.diff(knots) >= 0.0).all()):
+        raise DrawingError("its knots fall, or are no numbers", remedy="Draw it again.")
+    weights = np.array(curve.weights(), np.float64) if curve.is_rational else np.ones(1)
+    if not (weights > 0.0).all():
+        raise DrawingError("its weights must be greater than 0", remedy="Draw it again.")
+    if degree <= 3 and np.ptp(weights) == 0.0:
+        _draw_spans(pen, bezier_spans(points, knots, degree))
+    else:
+        heavy = bezier_spans(weights * points, knots, degree)
+        weight = bezier_spans((weights * np.ones(len(points))).astype(np.complex128), knots, degree)
+        _draw_spans(pen, fitted_cubics(heavy, weight, CURVE_ACCURACY / to_page.largest))
+    if pen.has_drawn and abs(pen.here - pen.origin) * to_page.largest <= CURVE_ACCURACY:
+        pen.close()
+
+
+def _draw_spans(pen: Pen, spans: Any) -> None:
+    """Bezier curves of one degree, one after the other."""
+    if not len(spans):
+        return
+    pen.move(complex(spans[0, 0]))
+    for span in spans.tolist():
+        match span:
+            case [_, end]:
+                pen.line(end)
+            case [_, control, end]:
+                pen.quad(control, end)
+            case [_, first, second, end]:
+                pen.cubic(first, second, end)

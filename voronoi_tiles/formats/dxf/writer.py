@@ -1,0 +1,293 @@
+"""DXF: closed polylines with bulges, splines in Bezier form, or chords for the oldest readers; always millimetres.
+
+ezdxf makes the frame of the document (header, tables, blocks, objects). The entities, which are nearly all of the file,
+are written here as text: an object for each of 500,000 vertices would take minutes and gigabytes.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import re
+import unicodedata
+from collections.abc import Iterator, Sequence
+from decimal import Decimal
+from itertools import pairwise
+from typing import Any, BinaryIO, Final, Literal
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints
+from voronoi_tiles.formats.cubics import all_cubic
+from voronoi_tiles.formats.decimals import decimals
+from voronoi_tiles.formats.page import Drawing, Layer
+from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
+
+Curves = Literal["arc", "spline", "polyline"]
+
+GRID_MM: Final = 1e-6
+"""The last decimal that is written; millimetres."""
+
+_NAMES: Final = {LINE: "LINE", QUAD: "QUAD", CUBIC: "CUBIC", ARC: "ARC"}
+_TAKES: Final[dict[Curves, tuple[int, ...]]] = {
+    "arc": (LINE, ARC),
+    "spline": (LINE, QUAD, CUBIC),
+    "polyline": (LINE,),
+}
+_BLOCK: Final = 1 << 16  # pieces that are held as text at a time
+_NAME_MAX: Final = 31  # R12 takes no longer names of layers
+_COMMENT_MAX: Final = 200  # old readers take lines of 255 characters
+
+_UNDATED: Final = {"$TDCREATE", "$TDUCREATE", "$TDUPDATE", "$TDUUPDATE", "$VERSIONGUID", "$FINGERPRINTGUID"}
+_EPOCH: Final = "2451545.0"  # the Julian date of 2000-01-01
+_NO_GUID: Final = "{00000000-0000-0000-0000-000000000000}"
+
+
+def write_dxf(drawing: Drawing, file: BinaryIO, *, curves: Curves, accuracy: float) -> None:
+    """Write a drawing as DXF in millimetres, y up, an entity for each path, in the order of the drawing.
+
+    "arc": R2000, an LWPOLYLINE with bulges for each path of LINE and ARC pieces. "spline": R2000, a SPLINE of degree 3
+    in Bezier form for each path of LINE, QUAD and CUBIC pieces, exact; a path of nothing but LINE is an LWPOLYLINE, as
+    exact, a third as long, and read by every program. "polyline": R12, a POLYLINE for each path of LINE pieces.
+    Closed paths have the closed flag; LibreCAD 2.2 draws closed splines millimetres off, so "arc" is for it. Layers
+    have the drawing's names in upper case, without what DXF does not take in a name, and the nearest colour of the
+    AutoCAD index; that a layer is filled cannot be said. Extents and limits are the bounds of all paths, the page's
+    where there is none. The recipe, with `curves` and `accuracy`, stands as JSON in the comments at the top.
+    Coordinates are rounded to GRID_MM. The same drawing gives the same bytes.
+
+    `accuracy` (millimetres) is what the pieces keep to. Raises ValueError for pieces of another kind, and where
+    `accuracy` is finer than the rounding.
+    """
+    if curves not in _TAKES:
+        raise ValueError(f"curves must be one of {', '.join(_TAKES)}, not {curves!r}")
+    if not accuracy >= GRID_MM:
+        raise ValueError(f"an accuracy of {accuracy} mm is finer than the {GRID_MM} mm of a DXF file")
+    for layer in drawing.layers:
+        _refuse_others(layer, curves)
+    names = _layer_names([layer.name or layer.work for layer in drawing.layers])
+    head, tail, owner, handle = _frame(drawing, names, r12=curves == "polyline")
+    file.write((_comments(drawing, curves, accuracy) + head).encode("ascii"))
+    for layer, name in zip(drawing.layers, names, strict=True):
+        for block in _blocks(layer.paths):
+            bodies = _BODIES[curves](block, name)
+            if curves != "polyline":
+                bodies = [_with_head(body, handle + k, owner, name) for k, body in enumerate(bodies)]
+                handle += len(bodies)
+            file.write("".join(bodies).encode("ascii"))
+    file.write(tail.encode("ascii"))
+
+
+def _refuse_others(layer: Layer, curves: Curves) -> None:
+    """Raise ValueError where a layer has pieces that the entities cannot hold."""
+    others = set(np.unique(layer.paths.kind).tolist()) - set(_TAKES[curves])
+    if others:
+        takes = " and ".join(_NAMES[kind] for kind in _TAKES[curves])
+        found = " and ".join(_NAMES[kind] for kind in sorted(others))
+        raise ValueError(f'{curves} curves take pieces of the kinds {takes}; layer "{layer.name}" has {found}')
+
+
+# --- entities ---------------------------------------------------------------------------------------------------
+
+
+def _blocks(paths: Paths) -> Iterator[Paths]:
+    """The paths that have pieces, in blocks of bounded size."""
+    kept = np.flatnonzero(paths.counts > 0)
+    block = np.cumsum(paths.counts[kept]) // _BLOCK
+    for part in np.split(kept, np.flatnonzero(np.diff(block)) + 1):
+        if len(part):
+            yield paths.take(part)
+
+
+def _with_head(body: str, handle: int, owner: str, layer: str) -> str:
+    """An entity of R2000: its type, which stands before the first line break, handle, owner, layer, and the rest."""
+    kind, _, rest = body.partition("\n")
+    return f"  0\n{kind}\n  5\n{handle:X}\n330\n{owner}\n100\nAcDbEntity\n  8\n{layer}\n{rest}"
+
+
+def _lwpolylines(paths: Paths, layer: str) -> list[str]:  # noqa: ARG001 - the signature of _BODIES
+    """LWPOLYLINE entities without their heads; shape (p,)."""
+    points, first, last = _vertices(paths)
+    rows = [f" 10\n{x}\n 20\n{y}\n" for x, y in zip(_reals(points.real), _reals(points.imag), strict=True)]
+    bulges, bent = paths.bulges(), np.flatnonzero(paths.kind == ARC)
+    # Vertices of open paths, one more than their pieces, push the later ones on.
+    places = bent + (np.cumsum(~paths.closed) - ~paths.closed)[paths.owner[bent]]
+    for place, bulge in zip(places.tolist(), _figures(bulges[bent]), strict=True):
+        rows[place] += f" 42\n{bulge}\n"
+    return [
+        f"LWPOLYLINE\n100\nAcDbPolyline\n 90\n{b - a}\n 70\n{closed:d}\n" + "".join(rows[a:b])
+        for a, b, closed in zip(first.tolist(), last.tolist(), paths.closed.tolist(), strict=True)
+    ]
+
+
+def _splines(paths: Paths, layer: str) -> list[str]:
+    """SPLINE entities without their heads, LWPOLYLINE where there is no curve; shape (p,)."""
+    straight = np.maximum.reduceat(paths.kind, paths.offsets[:-1]) == LINE
+    bodies = np.empty(len(paths), object)
+    bodies[straight] = _lwpolylines(paths.take(np.flatnonzero(straight)), layer)
+    bodies[~straight] = _curved_splines(paths.take(np.flatnonzero(~straight)))
+    return list(bodies)
+
+
+def _curved_splines(paths: Paths) -> list[str]:
+    """SPLINE entities without their heads: the cubic pieces with knots 0 0 0 0 1 1 1 2 2 2 ... n n n n."""
+    cubics = all_cubic(paths)
+    points = np.stack((cubics.start, *cubics.control.T), axis=1).ravel()
+    ends = cubics.end[cubics.offsets[1:] - 1]
+    rows = _points(points)
+    knots = [f" 40\n{k}.0\n" * 3 for k in range(int(cubics.counts.max(initial=0)) + 1)]
+    return [
+        f"SPLINE\n100\nAcDbSpline\n210\n0.0\n220\n0.0\n230\n1.0\n 70\n{8 + closed}\n 71\n3\n"
+        f" 72\n{3 * (b - a) + 5}\n 73\n{3 * (b - a) + 1}\n 74\n0\n 42\n0.0000000001\n 43\n0.0000000001\n"
+        f" 40\n0.0\n{''.join(knots[: b - a + 1])} 40\n{b - a}.0\n{''.join(rows[3 * a : 3 * b])}{end}"
+        for (a, b), closed, end in zip(
+            pairwise(cubics.offsets.tolist()), cubics.closed.tolist(), _points(ends), strict=True
+        )
+    ]
+
+
+def _polylines(paths: Paths, layer: str) -> list[str]:
+    """POLYLINE entities of R12, whole; shape (p,)."""
+    points, first, last = _vertices(paths)
+    rows = [f"  0\nVERTEX\n  8\n{layer}\n{row}" for row in _points(points)]
+    return [
+        f"  0\nPOLYLINE\n  8\n{layer}\n 66\n1\n 10\n0.0\n 20\n0.0\n 30\n0.0\n 70\n{closed:d}\n"
+        f"{''.join(rows[a:b])}  0\nSEQEND\n  8\n{layer}\n"
+        for a, b, closed in zip(first.tolist(), last.tolist(), paths.closed.tolist(), strict=True)
+    ]
+
+
+_BODIES: Final = {"arc": _lwpolylines, "spline": _splines, "polyline": _polylines}
+
+
+def _vertices(paths: Paths) -> tuple[Complexes, Ints, Ints]:
+    """The starts of all pieces, and the end of the last one of an open path.
+
+    Path k has those from `first[k]` up to, not including, `last[k]`.
+    """
+    is_open = ~paths.closed
+    stops = paths.offsets[1:]
+    points = np.insert(paths.start, stops[is_open], paths.end[stops[is_open] - 1])
+    last = stops + np.cumsum(is_open)
+    return points, last - paths.counts - is_open, last
+
+
+# --- numbers ----------------------------------------------------------------------------------------------------
+
+
+def _points(points: Complexes) -> list[str]:
+    """Points as groups 10, 20 and 30."""
+    return [f" 10\n{x}\n 20\n{y}\n 30\n0.0\n" for x, y in zip(_reals(points.real), _reals(points.imag), strict=True)]
+
+
+def _reals(values: Floats) -> list[str]:
+    """Numbers rounded to six decimals, without exponent; "12.5", "3.0"."""
+    text, used = decimals(values, point=True)
+    breaks = np.full((len(values), 1), ord("\n"), np.uint8)
+    lines = np.hstack((text, breaks))[np.hstack((used, breaks > 0))]
+    return lines.tobytes().decode("ascii").split("\n")[:-1]
+
+
+def _figures(values: Floats) -> list[str]:
+    """Numbers of twelve significant digits, without exponent. Raises ValueError for one that is not finite."""
+    if not np.isfinite(values).all():
+        raise ValueError("an arc whose ends are one point has no bulge")
+    texts = [f"{value:#.12g}" for value in values.tolist()]
+    for k in np.flatnonzero((np.abs(values) >= 1e11) | (np.abs(values) < 1e-3)).tolist():
+        texts[k] = f"{Decimal(texts[k]):f}" if values[k] else "0.0"
+    return texts
+
+
+# --- the frame --------------------------------------------------------------------------------------------------
+
+
+def _frame(drawing: Drawing, names: Sequence[str], *, r12: bool) -> tuple[str, str, str, int]:
+    """The document without entities: the text before and after them.
+
+    With it the handle of the modelspace, and the first one for the entities.
+    """
+    from ezdxf import units
+    from ezdxf.document import Drawing as Document
+
+    document = Document.new("R12" if r12 else "R2000")
+    if r12:
+        document.header["$HANDLING"] = 0  # handles are a choice there, and half of the text
+    else:
+        document.units = units.MM
+        document.header["$PSVPSCALE"] = 1.0  # LibreCAD prints at this scale; ezdxf writes 0
+    document.header["$MEASUREMENT"] = 1
+    for layer, name in zip(drawing.layers, names, strict=True):
+        document.layers.add(name, color=nearest_index(layer.colour), linetype="Continuous")
+    left, bottom, right, top = _extents(drawing)
+    modelspace = document.modelspace()
+    modelspace.reset_extents((left, bottom, 0.0), (right, top, 0.0))
+    modelspace.reset_limits((left, bottom), (right, top))
+    # ezdxf takes no corner from the modelspace that is the origin.
+    document.header["$EXTMIN"], document.header["$EXTMAX"] = (left, bottom, 0.0), (right, top, 0.0)
+    stream = io.StringIO()
+    document.write(stream)
+    text = _undated(stream.getvalue(), document.ezdxf_metadata())
+    head, mark, tail = text.partition("  0\nSECTION\n  2\nENTITIES\n")
+    assert mark
+    if r12:
+        return head + mark, tail, "", 0
+    before, seed, after = re.split(r"(?<=\$HANDSEED\n  5\n)([0-9A-F]+)(?=\n)", head)
+    used = sum(int((layer.paths.counts > 0).sum()) for layer in drawing.layers)
+    head = f"{before}{int(seed, 16) + used:X}{after}"
+    return head + mark, tail, modelspace.layout_key, int(seed, 16)
+
+
+def _undated(text: str, metadata: Any) -> str:
+    """The frame without dates and random identifiers, of the document as of ezdxf."""
+    from ezdxf.version import __version__
+
+    for key in ("CREATED_BY_EZDXF", "WRITTEN_BY_EZDXF"):
+        text = text.replace(metadata[key], __version__)
+    head, mark, rest = text.partition("ENDSEC\n")
+    for name in _UNDATED:
+        fixed = _NO_GUID if name.endswith("GUID") else _EPOCH
+        head = re.sub(rf"({re.escape(name)}\n *\d+\n).*\n", rf"\g<1>{fixed}\n", head)
+    return head + mark + rest
+
+
+def _extents(drawing: Drawing) -> tuple[float, float, float, float]:
+    """The bounds of all paths, rounded as the coordinates are; the page's where there is no path."""
+    boxes = [layer.paths.bounds for layer in drawing.layers if len(layer.paths.start)]
+    if not boxes:
+        return 0.0, 0.0, drawing.width, drawing.height
+    left, bottom, right, top = zip(*boxes, strict=True)
+    return round(min(left), 6), round(min(bottom), 6), round(max(right), 6), round(max(top), 6)
+
+
+def _layer_names(names: Sequence[str]) -> list[str]:
+    """Names that every version of DXF takes: upper case, letters, digits, $ - _, at most 31; no two alike."""
+    taken = {"0", "DEFPOINTS"}
+    found = []
+    for name in names:
+        plain = unicodedata.normalize("NFKD", name).encode("ascii", "ignore").decode().upper()
+        stem = re.sub(r"[^A-Z0-9$_-]+", "_", plain).strip("_")[:_NAME_MAX] or "LAYER"
+        legal, number = stem, 1
+        while legal in taken:
+            number += 1
+            legal = f"{stem[: _NAME_MAX - 1 - len(str(number))]}-{number}"
+        taken.add(legal)
+        found.append(legal)
+    return found
+
+
+def nearest_index(colour: str) -> int:
+    """The number from 1 to 255 of the AutoCAD colour that is nearest to "#rrggbb"; 7 is black on white paper."""
+    from ezdxf.colors import DXF_DEFAULT_COLORS
+
+    wanted = np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)])
+    # 7 is drawn white or black, whichever the background is not.
+    palette = np.array([0, *DXF_DEFAULT_COLORS[1:]])
+    shades = np.stack((palette >> 16 & 255, palette >> 8 & 255, palette & 255), axis=1)
+    return int(((shades - wanted) ** 2).sum(axis=1).argmin()) or 7
+
+
+def _comments(drawing: Drawing, curves: Curves, accuracy: float) -> str:
+    """The recipe as JSON in comments: what follows "recipe " in all of them, joined."""
+    recipe = {"title": drawing.title, **drawing.recipe, "curves": curves, "accuracy_mm": accuracy}
+    text = json.dumps(recipe)
+    parts = [text[k : k + _COMMENT_MAX] for k in range(0, len(text), _COMMENT_MAX)]
+    return "".join(f"999\nrecipe {part}\n" for part in parts)

@@ -1,0 +1,70 @@
+"""What is handed to the writers of files: a page in millimetres with layers of paths, in the order of cutting."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from decimal import ROUND_CEILING, Decimal
+from typing import Any, Literal, Self
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Ints
+from voronoi_tiles.paths.paths import Paths
+
+Work = Literal["cut", "score", "engrave"]
+"""What a laser does along a path: through the sheet, along its surface, or to mark it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Layer:
+    """Paths that are worked alike, in the order in which a machine takes them.
+
+    `paths` are in millimetres from the page's lower left corner, y up. Item k, one object of the file, are the paths
+    from `items[k]` up to, not including, `items[k + 1]` (intp). `labels`, one for each item, name them; empty where
+    they have no names. `colour` is "#rrggbb", `stroke` the width to draw it with, in millimetres. With `filled` the
+    target takes what is filled, not what is drawn, for this work.
+    """
+
+    name: str
+    work: Work
+    colour: str
+    stroke: float
+    paths: Paths
+    items: Ints
+    labels: tuple[str, ...] = ()
+    filled: bool = False
+
+    @classmethod
+    def of_paths(cls, name: str, work: Work, colour: str, stroke: float, paths: Paths) -> Layer:
+        """A layer in which every path is an item of its own."""
+        return cls(name, work, colour, stroke, paths, np.arange(len(paths) + 1))
+
+
+@dataclass(frozen=True, eq=False)
+class Drawing:
+    """A page of `width` times `height` millimetres, its layers in the order of work.
+
+    Its lower left corner is at the ordinate `bottom`: 0, but for exact tiles, whose coordinates keep all their bits.
+    `recipe` says how it was made ("program", "version", "design", ...): the same drawing gives the same bytes.
+    """
+
+    width: float
+    height: float
+    layers: tuple[Layer, ...]
+    title: str = ""
+    recipe: Mapping[str, str] = field(default_factory=dict)
+    bottom: float = 0.0
+
+    def with_evidence(self, evidence: Mapping[str, Any]) -> Self:
+        """The same with what was proved and checked in the recipe."""
+        return replace(self, recipe={**self.recipe, "evidence": json.dumps(evidence, sort_keys=True)})
+
+
+def page_length(length: float) -> float:
+    """A positive length rounded up to six digits; an excess under 1e-12 of it is noise."""
+    step = Decimal(10) ** (math.floor(math.log10(length)) - 5)
+    steps = (Decimal(length) / step - Decimal("1e-6")).to_integral_value(ROUND_CEILING)
+    return float(steps * step)

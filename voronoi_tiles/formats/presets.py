@@ -1,0 +1,280 @@
+"""Fabrication presets: colours, line widths, layers and curves, as the programs of cutters take them.
+
+They stand in presets.toml; a user's own is a TOML file with the same keys, those that it leaves out taken from the
+preset that it extends. A preset says nothing of the design: the same design goes to any target.
+"""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib import resources
+from pathlib import Path
+from typing import Any, Final, Literal, TypeVar, cast
+
+from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.base.tolerance import FILE_BYTES_MAX
+from voronoi_tiles.base.values import closest, number, shown, table, within
+
+Role = Literal["cut", "inner", "score", "engrave"]
+Format = Literal["svg", "dxf", "pdf", "lbrn2"]
+_Value = TypeVar("_Value")
+
+SvgCurves = Literal["exact", "arc", "cubic", "polyline"]
+DxfCurves = Literal["arc", "spline", "polyline"]
+
+ROLES: Final[tuple[Role, ...]] = ("cut", "inner", "score", "engrave")
+FORMATS: Final[tuple[Format, ...]] = ("svg", "dxf", "pdf", "lbrn2")
+DEFAULT: Final = "plain"
+
+_SVG_CURVES: Final = ("exact", "arc", "cubic", "polyline")
+_DXF_CURVES: Final = ("arc", "spline", "polyline")
+_KEYS: Final = (
+    *("description", "colours", "stroke", "stroke_kerf", "layers", "dxf_layers", "curves", "unread", "fill_engraving"),
+)
+_TABLES: Final = ("colours", "layers", "dxf_layers", "curves")
+_STROKE_MAX: Final = 10.0  # a line of more millimetres hides what it draws
+
+
+@dataclass(frozen=True)
+class Preset:
+    """What a fabrication target takes.
+
+    `colours` ("#rrggbb"), `layers` and `dxf_layers` (names) have an entry for each of ROLES: cuts around pieces, cuts
+    inside them, scores, engraving. `palette` are the colours of further layers of cuts. `stroke` is the width of lines
+    in millimetres; with `stroke_kerf` a wider kerf takes its place. `svg_curves` and `dxf_curves` say what curves
+    become. `unread` gives, for a format that the target does not read, the one to use instead. With `fill_engraving`
+    the target engraves what is filled.
+    """
+
+    name: str
+    description: str
+    colours: Mapping[Role, str]
+    palette: tuple[str, ...]
+    stroke: float
+    stroke_kerf: bool
+    layers: Mapping[Role, str]
+    dxf_layers: Mapping[Role, str]
+    svg_curves: SvgCurves
+    dxf_curves: DxfCurves
+    unread: Mapping[Format, Format]
+    fill_engraving: bool
+
+    def stroke_width(self, kerf: float = 0.0) -> float:
+        """The width of lines for a kerf; both in millimetres."""
+        return max(self.stroke, kerf) if self.stroke_kerf else self.stroke
+
+    def layer_name(self, role: Role, form: Format) -> str:
+        """What a layer is called in a format."""
+        return self.dxf_layers[role] if form == "dxf" else self.layers[role]
+
+    def require(self, form: Format) -> None:
+        """Raise DesignError, with the format to use instead, where the target does not read this one."""
+        if form in self.unread:
+            raise DesignError(
+                f"{self.name} does not read {form} files",
+                key="preset",
+                remedy=f"Write {self.unread[form]}, or take another preset.",
+            )
+
+
+def preset_names() -> tuple[str, ...]:
+    """The names of the presets that are built in."""
+    return tuple(_built_in())
+
+
+def load_preset(name_or_path: str) -> Preset:
+    """Give the preset of a name, or the one in a TOML file, whose path ends in .toml.
+
+    A file has the keys of presets.toml, any of them, and `extends`, the name of the preset that has the others (without
+    it, "plain"). A table in it changes only the keys that it names. Raises DesignError with file, key and remedy.
+    """
+    if name_or_path.lower().endswith(".toml"):
+        return _load_file(name_or_path)
+    return _read(name_or_path, _known(name_or_path, "preset"))
+
+
+@cache
+def _built_in() -> dict[str, Any]:
+    """The table of presets."""
+    text = resources.files("voronoi_tiles.formats").joinpath("presets.toml").read_text(encoding="utf-8")
+    return tomllib.loads(text)
+
+
+def _known(name: str, key: str) -> Mapping[str, Any]:
+    """The table of one preset; `key` is where its name was written."""
+    presets = _built_in()
+    if name in presets:
+        return cast("Mapping[str, Any]", presets[name])
+    close = closest(name, presets)
+    listed = f"Presets are {', '.join(presets)}, or the path of a file that ends in .toml."
+    raise DesignError(
+        f"unknown preset {shown(name)}", key=key, remedy=f'Did you mean "{close}"? {listed}' if close else listed
+    )
+
+
+# --- a user's file ----------------------------------------------------------------------------------------------
+
+
+def _load_file(path: str) -> Preset:
+    """Read a user's preset."""
+    try:
+        own = table(_parse(_bytes(path)), ("extends", *_KEYS), 'Write extends = "lightburn" and what is different.')
+        base = _at("extends", _text, own.get("extends", DEFAULT))
+        return _read(Path(path).stem, _merged(_known(base, "extends"), own))
+    except DesignError as error:
+        raise error.with_file(path) from None
+
+
+def _bytes(path: str) -> bytes:
+    """The content of a file of bounded size."""
+    try:
+        with Path(path).open("rb") as file:
+            data = file.read(FILE_BYTES_MAX + 1)
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+        raise DesignError(
+            f"cannot read the preset: {reason}", remedy=f"Check the path, or take one of {', '.join(_built_in())}."
+        ) from None
+    if len(data) > FILE_BYTES_MAX:
+        raise DesignError(f"larger than {FILE_BYTES_MAX // 2**20} MiB", remedy="Is it a preset?")
+    return data
+
+
+def _parse(data: bytes) -> Mapping[str, Any]:
+    """Read TOML."""
+    try:
+        return tomllib.loads(data.decode("utf-8-sig"))
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise DesignError("not a text in UTF-8", line=line, remedy="Save it as UTF-8 text.") from None
+    except tomllib.TOMLDecodeError as error:
+        place = re.search(r" \(at line (\d+), column \d+\)$", str(error))
+        what = str(error)[: place.start()] if place else str(error)
+        raise DesignError(
+            f"not TOML: {what[:1].lower()}{what[1:]}",
+            line=int(place[1]) if place else None,
+            remedy="Correct the line.",
+        ) from None
+    except (ValueError, RecursionError) as error:
+        why = "nested too deeply" if isinstance(error, RecursionError) else str(error).partition(";")[0]
+        raise DesignError(f"not TOML: {why}", remedy='Write extends = "lightburn" and what is different.') from None
+
+
+def _merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
+    """The base with the user's keys over it; in the tables that have fixed keys, key by key."""
+    merged = dict(base)
+    for key, value in own.items():
+        if key in _TABLES and isinstance(value, Mapping):
+            value = {**merged[key], **value}  # noqa: PLW2901 - the user's part with the rest of the table
+        if key != "extends":
+            merged[key] = value
+    return merged
+
+
+# --- values -----------------------------------------------------------------------------------------------------
+
+
+def _read(name: str, values: Mapping[str, Any]) -> Preset:
+    """Check every value of a complete table."""
+    colours = _table(values, "colours", (*ROLES, "palette"))
+    curves = _table(values, "curves", ("svg", "dxf"))
+    with within("colours"):
+        palette = _palette(colours["palette"])
+        chosen = {role: _at(role, _colour, colours[role]) for role in ROLES}
+    with within("curves"):
+        svg = _at("svg", lambda value: _choice(value, _SVG_CURVES), curves["svg"])
+        dxf = _at("dxf", lambda value: _choice(value, _DXF_CURVES), curves["dxf"])
+    return Preset(
+        name=name,
+        description=_at("description", _text, values["description"]),
+        colours=chosen,
+        palette=palette,
+        stroke=_at("stroke", _width, values["stroke"]),
+        stroke_kerf=_at("stroke_kerf", _flag, values["stroke_kerf"]),
+        layers=_names(values, "layers"),
+        dxf_layers=_names(values, "dxf_layers"),
+        svg_curves=cast("SvgCurves", svg),
+        dxf_curves=cast("DxfCurves", dxf),
+        unread=_unread(values),
+        fill_engraving=_at("fill_engraving", _flag, values["fill_engraving"]),
+    )
+
+
+def _at(key: str, read: Callable[[object], _Value], value: object) -> _Value:
+    """Read the value of a key; errors name the key."""
+    with within(key):
+        return read(value)
+
+
+def _table(values: Mapping[str, Any], key: str, known: Collection[str]) -> Mapping[str, Any]:
+    """A table of known keys."""
+    with within(key):
+        return table(values[key], known, f"Write a table with keys of {', '.join(known)}.")
+
+
+def _names(values: Mapping[str, Any], key: str) -> dict[Role, str]:
+    """The names of layers."""
+    names = _table(values, key, ROLES)
+    with within(key):
+        return {role: _at(role, _text, names[role]) for role in ROLES}
+
+
+def _unread(values: Mapping[str, Any]) -> dict[Format, Format]:
+    """Formats that are not read, and those to use instead, which are read."""
+    unread = _table(values, "unread", FORMATS)
+    with within("unread"):
+        read = [form for form in FORMATS if form not in unread]
+        return {
+            cast("Format", form): cast("Format", _at(form, lambda value: _choice(value, read), unread[form]))
+            for form in unread
+        }
+
+
+def _palette(value: object) -> tuple[str, ...]:
+    """A list of colours."""
+    with within("palette"):
+        if not isinstance(value, list):
+            raise DesignError(f"must be an array, not {shown(value)}", remedy='Write ["#0000ff", "#00ff00"].')
+        return tuple(_at(f"[{k}]", _colour, colour) for k, colour in enumerate(value))
+
+
+def _colour(value: object) -> str:
+    if not isinstance(value, str) or not re.fullmatch(r"#[0-9a-fA-F]{6}", value):
+        raise DesignError(f"must be a colour, not {shown(value)}", remedy='Write six hexadecimal digits: "#ff0000".')
+    return value.lower()
+
+
+def _width(value: object) -> float:
+    result = number(value, "Write a width in millimetres, such as 0.025.")
+    if not 0.0 < result <= _STROKE_MAX:
+        raise DesignError(
+            f"must be greater than 0 and at most {_STROKE_MAX:g}, not {result:g}",
+            remedy="Write a width in millimetres, such as 0.025.",
+        )
+    return result
+
+
+def _flag(value: object) -> bool:
+    if not isinstance(value, bool):
+        raise DesignError(f"must be true or false, not {shown(value)}", remedy="Write true or false, without quotes.")
+    return value
+
+
+def _text(value: object) -> str:
+    if not isinstance(value, str) or not value.strip() or not value.isprintable():
+        raise DesignError(f"must be a text, not {shown(value)}", remedy="Write one line between double quotes.")
+    return value
+
+
+def _choice(value: object, known: Collection[str]) -> str:
+    if not isinstance(value, str) or value not in known:
+        close = closest(value, known)
+        listed = f"Write one of {', '.join(known)}."
+        raise DesignError(
+            f"must not be {shown(value)}", remedy=f'Did you mean "{close}"? {listed}' if close else listed
+        )
+    return value

@@ -1,0 +1,37 @@
+"""Drawings of others: SVG and DXF files, read without trusting them.
+
+Whatever a file holds, reading it ends with the drawing or with one DrawingError, in bounded time and memory: nothing
+outside the file is opened, and sizes, depths and numbers of elements are limited (`voronoi_tiles.formats.shapes`).
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+
+from voronoi_tiles.formats.recipe import job_of
+from voronoi_tiles.formats.shapes import DrawingError, ReadDrawing, Shape, load_bytes
+
+__all__ = ["DrawingError", "ReadDrawing", "Shape", "read_drawing"]
+
+
+def read_drawing(path: str | os.PathLike[str]) -> ReadDrawing:
+    """Read an SVG or DXF file, by its content where that is clear and else by its suffix; `-` is standard input.
+
+    Raises DrawingError for what cannot be read.
+    """
+    name = os.fspath(path)
+    data = load_bytes(name)
+    shown = "standard input" if name == "-" else name
+    head = data[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
+    suffix = os.path.splitext(name)[1].lower()  # noqa: PTH122 - a name that is no path is no error here
+    is_xml = head.startswith((b"<", b"\x1f\x8b", b"\xff\xfe<", b"\xfe\xff\x00<"))
+    if is_xml or suffix in {".svg", ".svgz"}:
+        from voronoi_tiles.formats.svg.reader import svg_drawing
+
+        return replace(svg_drawing(data, shown), job=job_of(data))
+    if suffix == ".dxf" or head.startswith((b"0", b"999", b"AutoCAD Binary DXF")):
+        from voronoi_tiles.formats.dxf.reader import dxf_drawing
+
+        return replace(dxf_drawing(data, shown), job=job_of(data))
+    raise DrawingError("neither an SVG nor a DXF file", file=shown, remedy="Give it the suffix .svg or .dxf if it is.")

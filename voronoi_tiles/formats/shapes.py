@@ -1,0 +1,118 @@
+"""What a file of others is read into: shapes of lines and curves in millimetres, and what was left out.
+
+The limits that keep hostile files from filling time or memory stand here as well.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, BinaryIO, Final
+
+from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.paths.paths import Paths
+
+BYTES_MAX: Final = 256 * 2**20
+"""Largest file; bytes. Checked before it is parsed; for compressed files also after inflating."""
+
+DXF_BYTES_MAX: Final = 64 * 2**20
+"""Largest DXF file; bytes. Twenty seconds' work; a text of tags takes some ten times its size in memory."""
+
+DEPTH_MAX: Final = 1_000
+"""Deepest nesting of groups, clones and blocks; a count. Drawings have some ten."""
+
+ELEMENTS_MAX: Final = 200_000
+"""Most elements of an SVG file, or entities of a DXF file; a count. Ten seconds' work, and as much again to judge them.
+A sheet of 10,000 tiles has 20,000."""
+
+VISITS_MAX: Final = 300_000
+"""Most elements that are drawn, each clone counted with all it holds; a count. Nested clones double at every level."""
+
+DXF_COPIES_MAX: Final = 200_000
+"""Most entities that blocks draw, each block counted wherever it is inserted; a count. Ten seconds' work."""
+
+DXF_INSERTS_MAX: Final = 30_000
+"""Most INSERTs that are followed, those in blocks counted wherever these are inserted; a count. Five seconds' work."""
+
+PIECES_MAX: Final = 2_000_000
+"""Most lines and curves of a drawing; a count. A sheet of 10,000 tiles has half a million."""
+
+CURVE_ACCURACY: Final = 1e-4
+"""How far a cubic may lie from the ellipse or spline that it stands for; millimetres. A fiftieth of what is judged."""
+
+
+class DrawingError(DesignError):
+    """A drawing that cannot be read; `message`, `file`, `line` and `remedy` are those of DesignError."""
+
+
+@dataclass(frozen=True, eq=False)
+class Shape:
+    """One object of a file.
+
+    `paths` are in millimetres, y up; of a file with a page its lower left corner is the origin. `layer` is the name of
+    its layer, "" where it has none. `stroke` and `fill` are "#rrggbb", None where there is none; `stroke_width` is in
+    millimetres, None where the file does not say. `source` names the object in the file.
+    """
+
+    paths: Paths
+    layer: str
+    stroke: str | None
+    fill: str | None
+    stroke_width: float | None
+    source: str
+
+
+@dataclass(frozen=True, eq=False)
+class ReadDrawing:
+    """What a file draws.
+
+    `format` is "svg" or "dxf". `width` and `height` of the page are in millimetres, None where the file has no page.
+    `unit` is the unit as the file declares it, "" where it declares none; with `unit_known` false the size is a guess:
+    by CSS 96 user units to the inch (SVG), or millimetres (DXF). `ignored` counts what was left out, by the name of its
+    element; `clones` counts what was drawn through references (use, INSERT). `job` is what a file of our own says of
+    its job, empty for all others.
+    """
+
+    format: str
+    width: float | None
+    height: float | None
+    unit: str
+    unit_known: bool
+    shapes: tuple[Shape, ...]
+    ignored: Mapping[str, int] = field(default_factory=dict)
+    clones: int = 0
+    job: Mapping[str, Any] = field(default_factory=dict)
+
+
+def load_bytes(name: str) -> bytes:
+    """The content of a file, `-` being standard input; at most BYTES_MAX.
+
+    Raises DrawingError where it cannot be read or is larger.
+    """
+    try:
+        if name == "-":
+            return _bounded(sys.stdin.buffer, "standard input")
+        with Path(name).open("rb") as file:
+            return _bounded(file, name)
+    except (OSError, ValueError) as error:
+        if isinstance(error, DrawingError):
+            raise
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise DrawingError(f"cannot be read: {reason}", file=name or repr(name), remedy="Check the name.") from error
+
+
+def _bounded(file: BinaryIO, name: str) -> bytes:
+    """All bytes of an open file."""
+    too_large = DrawingError(
+        f"larger than {BYTES_MAX >> 20} MiB", file=name, remedy="Split it, or simplify its curves."
+    )
+    status = os.fstat(file.fileno()) if name != "standard input" else None
+    if status is not None and status.st_size > BYTES_MAX:
+        raise too_large
+    data = file.read(BYTES_MAX + 1)
+    if len(data) > BYTES_MAX:
+        raise too_large
+    return data

@@ -1,0 +1,1 @@
+"""SVG: a reader of anybody's files, and the writer of ours."""

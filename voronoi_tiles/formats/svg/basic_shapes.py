@@ -1,0 +1,145 @@
+"""SVG's basic shapes and paths, drawn by a pen in their own coordinates."""
+
+from __future__ import annotations
+
+import math
+from typing import Final
+
+from voronoi_tiles.base.maps import Affine
+from voronoi_tiles.base.tolerance import COORDINATE_MAX
+from voronoi_tiles.formats.pen import Pen
+from voronoi_tiles.formats.shapes import DrawingError
+from voronoi_tiles.formats.svg.pathdata import draw_path
+from voronoi_tiles.formats.svg.transforms import numbers
+from voronoi_tiles.formats.svg.viewport import length
+
+DRAWN: Final = frozenset({"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"})
+
+
+def draw_shape(pen: Pen, tag: str, attributes: dict[str, str], view: tuple[float, float]) -> None:
+    """Draw one of DRAWN; `view` is the size that percentages refer to.
+
+    Raises DrawingError for attributes that are broken, and for negative sizes.
+    """
+    match tag:
+        case "path":
+            try:
+                draw_path(pen, attributes.get("d", ""))
+            except DrawingError as error:
+                raise error.under("d") from None
+        case "polyline" | "polygon":
+            _draw_points(pen, attributes.get("points", ""), tag == "polygon")
+        case "line":
+            sizes = _Sizes(attributes, view)
+            pen.move(complex(sizes.across("x1"), sizes.down("y1")))
+            pen.line(complex(sizes.across("x2"), sizes.down("y2")))
+        case "rect":
+            _draw_rect(pen, _Sizes(attributes, view))
+        case "circle":
+            sizes = _Sizes(attributes, view)
+            radius = sizes.size("r", math.hypot(*view) / math.sqrt(2.0))
+            _draw_ellipse(pen, complex(sizes.across("cx"), sizes.down("cy")), radius, radius)
+        case _:
+            sizes = _Sizes(attributes, view)
+            rx, ry = sizes.radii()
+            _draw_ellipse(pen, complex(sizes.across("cx"), sizes.down("cy")), rx, ry)
+
+
+class _Sizes:
+    """The lengths of an element's attributes, in user units; one that is missing is 0."""
+
+    def __init__(self, attributes: dict[str, str], view: tuple[float, float]) -> None:
+        self._attributes = attributes
+        self._view = view
+
+    def _length(self, name: str, whole: float) -> float:
+        text = self._attributes.get(name)
+        if text is None:
+            return 0.0
+        try:
+            return length(text, whole)
+        except DrawingError as error:
+            raise error.under(name) from None
+
+    def across(self, name: str) -> float:
+        return self._length(name, self._view[0])
+
+    def down(self, name: str) -> float:
+        return self._length(name, self._view[1])
+
+    def size(self, name: str, whole: float) -> float:
+        """A length that must not be negative."""
+        value = self._length(name, whole)
+        if value < 0.0:
+            raise DrawingError(f"must not be negative, but is {value:g}", key=name, remedy="Remove the object.")
+        return value
+
+    def size_across(self, name: str) -> float:
+        return self.size(name, self._view[0])
+
+    def size_down(self, name: str) -> float:
+        return self.size(name, self._view[1])
+
+    def radii(self) -> tuple[float, float]:
+        """The radii rx, ry; one that is missing is as the other."""
+        said = [self._attributes.get(name, "auto").strip() != "auto" for name in ("rx", "ry")]
+        rx = self.size("rx", self._view[0]) if said[0] else 0.0
+        ry = self.size("ry", self._view[1]) if said[1] else rx
+        return (rx if said[0] else ry), ry
+
+
+def _draw_points(pen: Pen, text: str, closed: bool) -> None:
+    """A polyline or polygon."""
+    if text.strip() == "none":
+        return
+    values = numbers(text)
+    if values is None or len(values) % 2 or not all(abs(value) <= COORDINATE_MAX for value in values):
+        raise DrawingError("broken list of points", key="points", remedy='Write them as "0,0 10,0 10,10".')
+    points = [complex(x, y) for x, y in zip(values[0::2], values[1::2], strict=True)]
+    if not points:
+        return
+    pen.move(points[0])
+    for point in points[1:]:
+        pen.line(point)
+    if closed:
+        pen.close()
+
+
+def _draw_rect(pen: Pen, sizes: _Sizes) -> None:
+    """A rectangle, its corners rounded where it has radii."""
+    x, y = sizes.across("x"), sizes.down("y")
+    across, down = sizes.size_across("width"), sizes.size_down("height")
+    if across == 0.0 or down == 0.0:
+        return
+    rx, ry = sizes.radii()
+    rx, ry = min(rx, across / 2), min(ry, down / 2)
+    if rx == 0.0 or ry == 0.0:
+        pen.move(complex(x, y))
+        for corner in (complex(x + across, y), complex(x + across, y + down), complex(x, y + down)):
+            pen.line(corner)
+        pen.close()
+        return
+    round_ = Affine(complex((rx + ry) / 2), complex((rx - ry) / 2), 0j)
+    left, right, top, bottom = x + rx, x + across - rx, y + ry, y + down - ry
+    quarter = math.pi / 2
+    pen.move(complex(left, y))
+    pen.line(complex(right, y))
+    pen.ellipse(complex(right, top), round_, -quarter, quarter, complex(x + across, top))
+    pen.line(complex(x + across, bottom))
+    pen.ellipse(complex(right, bottom), round_, 0.0, quarter, complex(right, y + down))
+    pen.line(complex(left, y + down))
+    pen.ellipse(complex(left, bottom), round_, quarter, quarter, complex(x, bottom))
+    pen.line(complex(x, top))
+    pen.ellipse(complex(left, top), round_, 2 * quarter, quarter, complex(left, y))
+    pen.close()
+
+
+def _draw_ellipse(pen: Pen, centre: complex, rx: float, ry: float) -> None:
+    """A circle or an ellipse."""
+    if rx == 0.0 or ry == 0.0:
+        return
+    round_ = Affine(complex((rx + ry) / 2), complex((rx - ry) / 2), 0j)
+    start = centre + rx
+    pen.move(start)
+    pen.ellipse(centre, round_, 0.0, math.tau, start)
+    pen.close()

@@ -1,0 +1,75 @@
+"""Drawings written as files, and in the names and colours of a preset."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from io import RawIOBase
+from typing import BinaryIO, Literal, cast, get_args
+
+from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
+from voronoi_tiles.formats.page import Drawing
+from voronoi_tiles.formats.presets import FORMATS as FILE_FORMATS
+from voronoi_tiles.formats.presets import Format, Role, load_preset
+from voronoi_tiles.paths.conversion import to_cubics
+from voronoi_tiles.paths.paths import ARC
+
+FORMATS: tuple[Format, ...] = FILE_FORMATS
+
+DxfCurves = Literal["arc", "spline", "polyline"]
+
+
+def write_drawing(
+    drawing: Drawing, file: BinaryIO | RawIOBase, form: str, *, accuracy: float, curves: str = "arc"
+) -> None:
+    """Write a drawing as one of FORMATS; DXF with these curves. Raises ValueError for another format."""
+    # Writers only write, portions of bytes.
+    out = cast("BinaryIO", file)
+    match form:
+        case "svg":
+            from voronoi_tiles.formats.svg.writer import write_svg
+
+            write_svg(_without_arcs(drawing), out)
+        case "dxf":
+            from voronoi_tiles.formats.dxf.writer import write_dxf
+
+            assert curves in get_args(DxfCurves)
+            write_dxf(drawing, out, curves=cast("DxfCurves", curves), accuracy=accuracy)
+        case "pdf":
+            from voronoi_tiles.formats.pdf import write_pdf
+
+            write_pdf(drawing, out)
+        case "lbrn2":
+            from voronoi_tiles.formats.lbrn2 import write_lbrn2
+
+            write_lbrn2(drawing, out)
+        case _:
+            raise ValueError(f"no drawing can be written as {form!r}: use one of {', '.join(FORMATS)}")
+
+
+def recoloured(drawing: Drawing, preset_name: str, form: str) -> Drawing:
+    """Give a drawing of the layers "engrave", "inside" and "cut" the names and colours of a preset.
+
+    Raises DesignError where the preset is broken or does not read the format.
+    """
+    assert form in FORMATS
+    file_format = form
+    preset = load_preset(preset_name)
+    preset.require(file_format)
+    roles: dict[str, Role] = {"engrave": "engrave", "inside": "inner", "cut": "cut"}
+    layers = []
+    for layer in drawing.layers:
+        role = roles[layer.name]
+        name = preset.layer_name(role, file_format)
+        layers.append(replace(layer, name=name, colour=preset.colours[role], stroke=preset.stroke_width()))
+    return replace(drawing, layers=tuple(layers))
+
+
+def _without_arcs(drawing: Drawing) -> Drawing:
+    """Replace circular arcs by cubic curves."""
+    layers = [
+        replace(layer, paths=to_cubics(layer.paths, accuracy=CUBIC_ACCURACY_MM))
+        if (layer.paths.kind == ARC).any()
+        else layer
+        for layer in drawing.layers
+    ]
+    return replace(drawing, layers=tuple(layers))

@@ -1,0 +1,264 @@
+"""Bezier curves replaced by lines and circular arcs within an accuracy: the fewest biarcs along smooth runs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
+from voronoi_tiles.paths.biarc_bounds import fit
+from voronoi_tiles.paths.biarc_segmentation import Stretches, even_stretches, longest_stretches
+from voronoi_tiles.paths.conversion import usable
+from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
+from voronoi_tiles.paths.smooth_runs import SmoothRuns, tangents
+
+CORNER: Final = 1e-6
+"""Tangents that differ by more than this make a corner; radians. Rounding leaves some 1e-10 of a smooth joint between
+pieces of a millionth of the drawing's size; a corner that is meant is far above."""
+
+FLAT: Final = 1e-9
+"""An arc whose sagitta is below this is a line; relative to the accuracy."""
+
+
+def to_arcs(paths: Paths, *, accuracy: float, corner: float = CORNER, absorbed: float = 0.0) -> Paths:
+    """Replace every QUAD and CUBIC by LINEs and ARCs within `accuracy`, by the fewest biarcs; all else stays as it is.
+
+    The Hausdorff distance between old and new curves is at most `accuracy` (in the paths' unit) both ways; it is
+    bounded, not sampled. A path is cut at its corners, where tangents differ by more than `corner` (radians), and into
+    runs of curved pieces that join smoothly, whose end points stay; LINEs shorter than `absorbed` count as curved.
+    Along a run, one biarc after the other takes the longest stretch that it follows within the accuracy: two arcs of
+    at most half a turn, tangent to the curve at both ends. Where one arc or one line between the same ends does, it
+    stands instead. Then the breaks between the biarcs are moved, at the same count, to spread the error evenly.
+    Neighbouring pieces share their points bit for bit, and a run gives the same bits, reversed, when it is run through
+    backwards, and whatever else is in `paths`.
+
+    Taking the longest stretch first gives the fewest, if a part of a feasible stretch is feasible: by induction the
+    k-th break then lies no earlier than that of any other choice. Biarcs have this property where the curve's
+    curvature is monotone (their error grows with the stretch at either end), and nearly so elsewhere; a longest
+    stretch is found to about 0.4 percent. Where the assumption fails, the accuracy still holds, but the count may be
+    above the least; runs are covered from either end, and what takes fewer pieces is kept. What no biarc can
+    follow, cusps above all, is bridged by lines within the accuracy.
+
+    A closed path that began within a run begins at the end of that run instead; one that is all one run is cut where
+    it began. Curved pieces of length 0 vanish, unless a path has nothing else: then one line of length 0 stays.
+
+    Raises ValueError where the accuracy is not positive and finite, or finer than the coordinates' resolution.
+
+    Source: Meek, Walton, Approximating smooth planar curves by arc splines, J. Comput. Appl. Math. 59 (1995).
+    """
+    bound = usable(paths, accuracy)
+    short = np.flatnonzero((paths.kind == LINE) & (np.abs(paths.end - paths.start) < absorbed))
+    if len(short):
+        kind, control = paths.kind.copy(), paths.control.copy()
+        kind[short], control[short, 0] = QUAD, (paths.start[short] + paths.end[short]) / 2
+        paths = replace(paths, kind=kind, control=control)
+    paths, begins = _arranged(paths, corner)
+    bent = _bent(paths)
+    pieces = np.flatnonzero(bent)
+    if not len(pieces):
+        return paths
+    first = np.flatnonzero(begins & bent)
+    counts = np.diff(np.append(np.searchsorted(pieces, first), len(pieces)))
+    turned, drawn = _fewer(paths, first, counts, bound, FLAT * accuracy)
+    return _assembled(paths, ~bent, first, turned, drawn)
+
+
+def _bent(paths: Paths) -> Bools:
+    """Which pieces are to be replaced."""
+    return np.asarray((paths.kind == QUAD) | (paths.kind == CUBIC))
+
+
+class _Curves(NamedTuple):
+    """Bezier curves, one row each; `cubic` says which have two control points."""
+
+    start: Complexes
+    first: Complexes
+    second: Complexes
+    end: Complexes
+    cubic: Bools
+
+    @classmethod
+    def of_pieces(cls, paths: Paths, pieces: Ints) -> _Curves:
+        """Some pieces of paths."""
+        control = paths.control[pieces]
+        cubic = paths.kind[pieces] == CUBIC
+        return cls(paths.start[pieces], control[:, 0], control[:, 1], paths.end[pieces], cubic)
+
+    def coefficients(self) -> tuple[Floats, Floats]:
+        """Those of `SmoothRuns`, x and y, each float64 (4, n)."""
+        x, y = (
+            np.where(
+                self.cubic,
+                np.stack((p0, p1 - p0, p0 - 2 * p1 + p2, (p3 - p0) + 3 * (p1 - p2))),
+                np.stack((p0, (p1 - p0) * (2 / 3), (p0 - 2 * p1 + p3) / 3, np.zeros(len(p0)))),
+            )
+            for p0, p1, p2, p3 in (
+                (self.start.real, self.first.real, self.second.real, self.end.real),
+                (self.start.imag, self.first.imag, self.second.imag, self.end.imag),
+            )
+        )
+        return x, y
+
+
+def _arranged(paths: Paths, corner: float) -> tuple[Paths, Bools]:
+    """The paths without curves of length 0, closed ones begun where no run is cut; and where runs begin."""
+    paths = _without_points(paths)
+    smooth = _smooth(paths, corner)
+    owner, begin, counts = paths.owner, paths.offsets[:-1], paths.counts
+    number = np.arange(len(owner)) - begin[owner]
+    full = np.flatnonzero(counts)
+    shift = np.zeros(len(paths), np.intp)
+    if len(full):
+        place = np.where(smooth, counts[owner], number)
+        shift[full] = np.minimum.reduceat(place, begin[full]) % counts[full]
+    order = begin[owner] + (number + shift[owner]) % counts[owner]
+    begins = ~smooth[order]
+    begins[begin[full]] = True
+    start, end, control, kind = paths.start[order], paths.end[order], paths.control[order], paths.kind[order]
+    return replace(paths, start=start, end=end, control=control, kind=kind), begins
+
+
+def _without_points(paths: Paths) -> Paths:
+    """The paths without curved pieces of length 0; a path of nothing else becomes one line of length 0."""
+    still = _bent(paths) & (paths.start == paths.end) & (paths.control[:, 0] == paths.start)
+    still &= (paths.kind == QUAD) | (paths.control[:, 1] == paths.start)
+    if not np.any(still):
+        return paths
+    kept = ~still
+    left = np.bincount(paths.owner[kept], minlength=len(paths))
+    kept[paths.offsets[:-1][(left == 0) & (paths.counts > 0)]] = True
+    return Paths(
+        start=paths.start[kept],
+        end=paths.end[kept],
+        control=np.where(still[:, None], 0, paths.control)[kept],
+        kind=np.where(still, np.uint8(LINE), paths.kind)[kept],
+        offsets=np.append(0, np.cumsum(np.bincount(paths.owner[kept], minlength=len(paths)))).astype(np.intp),
+        closed=paths.closed,
+    )
+
+
+def _smooth(paths: Paths, corner: float) -> Bools:
+    """Which pieces are curves that go on smoothly from a curve before them; in closed paths the last is before."""
+    bent = _bent(paths)
+    curved = np.flatnonzero(bent)
+    x, y = _Curves.of_pieces(paths, curved).coefficients()
+    leaving, arriving = np.zeros((2, len(bent))), np.zeros((2, len(bent)))
+    leaving[:, curved] = tangents(x, y, 0.0, ahead=True)
+    arriving[:, curved] = tangents(x, y, 1.0, ahead=False)
+    before = np.arange(-1, len(bent) - 1)
+    full = np.flatnonzero(paths.counts)
+    begin = paths.offsets[:-1][full]
+    before[begin] = np.where(paths.closed[full], paths.offsets[full + 1] - 1, begin)
+    (ax, ay), (bx, by) = arriving[:, before], leaving
+    angle = np.abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
+    smooth: Bools = bent & bent[before] & (angle <= corner)
+    smooth[begin[~paths.closed[full]]] = False
+    return smooth
+
+
+def _turned(paths: Paths, first: Ints, last: Ints) -> Bools:
+    """Which runs are fitted backwards, so that a run and its reverse are fitted alike: by their points' order."""
+    near = paths.control[first, 0]
+    far = np.where(paths.kind[last] == CUBIC, paths.control[last, 1], paths.control[last, 0])
+    turned = np.zeros(len(first), np.bool_)
+    equal = ~turned
+    for a, b in ((paths.start[first], paths.end[last]), (near, far), (paths.end[first], paths.start[last])):
+        for u, v in ((a.real, b.real), (a.imag, b.imag)):
+            turned |= equal & (u > v)
+            equal &= u == v
+    return turned
+
+
+def _oriented(paths: Paths, first: Ints, counts: Ints, turned: Bools) -> tuple[_Curves, SmoothRuns]:
+    """The pieces of all runs, in the sense in which they are fitted."""
+    run = np.repeat(np.arange(len(first)), counts)
+    piece = ranges(first, counts)
+    back = turned[run]
+    pieces = _Curves.of_pieces(paths, np.where(back, (2 * first + counts - 1)[run] - piece, piece))
+    swap = back & pieces.cubic
+    curves = _Curves(
+        np.where(back, pieces.end, pieces.start),
+        np.where(swap, pieces.second, pieces.first),
+        np.where(swap, pieces.first, pieces.second),
+        np.where(back, pieces.start, pieces.end),
+        pieces.cubic,
+    )
+    return curves, SmoothRuns.of_pieces(*curves.coefficients(), np.append(0, np.cumsum(counts)))
+
+
+class _Drawn(NamedTuple):
+    """What replaces runs, in order along each: the run, the ends, and the middles of those that are arcs."""
+
+    run: Ints
+    start: Complexes
+    end: Complexes
+    middle: Complexes
+    round_: Bools
+
+
+def _draw(runs: SmoothRuns, curves: _Curves, stretches: Stretches, bound: float, flat: float) -> _Drawn:
+    """Draw a line, an arc or a biarc for each stretch, whichever is the simplest within the bound."""
+    run, low, high = stretches
+    shape = fit(runs, run, low, high)
+    assert np.all(shape.best <= bound)
+    straight = shape.line <= bound
+    double = ~straight & (shape.arc > bound)
+    begin = np.append(True, run[1:] != run[:-1])
+    final = np.append(begin[1:], True)
+    start = np.empty(len(run), np.complex128)
+    start.real, start.imag = runs.points(*runs.locate(run, low, before=False))
+    start[begin] = curves.start[runs.first[:-1]]
+    end = np.append(start[1:], 0)
+    end[final] = curves.end[runs.first[1:] - 1]
+    joint = start + shape.joint_x + 1j * shape.joint_y
+    row = np.repeat(np.arange(len(run)), 1 + double)
+    second = np.append(False, row[1:] == row[:-1])
+    turn = np.where(double[row], np.where(second, shape.turn2[row], shape.turn1[row]), shape.turn[row])
+    p = np.where(second, joint[row], start[row])
+    q = np.where(double[row] & ~second, joint[row], end[row])
+    bulge = np.tan(np.where(straight[row], 0.0, turn) / 4) / 2
+    middle = np.empty(len(row), np.complex128)
+    middle.real = (p.real + q.real) / 2 + bulge * (q.imag - p.imag)
+    middle.imag = (p.imag + q.imag) / 2 - bulge * (q.real - p.real)
+    return _Drawn(run[row], p, q, middle, np.abs(bulge) * np.abs(q - p) > flat)
+
+
+def _fewer(paths: Paths, first: Ints, counts: Ints, bound: float, flat: float) -> tuple[Bools, _Drawn]:
+    """Draw runs from either end, and keep what takes fewer pieces: whether from the far end, and the pieces.
+
+    Where both take as many, the order of the points decides, so that a run and its reverse are fitted alike.
+    """
+    count = len(first)
+    turned = _turned(paths, first, first + counts - 1)
+    curves, runs = _oriented(paths, np.tile(first, 2), np.tile(counts, 2), np.concatenate((turned, ~turned)))
+    drawn = _draw(runs, curves, even_stretches(runs, longest_stretches(runs, bound), bound), bound, flat)
+    taken = np.bincount(drawn.run, minlength=2 * count)
+    other = taken[count:] < taken[:count]
+    run = drawn.run % count
+    kept = np.flatnonzero((drawn.run >= count) == other[run])
+    order = kept[np.argsort(run[kept], kind="stable")]
+    return turned ^ other, _Drawn(
+        run[order], drawn.start[order], drawn.end[order], drawn.middle[order], drawn.round_[order]
+    )
+
+
+def _assembled(paths: Paths, kept: Bools, first: Ints, turned: Bools, drawn: _Drawn) -> Paths:
+    """Put what replaces the runs in the place of their first pieces, beside the pieces that are kept."""
+    old = np.flatnonzero(kept)
+    back = turned[drawn.run]
+    number = np.arange(len(drawn.run))
+    rank = np.concatenate((old, first[drawn.run]))
+    order = np.lexsort((np.concatenate((np.zeros(len(old), np.intp), np.where(back, -number, number))), rank))
+    control = np.zeros((len(drawn.run), 2), np.complex128)
+    control[:, 0] = np.where(drawn.round_, drawn.middle, 0)
+    counts = np.bincount(paths.owner[rank], minlength=len(paths))
+    return Paths(
+        start=np.concatenate((paths.start[old], np.where(back, drawn.end, drawn.start)))[order],
+        end=np.concatenate((paths.end[old], np.where(back, drawn.start, drawn.end)))[order],
+        control=np.concatenate((paths.control[old], control))[order],
+        kind=np.concatenate((paths.kind[old], np.where(drawn.round_, np.uint8(ARC), np.uint8(LINE))))[order],
+        offsets=np.append(0, np.cumsum(counts)).astype(np.intp),
+        closed=paths.closed,
+    )

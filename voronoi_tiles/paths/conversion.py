@@ -1,0 +1,236 @@
+"""Curves of one kind replaced by another within a stated accuracy: by chords, cubic or quadratic Bezier curves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Final, NamedTuple, Self
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints, ranges
+from voronoi_tiles.base.tolerance import EPSILON
+from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Kinds, Paths
+
+MARGIN: Final = 1e-3
+"""The part of an accuracy that is left to the rounding of points. A fixed part, so that the result for a path does not
+depend on the others."""
+
+_ROUNDING_ULPS = 16.0
+"""What rounding moves points by, at most; ulps of the largest coordinate."""
+
+COUNT_MAX: Final = 20_000_000
+"""Most pieces that a conversion makes; a count. More means a slip of the accuracy's unit, and fills the memory."""
+
+
+def usable(paths: Paths, accuracy: float) -> float:
+    """Give the part of an accuracy, in the paths' unit, that is not left to the rounding of points.
+
+    Raises ValueError where the accuracy is not positive and finite, or finer than the coordinates' resolution.
+    """
+    if not (math.isfinite(accuracy) and accuracy > 0.0):
+        raise ValueError(f"accuracy {accuracy!r} must be positive and finite")
+    points = (paths.start, paths.end, paths.control.ravel())
+    size = max(float(np.max(np.abs(z), initial=0.0)) for z in points)
+    finest = _ROUNDING_ULPS * EPSILON * size / MARGIN
+    if accuracy < finest:
+        raise ValueError(f"accuracy {accuracy!r} must be at least {finest:.1e}, the resolution of the coordinates")
+    return accuracy * (1 - MARGIN)
+
+
+def to_lines(paths: Paths, *, accuracy: float) -> Paths:
+    """Replace every curve by chords of it within `accuracy` (in the paths' unit) both ways; LINEs stay.
+
+    The chords of a piece span equal steps of its parameter, or of its angle for an ARC. End points of pieces stay. A
+    piece that is run through backwards has the same points bit for bit. Raises ValueError where the accuracy is not
+    positive and finite, or finer than the coordinates' resolution.
+
+    Source: a curve whose second derivative is at most m differs from its k chords by at most m / (8 k^2) at equal
+    parameters. For a quadratic with second difference e, m is 2 |e|; for a cubic at most 6 times the larger of
+    its two. An arc is r (1 - cos(s / 2)) off a chord of angle s.
+    """
+    bound = usable(paths, accuracy)
+    start, end, (c0, c1) = paths.start, paths.end, paths.control.T
+    quads, cubics, arcs = (np.flatnonzero(paths.kind == kind) for kind in (QUAD, CUBIC, ARC))
+    bend = np.zeros(len(start))
+    bend[quads] = np.abs((start[quads] + end[quads]) - 2 * c0[quads]) / 4
+    first = np.abs((start[cubics] - 2 * c0[cubics]) + c1[cubics])
+    second = np.abs((end[cubics] - 2 * c1[cubics]) + c0[cubics])
+    bend[cubics] = np.maximum(first, second) * 0.75
+    steps = np.sqrt(bend / bound)
+    frame = _Frames.of_arcs(paths, arcs)
+    steps[arcs] = frame.half / (2 * np.arcsin(np.minimum(np.sqrt(bound / (2 * frame.radius)), 1.0)))
+    split = _Split.of_steps(steps)
+    points = start[split.piece]
+    t, s = split.number / split.counts, (split.counts - split.number) / split.counts
+    # Sums whose terms swap when a piece is reversed, and products whose order stays: the same bits both ways.
+    inner = (split.number > 0) & (paths.kind[split.piece] != LINE)
+    rows = np.flatnonzero(inner & (paths.kind[split.piece] == QUAD))
+    k, u, v = split.piece[rows], s[rows], t[rows]
+    points[rows] = (start[k] * (u * u) + end[k] * (v * v)) + c0[k] * (2.0 * (u * v))
+    rows = np.flatnonzero(inner & (paths.kind[split.piece] == CUBIC))
+    k, u, v = split.piece[rows], s[rows], t[rows]
+    middle = c0[k] * (3.0 * (u * u) * v) + c1[k] * (3.0 * (v * v) * u)
+    points[rows] = (start[k] * (u * u * u) + end[k] * (v * v * v)) + middle
+    rows = np.flatnonzero(inner & (paths.kind[split.piece] == ARC))
+    frame, low, _ = _steps_of_arcs(paths, split, rows)
+    points[rows] = frame.place(np.sin(low), 2 * np.sin(low / 2) ** 2)
+    none = np.zeros((len(points), 2), np.complex128)
+    return split.joined(paths, points, none, np.full(len(points), LINE, np.uint8))
+
+
+def to_cubics(paths: Paths, *, accuracy: float) -> Paths:
+    """Replace every ARC by CUBICs within `accuracy` (in the paths' unit) both ways, every QUAD by its exact CUBIC.
+
+    An arc is cut into the fewest equal angles; its curves keep its tangents. LINEs stay. Raises ValueError where the
+    accuracy is not positive and finite, or finer than the coordinates' resolution.
+
+    Source: with handles of 4/3 tan(s/4) along a unit arc of angle s, |p|^2 - 1 of a cubic runs from 0 to e = 4/27
+    sin(s/4)^6 / cos(s/4)^2, so that it is e / (1 + sqrt(1 + e)) off, outwards: Goldapp, Approximation of circular arcs
+    by cubic polynomials, Comput. Aided Geom. Des. 8 (1991).
+    """
+    paths = _raised(paths)
+    bound = usable(paths, accuracy)
+    return _arcs_replaced(paths, bound, CUBIC, _cubic_error)
+
+
+def to_quads(paths: Paths, *, accuracy: float) -> Paths:
+    """Replace every ARC by QUADs within `accuracy` (in the paths' unit) both ways; LINEs and QUADs stay.
+
+    An arc is cut into the fewest equal angles; its curves keep its tangents. Raises ValueError where there is a
+    CUBIC, and where the accuracy is not positive and finite, or finer than the coordinates' resolution.
+
+    Source: |p|^2 of the quadratic over a unit arc of angle s = 2 h is 1 + w^2 sin(h)^4 / (4 cos(h)^2) with w from 0 to
+    1, so that it is at most (1 - cos(h))^2 / (2 cos(h)) off, outwards.
+    """
+    bound = usable(paths, accuracy)
+    if np.any(paths.kind == CUBIC):
+        raise ValueError("cubic curves cannot be written as quadratic ones: use to_lines or to_arcs")
+    return _arcs_replaced(paths, bound, QUAD, _quad_error)
+
+
+def _cubic_error(angle: Floats) -> Floats:
+    """How far the cubic is off a unit arc of an angle."""
+    square = 4 / 27 * np.sin(angle / 4) ** 6 / np.cos(angle / 4) ** 2
+    return np.asarray(square / (1 + np.sqrt(1 + square)))
+
+
+def _quad_error(angle: Floats) -> Floats:
+    """How far the quadratic is off a unit arc of an angle; from half a turn on, its tangents do not meet."""
+    far = angle > 3.0
+    safe = np.where(far, 1.0, angle)
+    return np.where(far, np.inf, 2 * np.sin(safe / 4) ** 4 / np.cos(safe / 2))
+
+
+class _Split(NamedTuple):
+    """Pieces cut into equal steps: the piece of each step, its number from 0 on, and the piece's count of steps."""
+
+    piece: Ints
+    number: Ints
+    counts: Ints
+
+    @classmethod
+    def of_steps(cls, steps: Floats) -> Self:
+        """Cut each piece into at least so many steps; raises ValueError where they are too many altogether."""
+        counts = np.maximum(np.ceil(steps * (1 - 1e-12)), 1.0)
+        if counts.sum() > COUNT_MAX:
+            raise ValueError(f"the accuracy asks for {counts.sum():.3g} pieces, and {COUNT_MAX} is the limit")
+        whole = counts.astype(np.intp)
+        piece = np.repeat(np.arange(len(whole)), whole)
+        return cls(piece, ranges(np.zeros(len(whole), np.intp), whole), whole[piece])
+
+    def joined(self, paths: Paths, start: Complexes, control: Complexes, kind: Kinds) -> Paths:
+        """The paths of these steps, each of which ends where the next begins."""
+        end = np.roll(start, -1)
+        last = self.number == self.counts - 1
+        end[last] = paths.end
+        counts = np.bincount(paths.owner[self.piece], minlength=len(paths))
+        offsets = np.append(0, np.cumsum(counts)).astype(np.intp)
+        return replace(paths, start=start, end=end, control=control, kind=kind, offsets=offsets)
+
+
+class _Frames(NamedTuple):
+    """Arcs seen from their middles: half their angle, their radius, and the units along the chord and to the chord.
+
+    `place` gives the same bits for an arc and its reverse, whose angles have the other sign.
+    """
+
+    middle: Complexes
+    along: Complexes
+    inward: Complexes
+    half: Floats
+    radius: Floats
+
+    @classmethod
+    def of_arcs(cls, paths: Paths, arcs: Ints) -> Self:
+        """The frames of some ARCs; those without a sagitta are arcs of a vast circle."""
+        start, end, middle = paths.start[arcs], paths.end[arcs], paths.control[arcs, 0]
+        inward, chord = (start + end) / 2 - middle, end - start
+        half = np.maximum(2 * np.arctan2(2 * np.abs(inward), np.abs(chord)), 1e-100)
+        unit, height = 2 * np.sin(half), 2 * np.sin(half / 2) ** 2
+        radius = np.where(half < 1.0, np.abs(chord) / unit, np.abs(inward) / height)
+        return cls(middle, chord / unit, inward / height, half, radius)
+
+    def place(self, along: Floats, inward: Floats) -> Complexes:
+        """The points so many radii along the chord's direction from the middle, and so many from it inwards."""
+        return np.asarray(self.middle + (self.along * along + self.inward * inward))
+
+
+def _steps_of_arcs(paths: Paths, split: _Split, rows: Ints) -> tuple[_Frames, Floats, Floats]:
+    """The frames of steps of ARCs, and the angles from the middle where each step begins and ends."""
+    frame = _Frames.of_arcs(paths, split.piece[rows])
+    number, count = split.number[rows], split.counts[rows]
+    low, high = (frame.half * ((2 * n - count) / count) for n in (number, number + 1))
+    return frame, low, high
+
+
+def _arcs_replaced(paths: Paths, bound: float, kind: int, error: Callable[[Floats], Floats]) -> Paths:
+    """Replace ARCs by the fewest equal curves of a kind that are, by the angle on a unit circle, so far off."""
+    arcs = np.flatnonzero(paths.kind == ARC)
+    frame = _Frames.of_arcs(paths, arcs)
+    counts = _fewest(2 * frame.half, bound / frame.radius, error)
+    steps = np.ones(len(paths.kind))
+    steps[arcs] = counts
+    split = _Split.of_steps(steps)
+    start, control, kinds = paths.start[split.piece], paths.control[split.piece], paths.kind[split.piece]
+    rows = np.flatnonzero(kinds == ARC)
+    frame, low, high = _steps_of_arcs(paths, split, rows)
+    begins = split.number[rows] == 0
+    start[rows] = np.where(begins, start[rows], frame.place(np.sin(low), 2 * np.sin(low / 2) ** 2))
+    if kind == CUBIC:
+        handle = 4 / 3 * np.tan((high - low) / 4)
+        for column, angle, sign in ((0, low, 1.0), (1, high, -1.0)):
+            sine, cosine = np.sin(angle), np.cos(angle)
+            inward = 2 * np.sin(angle / 2) ** 2 + sign * handle * sine
+            control[rows, column] = frame.place(sine + sign * handle * cosine, inward)
+    else:
+        middle, stretch = (low + high) / 2, np.cos((high - low) / 2)
+        # 1 - cos(middle) / stretch, without losing the digits of small angles.
+        inward = 2 * (np.sin(middle / 2) ** 2 - np.sin((high - low) / 4) ** 2) / stretch
+        control[rows, 0] = frame.place(np.sin(middle) / stretch, inward)
+    kinds[rows] = kind
+    return split.joined(paths, start, control, kinds)
+
+
+def _fewest(angle: Floats, limit: Floats, error: Callable[[Floats], Floats]) -> Floats:
+    """The least numbers of equal parts of angles whose error, which grows with the part, is within a limit each."""
+    low, high = np.zeros(len(angle)), np.ones(len(angle))
+    while np.any(open_ := error(angle / high) > limit):
+        low, high = np.where(open_, high, low), np.where(open_, 2 * high, high)
+    while np.any(high - low > 1):
+        middle = np.floor((low + high) / 2)
+        good = (error(angle / np.maximum(middle, 1.0)) <= limit) & (middle > 0)
+        low, high = np.where(good, low, middle), np.where(good, middle, high)
+    return high
+
+
+def _raised(paths: Paths) -> Paths:
+    """The paths with every QUAD as the same curve's CUBIC."""
+    quads = np.flatnonzero(paths.kind == QUAD)
+    control, kind = paths.control.copy(), paths.kind.copy()
+    middle = control[quads, 0]
+    control[quads, 0] = paths.start[quads] + (middle - paths.start[quads]) * (2 / 3)
+    control[quads, 1] = paths.end[quads] + (middle - paths.end[quads]) * (2 / 3)
+    kind[quads] = CUBIC
+    return replace(paths, control=control, kind=kind)

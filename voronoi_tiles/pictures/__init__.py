@@ -1,0 +1,1 @@
+"""Pictures of tessellations, and of where the two stages differ."""

@@ -1,0 +1,287 @@
+"""Pictures of tessellations: the raster stage's image, with what the other stages know drawn on top."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.base.errors import DesignError, ProofError
+from voronoi_tiles.base.files import writing
+from voronoi_tiles.base.tolerance import COORDINATE_MAX, EPSILON, NUMBER_MIN
+from voronoi_tiles.base.version import __version__
+from voronoi_tiles.crosscheck import CheckReport
+from voronoi_tiles.designs.design import Design
+from voronoi_tiles.formats.png import PngStream, Sink
+from voronoi_tiles.groups.symmetry_elements import placed, symmetry_elements
+from voronoi_tiles.pictures import difference as diff
+from voronoi_tiles.raster.line_coverage import dashed
+from voronoi_tiles.raster.picture import INK, Overlay, Picture, PictureStyle, Region, default_region
+from voronoi_tiles.raster.renderer import Choice, Method, Provenance, Renderer
+from voronoi_tiles.raster.scene import Pattern
+from voronoi_tiles.vector.outline import Outline
+from voronoi_tiles.vector.proof import proved_tiles
+
+OVERLAYS = ("symmetry", "cell", "outline", "art")
+"""What can be drawn on top: mirrors, glides and rotation centres; the cell; the exact outlines; the sites' art, in the
+place of their strokes."""
+
+DEFAULT_SIZE = 1600
+"""The longer side of a picture; pixels."""
+
+SIDE_MAX = 100_000
+"""The largest side of a picture; pixels. It has 300 MB a band, and takes hours."""
+
+_DOT = 3.0
+"""How wide an isolated point is drawn; widths of strokes."""
+
+_MIRROR = (178, 24, 43)
+_GLIDE = (33, 102, 172)
+_CENTRE = (120, 20, 110)
+_CELL = (255, 255, 255)
+_OUTLINE = (255, 0, 255)
+_PAPER = (255, 255, 255)
+
+
+def render(
+    design: Design,
+    path: str | os.PathLike[str],
+    *,
+    size: int | tuple[int, int] = DEFAULT_SIZE,
+    region: Region | None = None,
+    overlay: Sequence[str] = (),
+    method: Method = "exact",
+    renderer: Choice = "auto",
+    device: int | None = None,
+    notice: Callable[[str], None] | None = None,
+    progress: Callable[[int, int], None] | None = None,
+) -> Provenance:
+    """Write the coloured tessellation of a design as a PNG file, whole or not at all; say who rendered it.
+
+    `size` is the longer side in pixels, or width and height; `region` the rectangle x0, y0, x1, y1 in the design's
+    units, grown where `size` has another shape (default: two cells each way). `overlay` names what is drawn on top, of
+    OVERLAYS; `renderer`, `device`, `method` and `notice` are those of Renderer; `progress` is told how many rows, of
+    how many, are done. Pictures of any size are rendered in bands.
+
+    Raises DesignError for a size or a region that cannot be, and for art that is not there; TouchingCopiesError where
+    copies touch, RenderError where OpenGL fails and is insisted on, OutputError, and with the overlay "outline"
+    ProofError.
+    """
+    if isinstance(overlay, str):
+        overlay = [overlay]
+    unknown = set(overlay) - set(OVERLAYS)
+    if unknown:
+        raise ValueError(f"unknown overlay {min(unknown)!r}: use {', '.join(OVERLAYS)}")
+    pattern = Pattern(design.sites, design.group, design.lattice)
+    region, width, height = _fit(default_region(pattern) if region is None else region, size)
+    outlines = _outlines(design, needed="outline" in overlay)
+    style = _style(width, height, strokes="art" not in overlay)
+    picture = Picture(
+        pattern,
+        region,
+        width,
+        height,
+        renderer=Renderer(renderer, device=device, method=method, notice=notice),
+        overlays=_dots(pattern, region, style) + _overlays(design, outlines, pattern, region, width, overlay),
+        style=style,
+    )
+    text = {
+        "Software": f"voronoi-tiles {__version__}",
+        "Title": f"{design.name} ({design.group.name})",
+        "Source": design.source,
+    }
+    per_metre = width / ((region[2] - region[0]) * design.unit_mm / 1000)
+    with (
+        writing(path) as file,
+        PngStream(file, width, height, pixels_per_metre=min(max(per_metre, 1.0), 2.0**31 - 1), text=text) as png,
+    ):
+        for band in picture.bands():
+            png.write(band)
+            if progress is not None:
+                progress(png.rows, height)
+        png.trailer["Renderer"] = ", then ".join(picture.renderers)
+    return picture.provenance
+
+
+def write_diff(design: Design, outlines: Sequence[Outline], report: CheckReport, file: Sink) -> None:
+    """Write the PNG of where a cross-check has found differences, and by how much: white where there is none."""
+    pattern = Pattern(design.sites, design.group, design.lattice)
+    around = diff.region(report, design.lattice)
+    segments = np.zeros((0, 2), complex)
+    if not report.passed:
+        segments = outline_segments(outlines, pattern, around, accuracy=(around[2] - around[0]) / 10_000)
+    diff.write_diff(report, design.lattice, segments, file)
+
+
+def _fit(region: Region, size: int | tuple[int, int]) -> tuple[Region, int, int]:
+    """Give the region in the shape of the picture, and the picture's width and height."""
+    x0, y0, x1, y1 = region
+    if not (all(map(math.isfinite, region)) and x1 > x0 and y1 > y0):
+        what = "is empty" if all(map(math.isfinite, region)) else "is not finite"
+        raise DesignError(
+            f"the region {x0:g},{y0:g},{x1:g},{y1:g} {what}", remedy="Give x0,y0,x1,y1 with x0 < x1 and y0 < y1."
+        )
+    farthest = max(map(abs, region))
+    if farthest > COORDINATE_MAX:
+        raise DesignError(
+            f"the region reaches to {farthest:g}", remedy=f"Its coordinates must be within {COORDINATE_MAX:g}."
+        )
+    across, down = x1 - x0, y1 - y0
+    if not all(isinstance(side, int) for side in (size if isinstance(size, tuple) else (size,))):
+        raise DesignError(f"a picture of {size} pixels", remedy="Give whole numbers.")
+    if isinstance(size, tuple):
+        width, height = size
+    else:  # a strip is one pixel wide at least
+        width, height = (max(min(size, 1), round(size * side / max(across, down))) for side in (across, down))
+    if not (1 <= width <= SIDE_MAX and 1 <= height <= SIDE_MAX):
+        raise DesignError(
+            f"a picture of {width} x {height} pixels", remedy=f"Choose sides from 1 to {SIDE_MAX:,} pixels."
+        )
+    step = max(across / width, down / height)
+    if step < max(100 * EPSILON * farthest, NUMBER_MIN):
+        raise DesignError(
+            f"the pixels would be {step:.3g} wide, no more than the rounding of coordinates of {farthest:g}",
+            remedy="Show a larger region, or one nearer to the origin.",
+        )
+    middle = (x0 + x1) / 2, (y0 + y1) / 2
+    grown = (
+        middle[0] - step * width / 2,
+        middle[1] - step * height / 2,
+        middle[0] + step * width / 2,
+        middle[1] + step * height / 2,
+    )
+    return grown, width, height
+
+
+def _overlays(
+    design: Design,
+    outlines: Sequence[Outline] | None,
+    pattern: Pattern,
+    region: Region,
+    width: int,
+    wanted: Iterable[str],
+) -> list[Overlay]:
+    """Give the lines to be drawn on top: all lengths that are no widths in the design's units."""
+    wanted = set(wanted)
+    pixel = (region[2] - region[0]) / width
+    side = math.sqrt(width * (region[3] - region[1]) / pixel)
+    line = max(1.0, side / 500)
+    found = []
+    if "cell" in wanted:
+        a, b = design.lattice.a, design.lattice.b
+        middle = complex(region[0] + region[2], region[1] + region[3]) / 2
+        x, y = pattern.coordinates(np.array([middle - (a + b) / 2]))
+        corner = round(float(x[0])) * a + round(float(y[0])) * b
+        corners = corner + np.array([0, a, a + b, b, 0])
+        segments = np.stack((corners[:-1], corners[1:]), axis=1)
+        found += [Overlay(segments, 3.0 * line, (60, 60, 60)), Overlay(segments, 1.5 * line, _CELL)]
+    if "symmetry" in wanted:
+        elements = placed(symmetry_elements(design.group), design.lattice, region)
+        glides = dashed(elements.glides, 10 * line * pixel, 6 * line * pixel)
+        found += [Overlay(elements.mirrors, 1.4 * line, _MIRROR), Overlay(glides, 1.4 * line, _GLIDE)]
+        symbols = _symbols(elements.centres, elements.orders, 7 * line * pixel)
+        found += [Overlay(symbols, 5.0 * line, _PAPER), Overlay(symbols, 2.4 * line, _CENTRE)]
+    if "outline" in wanted:
+        assert outlines is not None
+        segments = outline_segments(outlines, pattern, region, accuracy=pixel / 10)
+        found.append(Overlay(segments, line, _OUTLINE))
+    if "art" in wanted:
+        found.append(Overlay(_art_segments(design, pattern, region, accuracy=pixel / 10), 1.5 * line, INK))
+    return found
+
+
+def _style(width: int, height: int, *, strokes: bool) -> PictureStyle:
+    """The widths that suit a picture, with the sites' strokes or without."""
+    style = PictureStyle.of_size(width, height)
+    return style if strokes else replace(style, site=0.0)
+
+
+def _outlines(design: Design, *, needed: bool) -> list[Outline] | None:
+    """Compute the tiles: a picture is drawn of what can be tiled, even if the outlines fail their proof."""
+    try:
+        tiles, _ = proved_tiles(design.sites, design.group, design.lattice)
+    except ProofError:
+        if needed:
+            raise
+        return None
+    return [tile.outline for tile in tiles]
+
+
+def _symbols(centres: Complexes, orders: NDArray[np.intp], radius: float) -> Complexes:
+    """Give the sides of the symbols of rotation centres: a lens for 2, else regular polygons; complex128 (n, 2)."""
+    sides = []
+    for order in (2, 3, 4, 6):
+        count = 4 if order == 2 else order
+        turn = np.exp(2j * np.pi * (np.arange(count + 1) / count + 0.25))
+        if order == 2:
+            turn = turn.real * 0.5 + 1j * turn.imag
+        corners = centres[orders == order, None] + radius * turn
+        sides.append(np.stack((corners[:, :-1], corners[:, 1:]), axis=-1).reshape(-1, 2))
+    return np.concatenate(sides)
+
+
+def _dots(pattern: Pattern, region: Region, style: PictureStyle) -> list[Overlay]:
+    """Draw isolated points larger than strokes are wide, or they would not be seen; nothing where strokes are not."""
+    if not style.site:
+        return []
+    flat = []
+    for site in pattern.sites:
+        start, end = (site.elements[:, k] + 1j * site.elements[:, k + 1] for k in (0, 2))
+        flat.append(np.stack((start, end), axis=1)[start == end])
+    return [Overlay(_everywhere(flat, pattern, region), _DOT * style.site, INK)]
+
+
+def outline_segments(outlines: Sequence[Outline], pattern: Pattern, region: Region, *, accuracy: float) -> Complexes:
+    """Give the outlines of all copies that may show in a region as chords, within `accuracy` (in units): (n, 2)."""
+    flat = [
+        np.concatenate([np.stack((ring, np.roll(ring, -1)), axis=1) for ring in outline.flatten(accuracy=accuracy)])
+        for outline in outlines
+    ]
+    return _everywhere(flat, pattern, region)
+
+
+def _art_segments(design: Design, pattern: Pattern, region: Region, *, accuracy: float) -> Complexes:
+    """Give the art on all copies that may show in a region as chords, within `accuracy` (in units): (n, 2).
+
+    Raises DesignError where the design has none, or it cannot be read.
+    """
+    from voronoi_tiles.fabrication.artwork import read_art
+    from voronoi_tiles.paths.conversion import to_lines
+
+    flat = [np.zeros((0, 2), complex) for _ in design.sites]
+    for site, art in enumerate(design.art):
+        if art is not None:
+            works = read_art(art, design.folder, site, design.unit_mm, fills=False)
+            lines = [to_lines(paths, accuracy=accuracy) for paths in (works.engraved, works.scored)]
+            flat[site] = np.concatenate([np.stack((paths.start, paths.end), axis=1) for paths in lines])
+    if not any(map(len, flat)):
+        raise DesignError(
+            "there is no art to draw",
+            key="site[0].art",
+            remedy='Give a site its drawing, as art = "face.svg" (voronoi-tiles template makes one to draw in).',
+        )
+    return _everywhere(flat, pattern, region)
+
+
+def _everywhere(flat: Sequence[Complexes], pattern: Pattern, region: Region) -> Complexes:
+    """Give the segments (n, 2) of every site on all its copies that may show in a region: (m, 2)."""
+    lattice = pattern.lattice
+    corners = np.array([complex(x, y) for x in region[::2] for y in region[1::2]])
+    found = []
+    for placement in pattern.placements:
+        segments = placement.isometry(flat[placement.site])
+        if not len(segments):
+            continue
+        # The translates whose box, in lattice coordinates, meets that of the region.
+        ranges = [
+            np.arange(math.ceil(shown.min() - own.max()), math.floor(shown.max() - own.min()) + 1)
+            for shown, own in zip(pattern.coordinates(corners), pattern.coordinates(segments.ravel()), strict=True)
+        ]
+        i, j = (part.ravel() for part in np.meshgrid(*ranges))
+        found.append((segments[None] + (i * lattice.a + j * lattice.b)[:, None, None]).reshape(-1, 2))
+    return np.concatenate([np.zeros((0, 2), complex), *found])

@@ -1,0 +1,95 @@
+"""What is judged: the shapes of a drawing that are cut, as one set of paths, with the way back to each object."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Ints
+from voronoi_tiles.formats.reading import DrawingError, ReadDrawing, Shape
+from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.preflight.chords import Chords, chords_of
+from voronoi_tiles.preflight.findings import LayerUse, Limits
+
+NOT_CUT: Final = re.compile(
+    r"engrav|grav(?:ur|ier)|etch|scor|mark|crease|fold|raster|label|text|note|guide|comment", re.IGNORECASE
+)
+"""Names of layers that are not cut. A colour says nothing: what is cut in one workshop is engraved in another."""
+
+_SHARE: Final = 4.0  # chords are this much nearer to the curves than the tolerance
+_CHORDS_MAX: Final = 6_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class CutLines:
+    """What is cut: its paths, their shapes, and the chords of both; `height` turns places into the file's own."""
+
+    paths: Paths
+    shape: Ints
+    shapes: Sequence[Shape]
+    chords: Chords
+    svg: bool
+    height: float
+
+    def place(self, point: complex) -> tuple[float, float]:
+        """A point as the file's own program shows it."""
+        y = self.height - point.imag if self.svg else point.imag
+        return round(point.real, 6) + 0.0, round(y, 6) + 0.0
+
+    def source(self, path: int) -> str:
+        """The object that a path is of."""
+        return self.shapes[int(self.shape[path])].source
+
+    def sources(self, *paths: int) -> tuple[str, ...]:
+        """The objects that paths are of, each once."""
+        return tuple(dict.fromkeys(self.source(path) for path in paths))
+
+
+def cut_shapes(drawing: ReadDrawing, layers: Collection[str]) -> list[bool]:
+    """Which shapes are cut: those of the named layers or colours; without names, all strokes but on layers by NOT_CUT.
+
+    Where nothing has a stroke the outlines of what is filled are. Raises DrawingError for a name that the file has not.
+    """
+    shapes = drawing.shapes
+    known = {shape.layer for shape in shapes} | {shape.stroke for shape in shapes if shape.stroke}
+    for name in layers:
+        if name not in known:
+            listed = ", ".join(sorted(repr(each) for each in known if each)[:20]) or "none"
+            raise DrawingError(f"no layer or colour {name!r}", remedy=f"The file has {listed}.")
+    if layers:
+        return [shape.layer in layers or shape.stroke in layers for shape in shapes]
+    any_stroke = any(shape.stroke is not None for shape in shapes)
+    return [(shape.stroke is not None or not any_stroke) and not NOT_CUT.search(shape.layer) for shape in shapes]
+
+
+def subject_of(drawing: ReadDrawing, cut: Sequence[bool], limits: Limits) -> CutLines:
+    """What is cut of a drawing.
+
+    Raises DrawingError where its curves take too many chords at this tolerance.
+    """
+    chosen = [shape for shape, is_cut in zip(drawing.shapes, cut, strict=True) if is_cut]
+    paths = Paths.concatenate([shape.paths for shape in chosen])
+    owner = np.repeat(np.arange(len(chosen)), [len(shape.paths) for shape in chosen]).astype(np.intp)
+    chords = chords_of(paths, limits.tolerance / _SHARE, limits.tolerance)
+    if len(chords.start) > _CHORDS_MAX:
+        raise DrawingError(
+            f"its curves take {len(chords.start):,} chords at a tolerance of {limits.tolerance:g} mm",
+            remedy="Allow a larger --tolerance, or check the size of the drawing.",
+        )
+    return CutLines(paths, owner, chosen, chords, drawing.format == "svg", drawing.height or 0.0)
+
+
+def layer_uses(drawing: ReadDrawing, cut: Sequence[bool]) -> tuple[LayerUse, ...]:
+    """The layers and colours of a drawing, in the order of the file."""
+    groups: dict[tuple[str, str | None, bool], list[Shape]] = {}
+    for shape, is_cut in zip(drawing.shapes, cut, strict=True):
+        groups.setdefault((shape.layer, shape.stroke, is_cut), []).append(shape)
+    uses = []
+    for (layer, colour, is_cut), shapes in groups.items():
+        paths = Paths.concatenate([shape.paths for shape in shapes])
+        uses.append(LayerUse(layer, colour, len(shapes), len(paths.start), float(paths.lengths.sum()), is_cut))
+    return tuple(uses)
