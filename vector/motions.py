@@ -128,3 +128,13 @@ class Action:
 def modulo_lattice(motion: Motion) -> Motion:
     """Return the one of a motion's lattice translates that stands for all."""
     return (*motion[:4], motion[4] % 2, motion[5] % 2)
+
+
+def split(motion: Motion) -> tuple[Motion, int, int]:
+    """Return what stands for a motion modulo the lattice, and the lattice vector that comes after it."""
+    return modulo_lattice(motion), motion[4] // 2, motion[5] // 2
+
+
+def translated(motion: Motion, i: int, j: int) -> Motion:
+    """Return a motion followed by a lattice translation."""
+    return (*motion[:4], motion[4] + 2 * i, motion[5] + 2 * j)

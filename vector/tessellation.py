@@ -24,8 +24,10 @@ from voronoi_tiles.vector.cells.images import surround
 from voronoi_tiles.vector.cells.pencils import Rows, make_rows
 from voronoi_tiles.vector.cells.touching import refuse_touching
 from voronoi_tiles.vector.cells.trace import Boundary, OpenBoundaryError, trace_boundary
+from voronoi_tiles.vector.complex.boundary import TileBoundary
 from voronoi_tiles.vector.complex.edges import Edge, Traced, UnpairedEdgeError, long_edges, pair_edges
-from voronoi_tiles.vector.complex.shared import SharedOutline, share_edges
+from voronoi_tiles.vector.complex.period import Period, make_period
+from voronoi_tiles.vector.complex.quotient import Quotient, build_quotient
 from voronoi_tiles.vector.copies import Copies, Placed, copies_near, place, translation
 from voronoi_tiles.vector.motions import (
     IDENTITY,
@@ -33,7 +35,6 @@ from voronoi_tiles.vector.motions import (
     Motion,
     compose,
     modulo_lattice,
-    reverses_orientation,
     to_motion,
     to_operation,
 )
@@ -122,18 +123,27 @@ class Tessellation:
     action: Action
     names: tuple[str, ...]
     placed: list[Placed]
-    shared: list[SharedOutline]
+    quotient: Quotient
+
+    @cached_property
+    def _boundaries(self) -> list[TileBoundary]:
+        return [TileBoundary.of(self.quotient, tile) for tile in range(len(self.placed))]
+
+    @cached_property
+    def period(self) -> Period:
+        """The tiles of one cell, with the edges that they share."""
+        return make_period(self.action, self.placed, self.quotient)
 
     def placed_outline(self, tile: int, motion: Motion) -> Outline:
         """Return the outline of a copy of a tile, named by a motion of the placed site."""
-        shared = self.shared[tile]
+        boundary = self._boundaries[tile]
         # The copy, not the motion that names it, decides on the bits.
         here = self.placed[tile].canonical(motion)
-        neighbours = [
+        neighbours = tuple(
             Neighbour(self.names[t], to_operation(self.placed[t].canonical(compose(here, beyond))))
-            for t, beyond in shared.neighbours
-        ]
-        return _outline(self.action, shared, here, neighbours)
+            for t, beyond in boundary.neighbours
+        )
+        return boundary.outline(here, neighbours)
 
     def outline(self, tile: int, motion: Motion) -> Outline:
         """Return the outline of a copy of a tile, named by a motion of the site as it was drawn."""
@@ -175,8 +185,7 @@ def tessellate(
         ) from error
     if min(clearance for _, clearance in found) < _SUSPICIOUS * action.size:
         refuse_touching(action, names, placed)
-    shared = share_edges(action, traced, edges)
-    tessellation = Tessellation(action, names, placed, shared)
+    tessellation = Tessellation(action, names, placed, build_quotient(action, traced, edges))
     return [
         TileRecord(
             name=name,
@@ -308,37 +317,3 @@ def _pair(
                 return _pair(action, placed, traced, without_short=True)
             else:
                 raise
-
-
-def _outline(action: Action, shared: SharedOutline, motion: Motion, neighbours: list[Neighbour]) -> Outline:
-    """Return a shared outline, moved, in coordinates."""
-    start = shared.representatives.locate(shared.start.moved(motion))
-    offsets = shared.ring_offsets
-    following = np.arange(1, len(start) + 1)
-    following[offsets[1:] - 1] = offsets[:-1]
-    end = start[following]
-    curved = shared.control.index >= 0
-    control = (start + end) / 2
-    focus, directrix = np.zeros(len(start), complex), np.zeros((len(start), 2), complex)
-    points = shared.control.moved(motion).take(np.flatnonzero(curved))
-    control[curved] = shared.representatives.locate(points)
-    for number, by in enumerate(points.motions):
-        chosen = np.flatnonzero(curved)[points.motion == number]
-        focus[chosen] = action.apply(by, shared.focus[chosen])
-        directrix[chosen] = action.apply(by, shared.directrix[chosen])
-    # A motion that turns the plane over turns the rings round: run through each backwards.
-    order = np.arange(len(start))
-    if reverses_orientation(motion):
-        order = (offsets[:-1] + offsets[1:] - 1)[np.repeat(np.arange(len(offsets) - 1), np.diff(offsets))] - order
-        start, end = end, start
-    return Outline(
-        start=start[order],
-        control=control[order],
-        end=end[order],
-        curved=curved[order],
-        focus=focus[order],
-        directrix=directrix[order],
-        neighbour=shared.beyond[order],
-        neighbours=tuple(neighbours),
-        ring_offsets=offsets,
-    )

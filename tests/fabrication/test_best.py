@@ -37,9 +37,8 @@ def test_a_sheet_that_fits_exactly_is_filled() -> None:
     """A rectangle of whole mirror tiles, wherever it lies: the tiles are laid edge to edge with it."""
     text = 'schema = 1\ngroup = "pmm"\n[cell]\na = 20\nb = 30\n[[site]]\nstrokes = [{ segment = [[3, 4], [7, 9]] }]\n'
     from voronoi_tiles import Design
-    from voronoi_tiles.vector.complex.period import make_period
 
-    tiles = make_period(Design.loads(text).tessellate().tessellation)
+    tiles = Design.loads(text).tessellate().tessellation.period
     region = Region.rectangle(1.234, 5.678, 61.234, 65.678)
     shift = best_shift(tiles, region)
     assert place_tiles(tiles.placed(1.0, shift), region).whole.sum() == 6 * 4

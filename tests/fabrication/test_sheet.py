@@ -74,7 +74,7 @@ def test_regions_smaller_than_a_tile(name: str) -> None:
     """A region inside one tile is its only piece; regions across a side, or about a vertex, are cut."""
     unit = size(name)
     here = period(name)
-    vertex, side = complex(here.vertex[0]), complex(here.sides.end[here.sides.counts[0] // 2])
+    vertex, side = complex(here.vertex[0]), complex(here.edges.end[here.edges.counts[0] // 2])
     for centre in (vertex, side, 0.3 * unit + 0.2j * unit):
         for region in (
             Region.rectangle(

@@ -23,7 +23,7 @@ from voronoi_tiles.groups.wallpaper import GROUPS
 from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
 from voronoi_tiles.tiling import Tiling
-from voronoi_tiles.vector.complex.period import Period, make_period
+from voronoi_tiles.vector.complex.period import Period
 
 EXAMPLES = sorted(path.stem for path in (Path(__file__).parents[2] / "examples").glob("*.toml"))
 NAMES = [*EXAMPLES, *GROUPS]
@@ -44,7 +44,7 @@ def tiling(name: str) -> Tiling:
 @cache
 def period(name: str) -> Period:
     """One period of a design in its own frame."""
-    return make_period(engine(name))
+    return engine(name).period
 
 
 def engine(name: str) -> Any:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,10 +13,10 @@ from helpers.sheets import NAMES, check_joints, engine, flattened, period, point
 from voronoi_tiles.base.arrays import Complexes, Ints
 from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.paths import ARC, CUBIC, Paths
-from voronoi_tiles.vector.complex.orbits import approximated, find_orbits
+from voronoi_tiles.vector.complex.approximation import approximated
 from voronoi_tiles.vector.complex.period import Period
 from voronoi_tiles.vector.copies import translation
-from voronoi_tiles.vector.motions import compose, to_operation
+from voronoi_tiles.vector.motions import Motion, compose, to_operation
 
 CLOSE = 1e-12
 """How far points may be from where the tiles' own outlines have them, relative to the cell."""
@@ -55,8 +56,8 @@ def assert_neighbours_share(paths: Paths, inner: Paths) -> None:
 def test_every_side_lies_between_two_tiles(name: str) -> None:
     """It is run through once forwards and once backwards; where many tiles meet, all have the same bits."""
     here = period(name)
-    uses = Counter(zip(here.rings.side.tolist(), here.rings.forward.tolist(), strict=True))
-    assert uses == Counter((side, sense) for side in range(len(here.sides)) for sense in (False, True))
+    uses = Counter(zip(here.rings.edge.tolist(), here.rings.forward.tolist(), strict=True))
+    assert uses == Counter((side, sense) for side in range(len(here.edges)) for sense in (False, True))
     paths, items = here.outlines(*block(here, 2))
     check_joints(paths)
     assert paths.closed.all()
@@ -91,7 +92,7 @@ def test_ends_of_sides_are_the_same_bits_exactly_where_they_meet(name: str) -> N
     """Among all sides of a block: ends are one vertex, or far apart."""
     here = period(name).placed(np.exp(0.7j), 1.1 - 2.3j)
     steps = np.array([(i, j) for i in (-1, 0, 1) for j in (-1, 0, 1)])
-    side, step = np.repeat(np.arange(len(here.sides)), 9), np.tile(steps, (len(here.sides), 1))
+    side, step = np.repeat(np.arange(len(here.edges)), 9), np.tile(steps, (len(here.edges), 1))
     curves = here.curves(side, step)
     ends = np.unique(np.concatenate((curves.start[curves.offsets[:-1]], curves.end[curves.offsets[1:] - 1])))
     apart = np.abs(ends[:, None] - ends) + np.eye(len(ends))
@@ -148,7 +149,7 @@ def crooked(paths: Paths) -> Paths:
 
 
 def assert_tiles_congruent(here: Period, exact: Period, name: str) -> None:
-    """Assert that all tiles of a site are images of the first one under the exact motions, vertex for vertex."""
+    """Assert that tiles of a site are images of the first one, and it is its own image under its site's symmetry."""
     action = engine(name).action
     paths, items = here.outlines(np.arange(len(here.site)), np.zeros((len(here.site), 2), np.intp))
     base: dict[int, Complexes] = {}
@@ -162,13 +163,16 @@ def assert_tiles_congruent(here: Period, exact: Period, name: str) -> None:
         assert len(first) == len(back), f"tile {k} has another number of vertices"
         gap = np.abs(first[:, None] - back).min(axis=1).max()
         assert gap <= 1e-11 * extent(name), f"tile {k} differs by {gap:.1e} from the first of its site"
+        for element in engine(name).placed[site].stabilizer:
+            gap = np.abs(action.apply(element, first)[:, None] - first).min(axis=1).max()
+            assert gap <= 1e-11 * extent(name), f"tile {k} differs by {gap:.1e} from its own image"
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_approximated_tiles_stay_congruent_and_share_their_sides(name: str) -> None:
     """Whatever the fit: copies are images under the exact motions, neighbours share bits, the areas make the cell's."""
     exact = period(name)
-    here = approximated(exact, engine(name).action, crooked)
+    here = approximated(exact, engine(name).quotient, crooked)
     paths, _ = here.outlines(*block(here, 2))
     check_joints(paths)
     assert_neighbours_share(paths, here.outlines(*block(here, 0))[0])
@@ -181,10 +185,10 @@ def test_approximated_tiles_stay_congruent_and_share_their_sides(name: str) -> N
 def test_sides_with_a_half_turn_keep_it(name: str) -> None:
     """A side that is its own image under a half turn still is; and this is not for lack of such sides."""
     exact = period(name)
-    here = approximated(exact, engine(name).action, crooked)
+    here = approximated(exact, engine(name).quotient, crooked)
     symmetric = 0
-    for k in range(len(exact.sides)):
-        exact_points, points = (np.array(flattened(p.sides.take(np.array([k])), 1e-3)[0]) for p in (exact, here))
+    for k in range(len(exact.edges)):
+        exact_points, points = (np.array(flattened(p.edges.take(np.array([k])), 1e-3)[0]) for p in (exact, here))
         swap = exact_points[0] + exact_points[-1]
         if exact_points[0] == exact_points[-1] or np.abs(swap - exact_points[::-1] - exact_points).max() > 1e-9:
             continue
@@ -195,10 +199,10 @@ def test_sides_with_a_half_turn_keep_it(name: str) -> None:
 
 def test_sides_that_cross_a_mirror_keep_it() -> None:
     """The moth is symmetric about x = 0: its sides across the mirror are their own images backwards."""
-    here = approximated(period("cm-moth"), engine("cm-moth").action, crooked)
+    here = approximated(period("cm-moth"), engine("cm-moth").quotient, crooked)
     mirrored = 0
-    for k in range(len(here.sides)):
-        points = flattened(here.sides.take(np.array([k])))[0]
+    for k in range(len(here.edges)):
+        points = flattened(here.edges.take(np.array([k])))[0]
         a, b = points[0], points[-1]
         if abs(a.imag - b.imag) < 1e-12 and abs(a.real - b.real) > 1:
             centre = (a.real + b.real) / 2
@@ -208,24 +212,54 @@ def test_sides_that_cross_a_mirror_keep_it() -> None:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_orbits_are_images(name: str) -> None:
-    """Every side is where the motion takes the one that stands for it; a fit that changes nothing changes nothing."""
+def test_edges_are_images_of_those_of_the_quotient_complex(name: str) -> None:
+    """Every edge is where its motion takes the one of its orbit; a fit that changes nothing changes nothing."""
+    here, quotient = period(name), engine(name).quotient
+    originals = quotient.paths()
+    for k, (orbit, motion) in enumerate(zip(here.orbit.tolist(), here.edge_motion, strict=True)):
+        image = moved(name, originals.take(np.array([orbit])), motion)
+        assert np.abs(marks(image) - marks(here.edges.take(np.array([k])))).max() <= CLOSE * extent(name)
+    same = approximated(here, quotient, lambda paths: paths)
+    assert same.edges.lengths.sum() == pytest.approx(here.edges.lengths.sum(), rel=1e-12)
+    assert sorted(set(here.orbit.tolist())) == list(range(len(originals)))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_edges_of_one_orbit_are_those_that_symmetry_maps_onto_each_other(name: str) -> None:
+    """Told by brute force, from the places of the edges alone: every operation of the group, every pair of edges."""
     here, action = period(name), engine(name).action
-    orbits = find_orbits(here)
-    for k, (source, motion, against) in enumerate(
-        zip(orbits.source.tolist(), orbits.motion, orbits.against.tolist(), strict=True)
-    ):
-        unit, conj = action.linear[motion[:4]]
-        shift = complex(action.cartesian(motion[4] / 2, motion[5] / 2))
-        image = here.sides.take(np.array([source])).moved(unit, shift, conj=conj)
-        image = image.reversed() if against else image
-        assert np.abs(marks(image) - marks(here.sides.take(np.array([k])))).max() <= CLOSE * extent(name)
-    same = approximated(here, action, lambda paths: paths)
-    assert same.sides.lengths.sum() == pytest.approx(here.sides.lengths.sum(), rel=1e-12)
-    few = len(np.unique(orbits.source))
-    assert few <= len(here.sides)
-    if len(here.site) > len(np.unique(here.site)):
-        assert few < len(here.sides)
+    middles = [complex(flattened(here.edges.take(np.array([k])), 1e-3)[0].mean()) for k in range(len(here.edges))]
+    corners = [edge_corners(here, k) for k in range(len(here.edges))]
+    for one in range(len(here.edges)):
+        for two in range(one):
+            found = any(
+                maps_onto(action, motion, (corners[one], middles[one]), (corners[two], middles[two]))
+                for motion in action.motions
+            )
+            assert found == (here.orbit[one] == here.orbit[two]), (one, two)
+
+
+def edge_corners(here: Period, edge: int) -> Complexes:
+    """Its ends."""
+    path = here.edges.take(np.array([edge]))
+    return np.array([path.start[0], path.end[-1]])
+
+
+def maps_onto(action: Any, motion: Motion, one: tuple[Complexes, complex], two: tuple[Complexes, complex]) -> bool:
+    """Tell whether a motion, followed by some lattice translation, takes one edge to another, by ends and middle."""
+    ends, middle = action.apply(motion, one[0]), complex(action.apply(motion, np.array([one[1]]))[0])
+    x, y = action.fractional(two[1] - middle)
+    shift = complex(action.cartesian(round(x), round(y)))
+    close = 1e-6 * action.size
+    gaps = [np.abs(ends + shift - there).max() for there in (two[0], two[0][::-1])]
+    return bool(min(gaps) <= close and abs(middle + shift - two[1]) <= close)
+
+
+def moved(name: str, paths: Paths, motion: Motion) -> Paths:
+    """The image of paths under a motion."""
+    action = engine(name).action
+    unit, conj = action.linear[motion[:4]]
+    return paths.moved(unit, complex(action.cartesian(motion[4] / 2, motion[5] / 2)), conj=conj)
 
 
 def test_curves_of_other_kinds_come_through() -> None:
@@ -243,15 +277,24 @@ def test_curves_of_other_kinds_come_through() -> None:
         return Paths(first, last, control, kind, np.arange(len(ends) + 1), closed)
 
     for name in ("p4g-fan", "pgg-crane", "cm-moth"):
-        here = approximated(period(name), engine(name).action, fit)
+        here = approximated(period(name), engine(name).quotient, fit)
         paths, _ = here.outlines(*block(here))
         check_joints(paths)
-        assert (here.sides.kind >= CUBIC).any()
+        assert (here.edges.kind >= CUBIC).any()
         tile, _ = here.outlines(np.arange(len(here.site)), np.zeros((len(here.site), 2), np.intp))
         around = np.add.reduceat(tile.lengths, tile.offsets[:-1])
         for site in np.unique(here.site):
             own = around[np.flatnonzero(here.site == site)]
             assert np.abs(own - own[0]).max() < 1e-9
+
+
+def test_the_oracle_of_congruence_sees_a_tile_that_is_not_symmetric() -> None:
+    """All copies are alike, but edges across the mirror are fitted as if it were not there."""
+    here, quotient = period("cm-moth"), engine("cm-moth").quotient
+    blind = tuple(replace(edge, stabilizer=edge.stabilizer[:1]) for edge in quotient.edges)
+    bent = approximated(here, replace(quotient, edges=blind), crooked)
+    with pytest.raises(AssertionError, match="own image"):
+        assert_tiles_congruent(bent, here, "cm-moth")
 
 
 # --- the oracles can fail ----------------------------------------------------------------------------------------
@@ -270,10 +313,10 @@ def test_the_oracles_of_sharing_and_congruence_see_what_is_wrong() -> None:
     start[0] = complex(np.nextafter(start[0].real, np.inf), start[0].imag)
     with pytest.raises(AssertionError, match="no other side"):
         assert_neighbours_share(replace(around, start=start), around)
-    inner = int(np.flatnonzero(np.diff(here.sides.offsets) > 1)[0])
-    start, end = here.sides.start.copy(), here.sides.end.copy()
-    at = int(here.sides.offsets[inner])
+    inner = int(np.flatnonzero(np.diff(here.edges.offsets) > 1)[0])
+    start, end = here.edges.start.copy(), here.edges.end.copy()
+    at = int(here.edges.offsets[inner])
     start[at + 1] = end[at] = end[at] + 1e-6
-    bent = replace(here, sides=replace(here.sides, start=start, end=end))
+    bent = replace(here, edges=replace(here.edges, start=start, end=end))
     with pytest.raises(AssertionError, match="differs by"):
         assert_tiles_congruent(bent, here, name)

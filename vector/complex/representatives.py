@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -33,6 +34,17 @@ class Points:
         """Return the points at these places."""
         return Points(self.index[places], self.motion[places], self.motions)
 
+    @classmethod
+    def concatenate(cls, parts: Sequence[Points]) -> Points:
+        """Return all points of several, in their order."""
+        numbers: dict[Motion, int] = {}
+        motion = [np.zeros(0, np.intp)]
+        for part in parts:
+            table = np.array([numbers.setdefault(motion, len(numbers)) for motion in part.motions], np.intp)
+            motion.append(table[part.motion])
+        index = np.concatenate([np.zeros(0, np.intp), *(part.index for part in parts)])
+        return cls(index, np.concatenate(motion), tuple(numbers))
+
 
 @dataclass(frozen=True)
 class Representatives:
@@ -61,12 +73,15 @@ class Representatives:
         for number, motion in enumerate(points.motions):
             chosen = points.motion == number
             result[chosen] = self.action.apply(motion, self.position[points.index[chosen]])
-        for k in np.flatnonzero(self._special[points.index]).tolist():
-            point = int(points.index[k])
-            # Several motions lead to this point: the first in a fixed order stands for all.
-            motion = min(compose(points.motions[points.motion[k]], s) for s in self.stabilizer[point])
-            result[k] = self.action.apply_to_point(motion, complex(self.position[point]))
+        for k, motion in self.canonical(points):
+            result[k] = self.action.apply_to_point(motion, complex(self.position[points.index[k]]))
         return result
+
+    def canonical(self, points: Points) -> Iterator[tuple[int, Motion]]:
+        """Yield those points to which several motions lead, with the one of these that stands for all."""
+        for k in np.flatnonzero(self._special[points.index] & (points.index >= 0)).tolist():
+            point = int(points.index[k])
+            yield k, min(compose(points.motions[points.motion[k]], s) for s in self.stabilizer[point])
 
 
 class Builder:

@@ -1,4 +1,4 @@
-"""The lines of a sheet as strands between nodes, each once: sides of tiles, whole or in part, and the border."""
+"""The lines of a sheet as strands between nodes, each once: edges of tiles, whole or in part, and the border."""
 
 from __future__ import annotations
 
@@ -38,10 +38,10 @@ class Strands:
 
 
 @dataclass(frozen=True, eq=False)
-class _Sides:
-    """The sides around the tiles of a placement, each once: the curves of strands, not yet made."""
+class _SheetEdges:
+    """The edges around the tiles of a placement, each once: the curves of strands, not yet made."""
 
-    side: Ints
+    edge: Ints
     step: Ints
     left: Ints
     right: Ints
@@ -52,13 +52,13 @@ class _Sides:
     def boxes(self, period: Period) -> Floats:
         """The boxes of all (n x 4), as `pieces.boxes` gives them."""
         shift = period.shifts(self.step)
-        box = item_boxes(period.sides, np.arange(len(period.sides) + 1))[self.side]
+        box = item_boxes(period.edges, np.arange(len(period.edges) + 1))[self.edge]
         return box + np.column_stack((shift.real, shift.imag, shift.real, shift.imag))
 
     def strands(self, period: Period, chosen: Ints) -> Strands:
         """Some of them as strands."""
         return Strands(
-            paths=period.curves(self.side[chosen], self.step[chosen]),
+            paths=period.curves(self.edge[chosen], self.step[chosen]),
             first=self.first[chosen],
             last=self.last[chosen],
             node=self.node,
@@ -70,31 +70,31 @@ class _Sides:
 
 
 def whole_strands(period: Period, placement: TilePlacement) -> Strands:
-    """The sides around all tiles of a placement."""
-    sides = _sides(period, placement)
-    return sides.strands(period, np.arange(len(sides.side)))
+    """The edges around all tiles of a placement."""
+    edges = _sheet_edges(period, placement)
+    return edges.strands(period, np.arange(len(edges.edge)))
 
 
 def clipped_strands(period: Period, placement: TilePlacement, region: Region) -> Strands:
-    """The sides around the tiles of a placement as far as they lie in the region, and the region's border.
+    """The edges around the tiles of a placement as far as they lie in the region, and the region's border.
 
     What runs along the border within `region.close` is left to the border.
     """
-    sides = _sides(period, placement)
-    near = region.meets_border(sides.boxes(period), 2 * region.close)
+    edges = _sheet_edges(period, placement)
+    near = region.meets_border(edges.boxes(period), 2 * region.close)
     # Beside a whole tile all is inside; OUTSIDE is the last place.
     whole = np.append(placement.whole, False)
-    inside = whole[sides.left] | whole[sides.right]
+    inside = whole[edges.left] | whole[edges.right]
     unclear = np.flatnonzero(~near & ~inside)
-    inside[unclear] = region.contains(sides.node[sides.first[unclear]])
-    kept = sides.strands(period, np.flatnonzero(~near & inside))
-    return _bordered(region, kept, sides.strands(period, np.flatnonzero(near)))
+    inside[unclear] = region.contains(edges.node[edges.first[unclear]])
+    kept = edges.strands(period, np.flatnonzero(~near & inside))
+    return _bordered(region, kept, edges.strands(period, np.flatnonzero(near)))
 
 
 def outer_strands(strands: Strands, region: Region) -> Strands:
-    """The boundary of what is left of a region around tiles that lie in it, from the sides around these.
+    """The boundary of what is left of a region around tiles that lie in it, from the edges around these.
 
-    It is the region's border, and the sides that have no tile beyond, as far as they are not part of the border.
+    It is the region's border, and the edges that have no tile beyond, as far as they are not part of the border.
     """
     lone = np.flatnonzero((strands.left == OUTSIDE) | (strands.right == OUTSIDE))
     return _bordered(region, _taken(strands, lone[:0]), _taken(strands, lone))
@@ -135,18 +135,18 @@ def _bordered(region: Region, kept: Strands, near: Strands) -> Strands:
     )
 
 
-def _sides(period: Period, placement: TilePlacement) -> _Sides:
-    """The sides around tiles, each once, with the tiles beside it and the vertices at its ends."""
-    tile, side, step, forward = period.borders(placement.tile, placement.step)
-    _, one, which = np.unique(_packed(side, step), return_index=True, return_inverse=True)
+def _sheet_edges(period: Period, placement: TilePlacement) -> _SheetEdges:
+    """The edges around tiles, each once, with the tiles beside it and the vertices at its ends."""
+    tile, edge, step, forward = period.borders(placement.tile, placement.step)
+    _, one, which = np.unique(_packed(edge, step), return_index=True, return_inverse=True)
     beside = np.full((2, len(one)), OUTSIDE)
     beside[np.where(forward, 0, 1), which.reshape(-1)] = tile
-    side, step = side[one], step[one]
-    vertex = np.concatenate((period.start[side], period.end[side]))
-    place = np.concatenate((step, step + period.reach[side]))
+    edge, step = edge[one], step[one]
+    vertex = np.concatenate((period.start[edge], period.end[edge]))
+    place = np.concatenate((step, step + period.reach[edge]))
     _, one, which = np.unique(_packed(vertex, place), return_index=True, return_inverse=True)
     first, last = np.split(np.asarray(which.reshape(-1), np.intp), 2)
-    return _Sides(side, step, beside[0], beside[1], first, last, period.at(period.vertex[vertex[one]], place[one]))
+    return _SheetEdges(edge, step, beside[0], beside[1], first, last, period.at(period.vertex[vertex[one]], place[one]))
 
 
 def _packed(number: Ints, step: Ints) -> Ints:

@@ -1,4 +1,4 @@
-"""Tabs where every line is cut once: a bridge in some of the sides, so that two at least hold every tile."""
+"""Tabs where every line is cut once: a bridge in some of the edges, so that two at least hold every tile."""
 
 from __future__ import annotations
 
@@ -15,11 +15,11 @@ def bridged(
 ) -> tuple[Paths, Ints, Ints, Complexes]:
     """Leave bridges in strands: the strands, the nodes where they start and end, and where the nodes are.
 
-    `paths`, `first` and `last` are the strands `chosen` of all. The longest sides come first; a side that is shorter
+    `paths`, `first` and `last` are the strands `chosen` of all. The longest edges come first; one that is shorter
     than four bridges has none.
     """
     length = paths.path_lengths
-    bridge = _sides_with_bridge(strands, chosen, length, 4 * width)
+    bridge = _edges_with_bridge(strands, chosen, length, 4 * width)
     cut = np.flatnonzero(bridge)
     half = (length[cut] - width) / 2
     before = stretches(paths, cut, np.zeros(len(cut)), half)
@@ -35,8 +35,8 @@ def bridged(
     )
 
 
-def _sides_with_bridge(strands: Strands, chosen: Ints, length: Floats, least: float) -> Bools:
-    """Choose strands, long ones first, until every tile has TABS_LEAST bridges, as far as its sides are long enough."""
+def _edges_with_bridge(strands: Strands, chosen: Ints, length: Floats, least: float) -> Bools:
+    """Choose strands, long ones first, until every tile has TABS_LEAST bridges, as far as its edges are long enough."""
     left, right = strands.left[chosen].tolist(), strands.right[chosen].tolist()
     count: dict[int, int] = {}
     bridge = np.zeros(len(chosen), np.bool_)

@@ -25,8 +25,8 @@ from voronoi_tiles.paths.conversion import to_lines
 from voronoi_tiles.paths.offset import OffsetError, offset
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.paths.segments import item_boxes
-from voronoi_tiles.vector.complex.orbits import approximated
-from voronoi_tiles.vector.complex.period import Period, make_period
+from voronoi_tiles.vector.complex.approximation import approximated
+from voronoi_tiles.vector.complex.period import Period
 from voronoi_tiles.vector.copies import Placed
 from voronoi_tiles.vector.motions import IDENTITY, Motion, compose, inverse, reverses_orientation
 from voronoi_tiles.vector.outline import Outline
@@ -102,9 +102,9 @@ class Layout:
         self.sheet = sheet
         self.action = tessellation.action
         self.design_units = design.unit_mm
-        period = make_period(tessellation)
+        period = tessellation.period
         if fit is not None:
-            period = approximated(period, tessellation.action, fit)
+            period = approximated(period, tessellation.quotient, fit)
         self.factor = self.design_units * unit_at(job.rotate)
         self.shift = sheet.centre + (job.offset or 0j) if sheet.region is not None else 0j
         self.period: Period = period.placed(self.factor, self.shift)
@@ -134,7 +134,7 @@ class Layout:
         """Refuse a sheet that would hold more than memory does."""
         left, bottom, right, top = region.bounds
         cells = (right - left) * (top - bottom) / self.period.lattice.det
-        tiles, pieces = cells * len(self.period.site), cells * 2 * len(self.period.sides.start)
+        tiles, pieces = cells * len(self.period.site), cells * 2 * len(self.period.edges.start)
         if tiles > TILES_MAX or pieces > PIECES_MAX:
             raise JobError(
                 f"the sheet would hold about {tiles:,.0f} tiles of {pieces / tiles:,.0f} edges each",

@@ -156,16 +156,16 @@ class _Neighbourhood:
 def pulled_apart(period: Period, centres: Complexes, about: complex, stretch: Stretch) -> Period:
     """The period of a layout that is spread: the centre c of each tile stands at `about` + `stretch`(c - `about`).
 
-    Tile and lattice vector still name the same copy; but no two tiles share a side or a vertex any more.
+    Tile and lattice vector still name the same copy; but no two tiles share an edge or a vertex any more.
     """
     rings = period.rings
     ring_of = np.repeat(np.arange(len(rings.offsets) - 1), np.diff(rings.offsets))
     tile = np.repeat(np.arange(len(period.site)), np.diff(rings.tiles))[ring_of]
     shift = stretch(centres - about) - (centres - about)
-    sides = period.sides.take(rings.side)
-    # The first and last point of a side are those of its vertices, wherever it stands.
-    ends = np.column_stack((period.start[rings.side], period.end[rings.side])).ravel()
-    places = np.stack((rings.step, rings.step + period.reach[rings.side]), axis=1).reshape(-1, 2)
+    edges = period.edges.take(rings.edge)
+    # The first and last point of an edge are those of its vertices, wherever it stands.
+    ends = np.column_stack((period.start[rings.edge], period.end[rings.edge])).ravel()
+    places = np.stack((rings.step, rings.step + period.reach[rings.edge]), axis=1).reshape(-1, 2)
     rows = np.column_stack((np.repeat(tile, 2), ends, places))
     _, first, vertex = np.unique(rows, axis=0, return_index=True, return_inverse=True)
     start, end = vertex.reshape(-1, 2).T
@@ -176,8 +176,10 @@ def pulled_apart(period: Period, centres: Complexes, about: complex, stretch: St
         start=start,
         end=end,
         reach=0 * rings.step,
-        sides=sides.shifted(period.shifts(rings.step)[sides.owner]).shifted(shift[tile][sides.owner]),
-        rings=replace(rings, side=np.arange(len(rings.side)), step=0 * rings.step),
+        edges=edges.shifted(period.shifts(rings.step)[edges.owner]).shifted(shift[tile][edges.owner]),
+        orbit=period.orbit[rings.edge],
+        edge_motion=tuple(period.edge_motion[edge] for edge in rings.edge.tolist()),
+        rings=replace(rings, edge=np.arange(len(rings.edge)), step=0 * rings.step),
     )
 
 

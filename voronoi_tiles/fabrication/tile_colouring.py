@@ -1,4 +1,4 @@
-"""Colours of tiles: as few as their sides allow, so that no two that share one are alike."""
+"""Colours of tiles: as few as their edges allow, so that no two that share one are alike."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ class TileColouring:
 
 def colour_tiles(layout: Layout) -> TileColouring:
     """Colour all tiles of the plane, with the fewest colours that repeat within four by four cells."""
-    return TileColouring(colour_sides(layout.period), layout.copies)
+    return TileColouring(colour_period(layout.period), layout.copies)
 
 
-def colour_sides(period: Period) -> PeriodicColouring:
-    """Colour the tiles of a period, and all their translates: those that share a side differ."""
-    pairs = side_pairs(period)
-    # Two tiles that share a side with each other and with a third need three colours.
+def colour_period(period: Period) -> PeriodicColouring:
+    """Colour the tiles of a period, and all their translates: those that share an edge differ."""
+    pairs = neighbour_pairs(period)
+    # Two tiles that share an edge with each other and with a third need three colours.
     here = {(p, q, i, j) for p, q, i, j in pairs.tolist()} | {(q, p, -i, -j) for p, q, i, j in pairs.tolist()}
     beside: dict[int, list[tuple[int, int, int]]] = {}
     for p, q, i, j in here:
@@ -50,11 +50,11 @@ def colour_sides(period: Period) -> PeriodicColouring:
     return colour_pairs(pairs, len(period.site), least=least, enough=least)
 
 
-def side_pairs(period: Period) -> Ints:
-    """The pairs of tiles that share a side: rows (p, q, i, j), tile p beside tile q moved by a lattice vector."""
+def neighbour_pairs(period: Period) -> Ints:
+    """The pairs of tiles that share an edge: rows (p, q, i, j), tile p beside tile q moved by a lattice vector."""
     everything = np.arange(len(period.site))
-    tile, side, step, forward = period.borders(everything, np.zeros((len(everything), 2), np.intp))
+    tile, edge, step, forward = period.borders(everything, np.zeros((len(everything), 2), np.intp))
     left, right = np.flatnonzero(forward), np.flatnonzero(~forward)
-    left, right = left[np.argsort(side[left])], right[np.argsort(side[right])]
+    left, right = left[np.argsort(edge[left])], right[np.argsort(edge[right])]
     rows = np.column_stack((tile[left], tile[right], step[left] - step[right]))
     return np.asarray(np.unique(rows, axis=0), np.intp)
