@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from voronoi_tiles.base.arrays import Complexes
-from voronoi_tiles.base.maps import move
+from voronoi_tiles.base.maps import Isometry, move
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 
@@ -106,6 +106,11 @@ class Action:
     def size(self) -> float:
         """The longer side of the cell: the scale that accuracies are relative to."""
         return max(abs(self.lattice.a), abs(self.lattice.b))
+
+    def isometry(self, motion: Motion) -> Isometry:
+        """The isometry of the plane that a motion is."""
+        unit, conj = self.linear[motion[:4]]
+        return Isometry(unit, self._shift(motion), conj)
 
     def apply(self, motion: Motion, z: Complexes) -> Complexes:
         """Return the images of points under one motion."""

@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Ints
+from voronoi_tiles.base.maps import Isometry
 from voronoi_tiles.fabrication.arc_fitting import fewer_arcs
 from voronoi_tiles.fabrication.contours import ClosedPieces
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.offset import Offset, OffsetError, offset, round_corners
 from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.paths.symmetric_fit import fitted_symmetrically
 from voronoi_tiles.paths.winding import item_winding
+
+_SAME_NODE_MM = 1e-7
+"""How far a node may be from the image of another one that symmetry maps there; millimetres, far above rounding."""
 
 _LOSSES = {
     "ring": "a piece vanishes",
@@ -33,9 +38,15 @@ class Dressing:
         self.refit = refit
         self.losses: list[str] = []
 
-    def tile(self, rings: Paths) -> Paths:
-        """Apply them to a whole tile, which must keep all its rings. Raises JobError where it does not."""
-        return self._refitted(self._dress(rings, whole=True))
+    def tile(self, rings: Paths, symmetry: Sequence[Isometry]) -> Paths:
+        """Apply them to a whole tile, which must keep all its rings. Raises JobError where it does not.
+
+        `symmetry` are the isometries that map the tile onto itself, without the identity.
+        """
+        dressed = self._dress(rings, whole=True)
+        if not (self.job.dressed and self.refit):
+            return dressed
+        return fitted_symmetrically(dressed, symmetry, self._refitted, close=_SAME_NODE_MM)
 
     def pieces(self, pieces: ClosedPieces) -> tuple[ClosedPieces, Ints]:
         """Apply fillet and kerf to pieces one by one; also gives of which of them each of the pieces now is."""

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
-from voronoi_tiles.base.maps import unit_at
+from voronoi_tiles.base.maps import Isometry, unit_at
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.best_offset import best_shift
 from voronoi_tiles.fabrication.clipping import Strands, clipped_strands, whole_strands
@@ -25,6 +25,7 @@ from voronoi_tiles.paths.conversion import to_lines
 from voronoi_tiles.paths.offset import OffsetError, offset
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.paths.segments import item_boxes
+from voronoi_tiles.paths.symmetric_fit import moved
 from voronoi_tiles.vector.complex.approximation import approximated
 from voronoi_tiles.vector.complex.period import Period
 from voronoi_tiles.vector.copies import Placed
@@ -256,7 +257,8 @@ class Layout:
         first = int(np.flatnonzero(self.period.site == site)[0])
         if tile == first:
             rings, items = self.period.own_outlines
-            result = self.dressing.tile(rings.take(np.arange(items[tile], items[tile + 1])))
+            own = rings.take(np.arange(items[tile], items[tile + 1]))
+            result = self.dressing.tile(own, self._symmetry(tile))
         else:
             # The same shape as the first one of its site, not one that is computed anew.
             result = self._image(
@@ -267,12 +269,22 @@ class Layout:
 
     def _image(self, paths: Paths, motion: Motion) -> Paths:
         """The image of rings on the page under a motion of the design's plane; the material stays on the left."""
-        unit, conj = self.action.linear[motion[:4]]
-        place = complex(self.action.cartesian(motion[4] / 2, motion[5] / 2))
+        page = self._on_page(motion)
+        image = moved(paths, page)
+        return image.reversed() if page.conj else image
+
+    def _on_page(self, motion: Motion) -> Isometry:
+        """What a motion of the design's plane is on the page."""
+        unit, place, conj = self.action.isometry(motion)
         factor = unit * (self.factor / self.factor.conjugate()) if conj else unit
         base = self.shift.conjugate() if conj else self.shift
-        image = paths.moved(factor, self.factor * place + self.shift - factor * base, conj=conj)
-        return image.reversed() if conj else image
+        return Isometry(factor, self.factor * place + self.shift - factor * base, conj)
+
+    def _symmetry(self, tile: int) -> list[Isometry]:
+        """What maps a tile of the period onto itself, the identity left out."""
+        here = self.period.motion[tile]
+        stabilizer = self._tessellation.placed[int(self.period.site[tile])].stabilizer
+        return [self._on_page(compose(compose(here, element), inverse(here))) for element in stabilizer[1:]]
 
     def _whole(self, copies: Ints) -> tuple[Paths, Ints]:
         """The rings of whole tiles, and where each one's begin."""
