@@ -13,7 +13,7 @@ from helpers.sheets import EXAMPLES, tiling
 
 from voronoi_tiles.fabrication import Job, JobError
 from voronoi_tiles.fabrication.arc_fitting import curve_fit
-from voronoi_tiles.fabrication.layout import Layout
+from voronoi_tiles.fabrication.layout import lay_out
 from voronoi_tiles.fabrication.sheets import read_sheet
 from voronoi_tiles.paths.paths import ARC, Paths
 from voronoi_tiles.paths.segments import tangent_at
@@ -27,7 +27,7 @@ ACCURACY = 0.005
 def contours(tiles: Tiling, job: Job) -> list[tuple[int, Paths]]:
     """Each piece's site and rings where its tile lies in the plane, the pulling undone."""
     fit, _ = curve_fit(job, "exact", tiles.design.unit_mm)
-    layout = Layout(tiles.design, tiles.tessellation, job, read_sheet(job), fit)
+    layout = lay_out(tiles.design, tiles.tessellation, job, read_sheet(job), fit)
     found = layout.contours
     result = []
     for k, copy in enumerate(found.copy.tolist()):

@@ -13,7 +13,7 @@ from helpers.sheets import NAMES, tiling
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.fabrication.arc_fitting import curve_fit
 from voronoi_tiles.fabrication.job import Job
-from voronoi_tiles.fabrication.layout import Contours, Layout
+from voronoi_tiles.fabrication.layout import Contours, Layout, lay_out
 from voronoi_tiles.fabrication.sheets import read_sheet
 from voronoi_tiles.paths.paths import ARC
 from voronoi_tiles.vector.motions import Motion, compose, inverse
@@ -37,17 +37,17 @@ def laid_out(name: str, **options: Any) -> Layout:
     """Lay out a design's tiles."""
     tiles, job = tiling(name), Job(**options)
     fit, _ = curve_fit(job, "arc", tiles.design.unit_mm)
-    return Layout(tiles.design, tiles.tessellation, job, read_sheet(job), fit)
+    return lay_out(tiles.design, tiles.tessellation, job, read_sheet(job), fit)
 
 
 def page_map(layout: Layout, motion: Motion, place: complex) -> Callable[[Complexes], Complexes]:
     """What a motion of the design's plane is on the page, for a tile that was moved by `place` after all else."""
-    unit, conj = layout.action.linear[motion[:4]]
-    shift = complex(layout.action.cartesian(motion[4] / 2, motion[5] / 2))
+    unit, conj = layout.tiles.page.action.linear[motion[:4]]
+    shift = complex(layout.tiles.page.action.cartesian(motion[4] / 2, motion[5] / 2))
 
     def image(nodes: Complexes) -> Complexes:
-        z = (nodes - place - layout.shift) / layout.factor
-        return layout.factor * (unit * (z.conj() if conj else z) + shift) + layout.shift + place
+        z = (nodes - place - layout.tiles.page.shift) / layout.tiles.page.factor
+        return layout.tiles.page.factor * (unit * (z.conj() if conj else z) + shift) + layout.tiles.page.shift + place
 
     return image
 

@@ -117,7 +117,7 @@ def _refuse_excess(drawn: Works, layout: Layout, site: int, art: Art) -> None:
     """Refuse art that is too large, or too much on so many tiles."""
     parts = [paths for paths in (drawn.engraved, drawn.scored, drawn.filled) if len(paths.start)]
     many = int(np.count_nonzero(layout.site == site)) * sum(len(paths.start) for paths in parts)
-    reach = max((float(np.abs(paths.bounds).max()) for paths in parts), default=0.0) * layout.design_units
+    reach = max((float(np.abs(paths.bounds).max()) for paths in parts), default=0.0) * layout.design.unit_mm
     if many > PIECES_MAX or reach > SHEET_MAX:
         far = reach > SHEET_MAX
         what = f"reaches {reach:.3g} mm from the design's origin" if far else f"has {many:,} lines on all tiles"
@@ -213,7 +213,7 @@ def _copies_of(drawn: Works, layout: Layout, site: int, shown: Bools) -> list[Wo
     copies = layout.copies
     result: list[Works] = []
     for tile in np.flatnonzero(layout.period.site == site).tolist():
-        factor, shift, conj = layout.motion_to_page(tile)
+        factor, shift, conj = layout.tiles.page.after(layout.period.motion[tile])
         image = drawn.moved(factor, shift, conj=conj)
         here = np.flatnonzero((copies.tile == tile) & shown)
         place = layout.copy_shifts[here]

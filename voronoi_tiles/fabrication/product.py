@@ -19,7 +19,7 @@ from voronoi_tiles.fabrication.engraving import Engraving, engrave
 from voronoi_tiles.fabrication.exact import design_recipe
 from voronoi_tiles.fabrication.inventory import Inventory, contour_pieces, cut_free
 from voronoi_tiles.fabrication.job import Job, JobError
-from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, Sheet
+from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, Sheet, lay_out
 from voronoi_tiles.fabrication.sheets import read_sheet
 from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_tiles
 from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
@@ -121,7 +121,7 @@ class _Plan:
         preset.require(form)
         curves = _curves(job, preset, form)
         fit, rest = curve_fit(job, curves, design.unit_mm)
-        layout = Layout(design, tessellation, job, read_sheet(job), fit, refit=curves != "polyline")
+        layout = lay_out(design, tessellation, job, read_sheet(job), fit, refit=curves != "polyline")
         return cls(form, preset, curves, rest, layout, colour_tiles(layout))
 
     def colours(self) -> list[tuple[int, str]]:
@@ -147,7 +147,7 @@ class _Plan:
         engraving = engrave(layout, contours, layout.sheet, shown, fills=preset.fill_engraving)
         layers = _layers(preset, self.form, job, cuts, engraving, _converter(self.curves, self.rest))
         drawing = _page(layers, layout.sheet, job, layout.design)
-        said = (*layout.dressing.losses, *engraving.notes, *_doubled(layout, job), *_untabbed(cuts, job))
+        said = (*layout.tiles.dressing.losses, *engraving.notes, *_doubled(layout, job), *_untabbed(cuts, job))
         notes = tuple(dict.fromkeys(said))
         return Product(self.form, drawing, pieces, colouring.count, notes, self.curves, job.accuracy)
 

@@ -1,0 +1,88 @@
+"""The tiles of a period as they are cut: where they lie on the page, with kerf and fillets applied."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.base.maps import Isometry
+from voronoi_tiles.fabrication.kerf import Dressing
+from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.paths.symmetric_fit import moved
+from voronoi_tiles.vector.complex.period import Period
+from voronoi_tiles.vector.copies import Placed
+from voronoi_tiles.vector.motions import Action, Motion, compose, inverse
+
+
+@dataclass(frozen=True, slots=True)
+class PageMap:
+    """What takes the design's plane to the page: z -> `factor` z + `shift`."""
+
+    action: Action
+    factor: complex
+    shift: complex
+
+    def moved(self, shift: complex) -> PageMap:
+        """The same, followed by a shift on the page."""
+        return replace(self, shift=self.shift + shift)
+
+    def after(self, motion: Motion) -> tuple[complex, complex, bool]:
+        """A motion of the design's plane followed by this: factor, shift, and whether z is conjugated first."""
+        unit, place, conj = self.action.isometry(motion)
+        return self.factor * unit, self.factor * place + self.shift, conj
+
+    def isometry(self, motion: Motion) -> Isometry:
+        """What a motion of the design's plane is on the page."""
+        unit, place, conj = self.action.isometry(motion)
+        factor = unit * (self.factor / self.factor.conjugate()) if conj else unit
+        base = self.shift.conjugate() if conj else self.shift
+        return Isometry(factor, self.factor * place + self.shift - factor * base, conj)
+
+
+@dataclass(frozen=True, eq=False)
+class DressedTiles:
+    """The rings of a period's tiles on the page, as they are cut; the tiles of one site are images of the first."""
+
+    period: Period
+    placed: Sequence[Placed]
+    page: PageMap
+    dressing: Dressing
+    _rings: dict[int, Paths] = field(default_factory=dict)
+
+    def moved(self, shift: complex) -> DressedTiles:
+        """The same elsewhere on the page."""
+        rings = {tile: rings.moved(1.0, shift) for tile, rings in self._rings.items()}
+        return replace(self, period=self.period.placed(1.0, shift), page=self.page.moved(shift), _rings=rings)
+
+    def rings(self, tile: int) -> Paths:
+        """The rings of a tile where it stands in the period. Raises JobError where it does not survive."""
+        if tile not in self._rings:
+            site = int(self.period.site[tile])
+            first = int(np.flatnonzero(self.period.site == site)[0])
+            here = self.period.motion[first]
+            if tile == first:
+                rings, items = self.period.own_outlines
+                own = rings.take(np.arange(items[tile], items[tile + 1]))
+                stabilizer = self.placed[site].stabilizer[1:]
+                symmetry = [
+                    self.page.isometry(compose(compose(here, element), inverse(here))) for element in stabilizer
+                ]
+                self._rings[tile] = self.dressing.tile(own, symmetry)
+            else:
+                image = self.page.isometry(compose(self.period.motion[tile], inverse(here)))
+                rings = moved(self.rings(first), image)
+                # The material stays on the left.
+                self._rings[tile] = rings.reversed() if image.conj else rings
+        return self._rings[tile]
+
+    def all_rings(self) -> list[Paths]:
+        """The rings of all tiles."""
+        return [self.rings(tile) for tile in range(len(self.period.site))]
+
+    def centres(self) -> Complexes:
+        """The middles of the tiles' boxes."""
+        boxes = np.array([rings.bounds for rings in self.all_rings()])
+        return np.asarray((boxes[:, 0] + boxes[:, 2]) / 2 + 1j * (boxes[:, 1] + boxes[:, 3]) / 2)
