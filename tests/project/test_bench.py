@@ -16,6 +16,7 @@ import pytest
 sys.path.append(str(Path(__file__).parents[2] / "bench"))
 
 import accuracy
+import against
 import cgal
 import engine
 import exact
@@ -196,6 +197,57 @@ def test_missing_cgal_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     assert not engine.has_cgal()
 
 
+# --- beside an older commit ------------------------------------------------------------------------------------
+
+
+class Fake(against.Checkout):
+    """A checkout that is not installed: it writes a document for each design, with its own text in one of them."""
+
+    def python(self, *arguments: str) -> bytes:
+        """The names of two groups."""
+        assert arguments[0] == "-c"
+        return b"p1 p4\n"
+
+    def command(self, *arguments: str) -> float:
+        """A starter, or the outline documents."""
+        target = Path(arguments[-1])
+        if arguments[0] == "new":
+            target.write_text(f"group = {arguments[1]}")
+        else:
+            for design in map(Path, arguments[1 : arguments.index("--format")]):
+                text = self.environment.name if design.stem == "fish" else "same"
+                (target / f"{design.stem}.json").write_text(text)
+        return 0.5
+
+
+def test_documents_that_differ_are_named(tmp_path: Path) -> None:
+    """Of the examples, the paper's and the starters, the one that differs; none where all are the same."""
+    for name in ("examples/fish.toml", "examples/hook.toml", "examples/paper/line.toml"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("")
+    old, new = Fake(tmp_path, Path("old")), Fake(tmp_path, Path("new"))
+    (tmp_path / "files").mkdir()
+    assert against.differing(old, new, tmp_path / "files") == (5, ["fish.json"])
+    (tmp_path / "again").mkdir()
+    (tmp_path / "examples/fish.toml").unlink()
+    assert against.differing(old, new, tmp_path / "again") == (4, [])
+
+
+def test_the_older_commit_is_timed_in_turns() -> None:
+    """Each gets its rounds, first one and then the other first, and the medians are told apart."""
+    order = []
+
+    class Timed(Fake):
+        def cost(self, task: against.Task) -> float:
+            assert task.name == "a"
+            order.append(self.environment.name)
+            return float(len(order)) if self.environment.name == "old" else 0.25
+
+    old, new = Timed(Path(), Path("old")), Timed(Path(), Path("new"))
+    assert against.timed(against.Task("a", ()), old, new, 3) == (3.0, 0.25)
+    assert order == ["new", "old", "old", "new", "new", "old"]
+
+
 # --- the report ----------------------------------------------------------------------------------------------
 
 
@@ -217,5 +269,5 @@ def test_tables_go_between_their_marks(
 def test_report_has_all_marks() -> None:
     """Every script of `make bench` has its place in the report."""
     text = report.REPORT.read_text(encoding="utf-8")
-    for name in ("engine", "accuracy", "raster", "sheets"):
+    for name in ("engine", "accuracy", "raster", "sheets", "against"):
         assert text.count(f"<!-- {name} -->") == text.count(f"<!-- end of {name} -->") == 1
