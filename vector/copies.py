@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Ints
 from voronoi_tiles.base.maps import move
+from voronoi_tiles.base.neighbours import Neighbours
 from voronoi_tiles.base.tolerance import SAME_POINT
 from voronoi_tiles.groups.wallpaper import Lattice
 from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, modulo_lattice
@@ -102,15 +103,11 @@ def _stabilizer(action: Action, nodes: Complexes, segments: Ints) -> tuple[Motio
 
 def _maps_onto_itself(images: Complexes, nodes: Complexes, segments: Ints, close: float) -> bool:
     """Tell whether nodes moved to `images` are the same nodes, joined by the same segments."""
-    from scipy.spatial import cKDTree
-
-    distance, partner = cKDTree(np.stack((nodes.real, nodes.imag), axis=1)).query(
-        np.stack((images.real, images.imag), axis=1)
-    )
+    distance, partner = Neighbours(nodes).nearest(images)
     if distance.max() > close:
         return False
     pairs = np.sort(segments, axis=1)
-    moved = np.sort(partner[segments], axis=1)
+    moved = np.sort(partner[:, 0][segments], axis=1)
     return bool(np.array_equal(np.unique(pairs, axis=0), np.unique(moved, axis=0)))
 
 

@@ -17,6 +17,7 @@ import numpy as np
 import numpy.typing as npt
 
 from voronoi_tiles.base.arrays import Complexes, Floats, Ints
+from voronoi_tiles.base.components import components
 from voronoi_tiles.base.errors import ProofError
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.base.tolerance import PROOF_LIMIT
@@ -295,12 +296,7 @@ def _strayed(tile: LocalTile, size: float) -> int:
 
     nodes = tile.nodes
     if len(nodes) > _FEW:
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
-
-        shape = (len(nodes), len(nodes))
-        joined = coo_array((np.ones(len(tile.segments)), tuple(tile.segments.T)), shape=shape)
-        nodes = nodes[np.unique(connected_components(joined, directed=False)[1], return_index=True)[1]]
+        nodes = nodes[np.unique(components(len(nodes), *tile.segments.T))]
     outside = np.array([node for node in nodes.tolist() if winding_number(tile.outline, node) != 1], complex)
     if not len(outside):
         return 0

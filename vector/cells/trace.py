@@ -7,12 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Ints
+from voronoi_tiles.base.neighbours import Neighbours
 from voronoi_tiles.vector.cells.cells import Parts
 from voronoi_tiles.vector.cells.half_edges import Contour
 from voronoi_tiles.vector.cells.pencils import Rows
-
-# Up to this many loose ends the matrix of their distances is quicker than a tree.
-_DENSE = 256
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,21 +125,12 @@ def _match(ends: Complexes, starts: Complexes) -> Ints:
     partner = np.full(len(ends), -1)
     left, right = np.arange(len(ends)), np.arange(len(starts))
     while len(left):
-        there, back = _nearest(ends[left], starts[right]), _nearest(starts[right], ends[left])
+        there = Neighbours(starts[right]).nearest(ends[left])[1][:, 0]
+        back = Neighbours(ends[left]).nearest(starts[right])[1][:, 0]
         mutual = np.flatnonzero(back[there] == np.arange(len(left)))
         partner[left[mutual]] = right[there[mutual]]
         left, right = np.delete(left, mutual), np.delete(right, there[mutual])
     return partner
-
-
-def _nearest(points: Complexes, among: Complexes) -> Ints:
-    """Return for each point the index of the nearest of the others."""
-    if len(points) <= _DENSE:
-        return np.asarray(np.abs(points[:, None] - among).argmin(axis=1))
-    from scipy.spatial import cKDTree
-
-    tree = cKDTree(np.stack((among.real, among.imag), axis=1))
-    return np.asarray(tree.query(np.stack((points.real, points.imag), axis=1))[1])
 
 
 def _without_null(part: Ints, vertex: Complexes, ring: Ints, null: float) -> Boundary:

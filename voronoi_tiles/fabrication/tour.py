@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.neighbours import Neighbours
 
 _NEAR = 10
 """Neighbours of each end that are looked up at once."""
@@ -38,22 +39,19 @@ def short_tour(start: Complexes, end: Complexes) -> tuple[Ints, Bools]:
 
 def nearest_first(start: Complexes, end: Complexes) -> tuple[Ints, Bools]:
     """Always take the nearest end of the strokes that are left."""
-    from scipy.spatial import cKDTree
-
     count = len(start)
     if not count:
         return np.zeros(0, np.intp), np.zeros(0, np.bool_)
     ends = np.concatenate((start, end))
-    points = np.column_stack((ends.real, ends.imag))
     closed = start == end
-    corner = (points - points.min(axis=0)).sum(axis=1)
+    corner = ends.real + ends.imag
     left = np.ones(count, np.bool_)
     order = np.empty(count, np.intp)
     turned = np.zeros(count, np.bool_)
     choice = int(corner.argmin())
     members = np.flatnonzero(np.concatenate((left, left & ~closed)))
-    tree = cKDTree(points[members])
-    near = _neighbours(tree, points, members)
+    tree = Neighbours(ends[members])
+    near = members[tree.nearest(ends, min(_NEAR, len(members)))[1]]
     for step in range(count):
         stroke = choice % count
         order[step], turned[step] = stroke, choice >= count
@@ -66,25 +64,18 @@ def nearest_first(start: Complexes, end: Complexes) -> tuple[Ints, Bools]:
             # All near ones are taken: look farther, in a tree that is made anew when half of it is gone.
             if 2 * (count - step) < len(members) // 2:
                 members = np.flatnonzero(np.concatenate((left, left & ~closed)))
-                tree = cKDTree(points[members])
-            choice = _nearest_left(tree, members, points[here], left)
+                tree = Neighbours(ends[members])
+            choice = _nearest_left(tree, members, ends[here], left)
     return order, turned
 
 
-def _neighbours(tree: object, points: np.ndarray[tuple[int, int], np.dtype[np.float64]], members: Ints) -> Ints:
-    """The nearest ends of each end, its own among them."""
-    number = min(_NEAR, len(members))
-    _, near = tree.query(points, k=number)  # type: ignore[attr-defined]
-    return np.asarray(members[near.reshape(len(points), number)], np.intp)
-
-
-def _nearest_left(tree: object, members: Ints, place: object, left: Bools) -> int:
+def _nearest_left(tree: Neighbours, members: Ints, place: complex, left: Bools) -> int:
     """The nearest end of a stroke that is left."""
     number = 4 * _NEAR
     while True:
         number = min(number, len(members))
-        _, near = tree.query(place, k=number)  # type: ignore[attr-defined]
-        for k in members[np.atleast_1d(near)].tolist():
+        _, near = tree.nearest(np.array([place]), number)
+        for k in members[near[0]].tolist():
             if left[k % len(left)]:
                 return int(k)
         number *= 4
@@ -110,8 +101,6 @@ def _untangled(start: Complexes, end: Complexes, order: Ints, turned: Bools) -> 
 
 def _shorter(entry: Complexes, leave: Complexes, way: Floats) -> tuple[Ints, Ints, Floats]:
     """The stretches whose reversal shortens the tour, the best first: those after the stroke i, up to the stroke j."""
-    from scipy.spatial import cKDTree
-
     count = len(entry)
     if count < 3:
         none = np.zeros(0, np.intp)
@@ -119,8 +108,7 @@ def _shorter(entry: Complexes, leave: Complexes, way: Floats) -> tuple[Ints, Int
     pairs = []
     # Reversed, the stretch is reached from i at the end of j, and left for j + 1 at the beginning of i + 1.
     for points, back in ((leave, 0), (entry, 1)):
-        places = np.column_stack((points.real, points.imag))
-        near = cKDTree(places).query(places, k=min(_CLOSE, count))[1]
+        near = Neighbours(points).nearest(points, min(_CLOSE, count))[1]
         one = np.repeat(np.arange(count), near.shape[1]) - back
         two = near.ravel() - back
         low, high = np.minimum(one, two), np.maximum(one, two)

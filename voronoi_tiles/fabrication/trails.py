@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Ints
+from voronoi_tiles.base.neighbours import Neighbours
 from voronoi_tiles.paths.paths import Paths
 
 _NEAR = 8
@@ -64,16 +65,14 @@ def travel(paths: Paths) -> float:
 
 def _ways(first: Ints, last: Ints, place: Complexes) -> tuple[Ints, Ints]:
     """Join the vertices with an odd number of ends in pairs, near ones first."""
-    from scipy.spatial import cKDTree
-
     degree = np.bincount(np.concatenate((first, last)), minlength=len(place))
     loose = np.flatnonzero(degree % 2)
     one: list[Ints] = []
     two: list[Ints] = []
     while len(loose):
-        points = np.column_stack((place[loose].real, place[loose].imag))
+        points = place[loose]
         near = min(_NEAR, len(loose) - 1)
-        distance, other = cKDTree(points).query(points, k=near + 1)
+        distance, other = Neighbours(points).nearest(points, near + 1)
         mine = np.repeat(np.arange(len(loose)), near + 1)
         gap, theirs = distance.ravel(), other.ravel()
         pairs = np.flatnonzero(mine < theirs)

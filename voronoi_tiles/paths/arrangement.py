@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.components import components
 from voronoi_tiles.paths.intersections import crossings
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.paths.segments import Circles, candidate_pairs, chord_share, from_chord_share, point_at, tangent_at
@@ -74,19 +75,11 @@ def arrangement(paths: Paths, tail: Ints, head: Ints, nodes: Complexes, toleranc
 
 def merged(places: Complexes, tolerance: float) -> Ints:
     """For each place the first of those that are one with it: within `tolerance`, or by a chain of such."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
+    import shapely
 
-    n = len(places)
-    pairs = cKDTree(np.stack((places.real, places.imag), axis=1)).query_pairs(tolerance, output_type="ndarray")
-    if not len(pairs):
-        return np.arange(n)
-    graph = coo_array((np.ones(len(pairs), np.int8), tuple(pairs.T)), shape=(n, n))
-    count, label = connected_components(graph, directed=False)
-    least = np.full(count, n)
-    np.minimum.at(least, label, np.arange(n))
-    return np.asarray(least[label], np.intp)
+    points = shapely.points(places.real, places.imag)
+    near = shapely.STRtree(points).query(points, predicate="dwithin", distance=tolerance)
+    return components(len(places), near[0], near[1])
 
 
 def _at_common_node(

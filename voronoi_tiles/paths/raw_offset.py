@@ -8,6 +8,7 @@ from typing import Final, Literal
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.components import components
 from voronoi_tiles.paths.paths import ARC, LINE, Kinds, Paths
 from voronoi_tiles.paths.segments import Circles, point_at, tangent_at
 
@@ -75,8 +76,8 @@ def raw_offset(
     opening = (angle * distance > 0) & ~smooth
 
     nodes = np.stack((begin, end), axis=1).ravel()
-    joints = [(2 * pieces[point], 2 * pieces[point] + 1), (2 * pieces[smooth] + 1, 2 * following[smooth])]
-    name = _united(2 * n, joints)
+    one = np.concatenate((2 * pieces[point], 2 * pieces[smooth] + 1))
+    name = components(2 * n, one, np.concatenate((2 * pieces[point] + 1, 2 * following[smooth])))
     nodes = _means(nodes, name)[name]
     rounded, mitres = _corner_kinds(opening, angle, plain, join, mitre_limit)
     kept = pieces[present]
@@ -144,19 +145,6 @@ def _open(start: Complexes, end: Complexes, middle: Complexes, kind: Kinds) -> P
 
 def _line(start: Complexes, end: Complexes) -> Paths:
     return _open(start, end, np.zeros(len(start), np.complex128), np.full(len(start), LINE, np.uint8))
-
-
-def _united(count: int, joints: list[tuple[Ints, Ints]]) -> Ints:
-    """The least of the nodes that are one with each node."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    i, j = (np.concatenate(side) for side in zip(*joints, strict=True))
-    graph = coo_array((np.ones(len(i), np.int8), (i, j)), shape=(count, count))
-    _, label = connected_components(graph, directed=False)
-    least = np.full(label.max() + 1, count)
-    np.minimum.at(least, label, np.arange(count))
-    return np.asarray(least[label], np.intp)
 
 
 def _means(values: Complexes, name: Ints) -> Complexes:
