@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.vector.complex.period import Period
 
@@ -30,7 +30,11 @@ _FARTHEST: Final = 64.0
 _COARSE: Final = 0.02
 """How far the contours by which stretches are chosen may lie from the true ones; a share of the gap."""
 
-_BISECTIONS: Final = 40
+_BISECTIONS: Final = 20
+"""Halvings of the last step of a stretch, a tenth of it: they leave a ten millionth."""
+
+_AT_ONCE: Final = 64
+"""Stretches that are tried at once; a count. Those after the first that will do are tried in vain."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,11 +43,6 @@ class Stretch:
 
     p: float
     q: complex
-
-    @classmethod
-    def along(cls, direction: float, along: float, across: float) -> Stretch:
-        """Stretch by 1 + `along` in a direction (radians), and by 1 + `across` at right angles to it."""
-        return cls(1.0 + (along + across) / 2, (along - across) / 2 * complex(np.exp(2j * direction)))
 
     def __call__(self, z: Complexes) -> Complexes:
         """The images of points."""
@@ -73,84 +72,117 @@ def spread(contours: Sequence[Paths], centres: Complexes, basis: Complexes, gap:
     `contours` are those of the tiles of one period, as LINE pieces, `centres` the points that are stretched, `basis`
     the lattice vectors. Every copy moves as a whole. Tiles that are hooked into each other come apart sooner in one
     direction than in another: stretches in twelve directions, with five ratios of the stretch across to that along,
-    are tried, each with the least size that parts all tiles, in steps of a tenth. Raises ValueError for tiles that
-    none of them parts: those in a hole of another.
+    are tried in sizes that grow by a tenth, those that take least room first; the first that parts all tiles is then
+    made as small as it can be. Raises ValueError for tiles that none of them parts: those in a hole of another.
     """
     import shapely
 
     shapes = np.array([_shape(contour) for contour in contours])
-    if _Neighbourhood(shapes, centres, basis, gap).clear(UNSTRETCHED):
+    fine = _Neighbourhood(shapes, centres, basis, gap)
+    if (fine.at_rest >= gap).all():
         return UNSTRETCHED
+    p, q = _tried(_FIRST * gap / float(np.abs(fine.apart).max()))
     coarse = _Neighbourhood(shapely.simplify(shapes, _COARSE * gap), centres, basis, gap)
-    best: tuple[float, float, float, float] | None = None
-    for ratio in _RATIOS:
-        for direction in np.pi * np.arange(_DIRECTIONS if ratio < 1.0 else 1) / _DIRECTIONS:
-            size = coarse.least(float(direction), ratio, np.inf if best is None else best[0])
-            if size is not None:
-                best = ((1 + size) * (1 + ratio * size), float(direction), ratio, size)
+    best = coarse.first_clear(p, q)
     if best is None:
         raise ValueError("a tile lies within another, and cannot be pulled out")
-    _, direction, ratio, size = best
-    return _Neighbourhood(shapes, centres, basis, gap).fitted(direction, ratio, size)
+    return fine.fitted(float(p[best]), complex(q[best]))
+
+
+def _tried(first: float) -> tuple[Floats, Complexes]:
+    """The p and q of the stretches that are tried, those that take least room first; `first` is the least size."""
+    sizes = first * _GROWTH ** np.arange(int(np.log(_FARTHEST / first) / np.log(_GROWTH)) + 1)
+    # The same stretch along and across has no direction.
+    kinds = [(np.pi * k / _DIRECTIONS, r) for r in _RATIOS for k in range(_DIRECTIONS if r < 1.0 else 1)]
+    direction, ratio = np.repeat(np.array(kinds), len(sizes), axis=0).T
+    along = np.tile(sizes, len(kinds))
+    order = np.argsort((1 + along) * (1 + ratio * along), kind="stable")
+    p = 1 + (1 + ratio) * along / 2
+    q = (1 - ratio) * along / 2 * np.exp(2j * direction)
+    return p[order], q[order]
 
 
 class _Neighbourhood:
-    """The tiles of a layout that is stretched: which of them are nearer than the gap."""
+    """Pairs of tiles of a layout that is stretched: which of them are nearer than the gap.
+
+    The first of pair k is the shape `one[k]`, the second the shape `two[k]` moved by the lattice vector `step[k]`;
+    then its centre is `apart[k]` from the first one's, and the two are `at_rest[k]` apart, infinite where it is more
+    than the gap.
+    """
 
     def __init__(self, shapes: Any, centres: Complexes, basis: Complexes, gap: float) -> None:
+        import shapely
+
+        shapely.prepare(shapes)
         self.shapes = shapes
         self.gap = gap
-        self.boxes = np.array([shape.bounds for shape in shapes])
+        self.boxes = np.asarray(shapely.bounds(shapes), np.float64)
         across = np.hypot(self.boxes[:, 2] - self.boxes[:, 0], self.boxes[:, 3] - self.boxes[:, 1])
-        self.extent = float(across.max())
-        pairs = _pairs(self.boxes, basis, 2 * self.extent + gap)
-        self.one = np.array([one for one, _, _ in pairs])
-        self.two = np.array([two for _, two, _ in pairs])
-        self.step = np.array([step for _, _, step in pairs])
+        self.one, self.two, self.step = _pairs(self.boxes, basis, 2 * float(across.max()) + gap)
         self.apart = centres[self.two] + self.step - centres[self.one]
-        self.last = 0
+        self.at_rest = np.full(len(self.one), np.inf)
+        for k in np.flatnonzero(self._near(self.step)).tolist():
+            self.at_rest[k] = shapely.distance(shapes[self.one[k]], *_moved(shapes[self.two[k]], self.step[k : k + 1]))
+        self.failures = np.zeros(len(self.one), np.intp)
 
-    def clear(self, stretch: Stretch) -> bool:
-        """Whether all contours are the gap apart."""
+    def first_clear(self, p: Floats, q: Complexes) -> int | None:
+        """The first of some stretches that parts all pairs; None where none does."""
+        # What is nearer than the gap has to move by what is missing, whatever the direction.
+        close = np.flatnonzero(self.at_rest < self.gap)
+        enough = np.abs(_moves(p, q, self.apart[close])) >= self.gap - self.at_rest[close]
+        likely = np.flatnonzero(enough.all(axis=1))
+        for first in range(0, len(likely), _AT_ONCE):
+            some = likely[first : first + _AT_ONCE]
+            clear = np.flatnonzero(self.clear(p[some], q[some]))
+            if len(clear):
+                return int(some[clear[0]])
+        return None
+
+    def fitted(self, p: float, q: complex) -> Stretch:
+        """The least stretch of a kind that parts all pairs, near one that nearly does."""
+
+        def clear(part: float) -> bool:
+            """Whether one that moves everything by so much of it does."""
+            return bool(self.clear(np.array([1 + part * (p - 1)]), np.array([part * q]))[0])
+
+        high = 1.0
+        while not clear(high):
+            high *= 1 + (_GROWTH - 1) / 10
+        low = 1 / _GROWTH
+        for _ in range(_BISECTIONS):
+            middle = (low + high) / 2
+            low, high = (low, middle) if clear(middle) else (middle, high)
+        return Stretch(1 + high * (p - 1), high * q)
+
+    def clear(self, p: Floats, q: Complexes) -> Bools:
+        """Which of some stretches leave all pairs the gap apart."""
         import shapely
-        import shapely.affinity
 
-        shift = self.step + stretch(self.apart) - self.apart
+        shift = self.step + _moves(p, q, self.apart)
+        near = self._near(shift)
+        clear = np.ones(len(shift), np.bool_)
+        pairs = np.flatnonzero(near.any(axis=0))
+        # What was too near most often is likely to be so again.
+        for k in pairs[np.argsort(-self.failures[pairs], kind="stable")].tolist():
+            left = np.flatnonzero(clear & near[:, k])
+            if len(left):
+                moved = _moved(self.shapes[self.two[k]], shift[left, k])
+                close = shapely.dwithin(self.shapes[self.one[k]], moved, self.gap)
+                clear[left[close]] = False
+                self.failures[k] += np.count_nonzero(close)
+        return clear
+
+    def _near(self, shift: Complexes) -> Bools:
+        """Whether the boxes of pairs come within the gap, the second tiles moved by their `shift`."""
         here, there = self.boxes[self.one], self.boxes[self.two]
         x, y = shift.real, shift.imag
         free = np.maximum(there[:, 0] + x - here[:, 2], here[:, 0] - there[:, 2] - x)
-        free = np.maximum(free, np.maximum(there[:, 1] + y - here[:, 3], here[:, 1] - there[:, 3] - y))
-        near = np.flatnonzero(free < self.gap).tolist()
-        # What was too near last time is likely to be so again.
-        for k in sorted(near, key=lambda k: k != self.last):
-            moved = shapely.affinity.translate(self.shapes[self.two[k]], x[k], y[k])
-            if shapely.distance(self.shapes[self.one[k]], moved) < self.gap:
-                self.last = k
-                return False
-        return True
+        return np.maximum(free, np.maximum(there[:, 1] + y - here[:, 3], here[:, 1] - there[:, 3] - y)) < self.gap
 
-    def least(self, direction: float, ratio: float, room: float) -> float | None:
-        """The first size of a stretch, in steps, that parts all tiles in less than this room; None for none."""
-        size = _FIRST * self.gap / float(np.abs(self.apart).max())
-        while size < _FARTHEST and (1 + size) * (1 + ratio * size) < room:
-            if self.clear(Stretch.along(direction, size, ratio * size)):
-                return size
-            size *= _GROWTH
-        return None
 
-    def fitted(self, direction: float, ratio: float, size: float) -> Stretch:
-        """The least stretch of a kind that parts all tiles, near a size that nearly does."""
-        high = size
-        while not self.clear(Stretch.along(direction, high, ratio * high)):
-            high *= 1 + (_GROWTH - 1) / 10
-        low = size / _GROWTH
-        for _ in range(_BISECTIONS):
-            middle = (low + high) / 2
-            if self.clear(Stretch.along(direction, middle, ratio * middle)):
-                high = middle
-            else:
-                low = middle
-        return Stretch.along(direction, high, ratio * high)
+def _moves(p: Floats, q: Complexes, points: Complexes) -> Complexes:
+    """How far each of n stretches moves each of m points, (n, m)."""
+    return np.asarray((p - 1)[:, None] * points + q[:, None] * points.conj())
 
 
 def pulled_apart(period: Period, centres: Complexes, about: complex, stretch: Stretch) -> Period:
@@ -194,24 +226,25 @@ def _shape(contour: Paths) -> Any:
     return shapely.build_area(shapely.GeometryCollection(rings)) if len(rings) > 1 else shapely.Polygon(rings[0])
 
 
-def _pairs(
-    boxes: np.ndarray[tuple[int, int], np.dtype[np.float64]], basis: Complexes, reach: float
-) -> list[tuple[int, int, complex]]:
-    """The pairs of tiles, the second one moved by a lattice vector, whose boxes come within a reach."""
+def _moved(shape: Any, shifts: Complexes) -> Any:
+    """The images of a shape, each moved by another vector."""
+    import shapely
+
+    places = shapely.get_coordinates(shape) + np.column_stack((shifts.real, shifts.imag))[:, None]
+    return shapely.set_coordinates(np.full(len(shifts), shape), places.reshape(-1, 2))
+
+
+def _pairs(boxes: Floats, basis: Complexes, reach: float) -> tuple[Ints, Ints, Complexes]:
+    """The pairs of tiles, the second one moved by a lattice vector, whose boxes come within a reach; each pair once."""
     a, b = basis.tolist()
     det = abs(a.real * b.imag - a.imag * b.real)
     across = float(np.hypot(boxes[:, 2].max() - boxes[:, 0].min(), boxes[:, 3].max() - boxes[:, 1].min())) + reach
     n, m = int(np.ceil(across * abs(b) / det)), int(np.ceil(across * abs(a) / det))
-    found = []
-    for one in range(len(boxes)):
-        for two in range(len(boxes)):
-            for i in range(-n, n + 1):
-                for j in range(-m, m + 1):
-                    if (one, 0, 0) >= (two, i, j):  # each pair once, none with itself
-                        continue
-                    step = i * a + j * b
-                    x0, y0, x1, y1 = boxes[two] + np.array([step.real, step.imag, step.real, step.imag])
-                    a0, b0, a1, b1 = boxes[one]
-                    if max(x0 - a1, a0 - x1, y0 - b1, b0 - y1) <= reach:
-                        found.append((one, two, step))
-    return found
+    tiles = np.arange(len(boxes))
+    one, two, i, j = (k.ravel() for k in np.meshgrid(tiles, tiles, np.arange(-n, n + 1), np.arange(-m, m + 1)))
+    once = (two > one) | ((two == one) & ((i > 0) | ((i == 0) & (j > 0))))
+    one, two, step = one[once], two[once], (i * a + j * b)[once]
+    low, high = boxes[two, :2] - boxes[one, 2:], boxes[one, :2] - boxes[two, 2:]
+    shift = np.column_stack((step.real, step.imag))
+    near = np.maximum(low + shift, high - shift).max(axis=1) <= reach
+    return one[near], two[near], step[near]
