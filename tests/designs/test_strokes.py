@@ -116,7 +116,7 @@ def test_many_pieces_at_once_give_what_each_gives_alone() -> None:
 
 def test_straight_pieces_stay_whole() -> None:
     """Lines are one chord, also where the curve runs unevenly along them."""
-    even = strokes.line_pieces(np.array([0, 3 + 1j, 7 + 2j]))
+    even = strokes.path_pieces("M0 0L3 1L7 2", 1.0)
     assert chained(even, 1e-9).tolist() == [0, 3 + 1j, 7 + 2j]
     uneven = np.array([[0, 1, 2, 16]], dtype=complex)
     assert chained(uneven, 1e-9).tolist() == [0, 16]

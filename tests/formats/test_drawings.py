@@ -231,7 +231,7 @@ def test_hostile_svg_gives_one_message(name: str) -> None:
 
 def test_broken_path_data_is_named_with_its_place() -> None:
     """The line in the file and the character in the data."""
-    with pytest.raises(DrawingError, match=r"t\.svg, line 3, d: broken path data: .* at character 9"):
+    with pytest.raises(DrawingError, match=r"t\.svg, line 3, d: broken SVG path data: .* at character 9"):
         svg("\n\n<path d='M0 0 L 1'/>")
     for data in ("M0 0 L1 1,", "L1 1", "M0 0 A1 1 0 2 0 1 1", "M0 0 Z 1", "M0 0 L 1 2 3", "M0 0 X"):
         with pytest.raises(DrawingError):

@@ -1,6 +1,11 @@
-"""Texts of others, made safe to show."""
+"""Texts of others: how numbers are written in them, and how they are made safe to show."""
 
 from __future__ import annotations
+
+from typing import Final
+
+NUMBER: Final = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
+"""A decimal number, as a regular expression without groups."""
 
 
 def printable(text: str) -> str:

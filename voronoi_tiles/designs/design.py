@@ -25,8 +25,7 @@ from voronoi_tiles.base.units import UNIT_MM, Units
 from voronoi_tiles.designs import schema
 from voronoi_tiles.designs.load import STARTER, parse, read_text
 from voronoi_tiles.designs.site import Site, build_site
-from voronoi_tiles.designs.strokes import polylines
-from voronoi_tiles.designs.svgpath import ARC_SHARE
+from voronoi_tiles.designs.strokes import ARC_SHARE, polylines
 from voronoi_tiles.groups.wallpaper import GROUPS, Lattice, WallpaperGroup
 
 if TYPE_CHECKING:

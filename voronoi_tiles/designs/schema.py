@@ -17,7 +17,6 @@ from voronoi_tiles.base.maps import Placement
 from voronoi_tiles.base.tolerance import COORDINATE_MAX
 from voronoi_tiles.base.values import Table, number, positive, required, sequence, shown, table, within
 from voronoi_tiles.designs import strokes as curves
-from voronoi_tiles.designs.svgpath import path_pieces
 
 
 def point(value: object) -> complex:
@@ -137,7 +136,7 @@ def _path(stroke: _StrokeKind) -> Complexes:
     with within("path"):
         if not isinstance(data, str):
             raise DesignError(f"must be a text, not {shown(data)}", remedy='Write path = "M 1 1 L 5 3".')
-        return stroke.placement(path_pieces(data, stroke.accuracy / abs(stroke.placement.scale)))
+        return stroke.placement(curves.path_pieces(data, stroke.accuracy / abs(stroke.placement.scale)))
 
 
 # kind: (reader, the keys it takes beside its own and the placement, whether it gives cubic pieces, not a polyline)

@@ -18,12 +18,15 @@ from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import unit_at
 from voronoi_tiles.base.tolerance import PIECES_MAX
+from voronoi_tiles.formats.pen import PathPen
+from voronoi_tiles.formats.shapes import DrawingError
+from voronoi_tiles.formats.svg.pathdata import draw_path
+from voronoi_tiles.paths.paths import LINE, QUAD, halves
 
+ARC_SHARE = 1e-3
+"""The share of the accuracy that the step from an elliptical arc to cubics may use."""
 
-def line_pieces(points: Complexes) -> Complexes:
-    """A polyline as straight cubic pieces (p, p, q, q), shape (n - 1, 4)."""
-    start, end = points[:-1], points[1:]
-    return np.stack([start, start, end, end], axis=1)
+_PATH_REMEDY = 'Write SVG path data such as "M 1 1 C 2 3 4 3 5 1"'
 
 
 def bezier_pieces(points: Complexes) -> Complexes:
@@ -111,6 +114,34 @@ def bspline_pieces(points: Complexes, closed: bool = False) -> Complexes:
         raise _zero_length("bspline", "all points are the same")
     kept: Complexes = pieces[moving]
     return kept
+
+
+def path_pieces(data: str, accuracy: float) -> Complexes:
+    """The drawn pieces of SVG path data, in drawing order: shape (k, 4).
+
+    Coordinates are taken as they are: y runs up, as everywhere in a design file, so that data copied from an SVG file
+    show their mirror image. Straight pieces have their inner control points on their ends (p, p, q, q); quadratic
+    curves are raised exactly; elliptical arcs are replaced by cubics within ARC_SHARE * `accuracy` of them. Raises
+    DesignError, naming the character, where the data break the grammar, and where nothing is drawn.
+    """
+    pen = PathPen(ARC_SHARE * accuracy)
+    try:
+        draw_path(pen, data, remedy=f"{_PATH_REMEDY}.")
+    except DrawingError as error:
+        raise DesignError(error.message, remedy=error.remedy) from None
+    curves = pen.curves()
+    if not len(curves.kind):
+        raise DesignError(
+            "the path draws nothing", remedy=f"{_PATH_REMEDY}; an isolated point is a stroke {{ point = [x, y] }}."
+        )
+    straight, bent = curves.kind == LINE, curves.kind == QUAD
+    inner = []
+    for point, control in zip((curves.start, curves.end), curves.control, strict=True):
+        sums = point + 2.0 * curves.control[0]
+        # Part by part: a complex quotient is rounded twice.
+        raised = (sums.view(np.float64) / 3.0).view(np.complex128)
+        inner.append(np.where(straight, point, np.where(bent, raised, control)))
+    return np.stack((curves.start, *inner, curves.end), axis=1)
 
 
 def circle_polyline(center: complex, radius: float, accuracy: float) -> Complexes:
@@ -215,25 +246,13 @@ def flatten(pieces: Complexes, accuracy: float) -> tuple[Complexes, NDArray[np.i
         count += len(leaves[-1])
         if count + 2 * len(pieces) > PIECES_MAX or width < 2.0**-50:
             raise _too_fine(accuracy)
-        pieces = _bisect(pieces)
+        pieces = halves(pieces.T).reshape(4, -1).T  # all first halves, then all second ones
         width /= 2.0
         owner = np.concatenate([owner, owner])
         place = np.concatenate([place, place + width])
     owner = np.concatenate(owners)
     order = np.lexsort((np.concatenate(places), owner))
     return np.concatenate(leaves)[order], np.bincount(owner, minlength=total)
-
-
-def _bisect(pieces: Complexes) -> Complexes:
-    """The two halves of every piece: all first halves, then all second halves."""
-    p0, p1, p2, p3 = pieces.T
-    a, b, c = (p0 + p1) * 0.5, (p1 + p2) * 0.5, (p2 + p3) * 0.5
-    ab, bc = (a + b) * 0.5, (b + c) * 0.5
-    middle = (ab + bc) * 0.5
-    halves = np.stack(
-        [np.concatenate([p0, middle]), np.concatenate([a, bc]), np.concatenate([ab, c]), np.concatenate([middle, p3])]
-    )
-    return halves.T
 
 
 def _is_flat(pieces: Complexes, accuracy: float) -> NDArray[np.bool_]:

@@ -1,185 +1,228 @@
-"""Collects the pieces of many shapes, as they are read, and gives them as Paths, all mapped at once."""
+"""Pens: they collect the curves of paths as they are read, and give them as arrays, all at once."""
 
 from __future__ import annotations
 
-import cmath
 import math
 from array import array
-from typing import Final
+from itertools import pairwise
+from typing import Final, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
 from voronoi_tiles.base.maps import Affine
 from voronoi_tiles.base.tolerance import COORDINATE_MAX
 from voronoi_tiles.formats.shapes import CURVE_ACCURACY, PIECES_MAX, DrawingError
-from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
+from voronoi_tiles.paths.ellipses import EllipticalArc
+from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Kinds, Paths
+
+MOVE: Final = 4
+CLOSE: Final = 5
+"""What begins and what closes a path, beside the kinds of its curves."""
+
+POINTS: Final = np.zeros(6, np.intp)
+POINTS[[LINE, QUAD, CUBIC, ARC, MOVE, CLOSE]] = [1, 2, 3, 2, 1, 0]
+"""The points that each of them has after its beginning: control points, of an ARC its middle, and the end."""
 
 _TINY: Final = 1e-100
 """Coordinates that are smaller are 0, so that squares and quotients of lengths stay numbers; millimetres."""
 
 
-class Pen:
-    """Draws shapes: `begin` with the map of its coordinates, then lines and curves; `shapes` gives them all.
+class DrawnCurves(NamedTuple):
+    """DrawnCurves as they were drawn, those of a path one after the other.
 
-    Pieces are given in the shape's own coordinates. Pieces of no length are left out; an arc's or curve's end that
-    is its beginning is none. Raises DrawingError when there are more than PIECES_MAX pieces or when numbers are beyond
-    COORDINATE_MAX.
+    `start` and `end` are complex128 (n,), `control` (2, n), its rows the end where a curve has no such point; `kind`
+    (uint8, n) is that of Paths. `path` (intp, n) is the number of each curve's path, and `closed` (bool, paths) tells
+    which paths return to their beginning. A path may have no curve.
+    """
+
+    start: Complexes
+    end: Complexes
+    control: Complexes
+    kind: Kinds
+    path: Ints
+    closed: Bools
+
+    def take(self, which: Bools) -> DrawnCurves:
+        """Some of the curves."""
+        return self._replace(
+            start=self.start[which],
+            end=self.end[which],
+            control=self.control[:, which],
+            kind=self.kind[which],
+            path=self.path[which],
+        )
+
+
+class PathPen:
+    """Draws paths in coordinates of their own, the first one from 0 on; arcs of ellipses as cubics within `accuracy`.
+
+    After a path is closed, the next one begins where it did. Raises DrawingError when there are more than PIECES_MAX
+    lines and curves.
+    """
+
+    def __init__(self, accuracy: float) -> None:
+        self._accuracy = accuracy
+        self._kinds = bytearray((MOVE,))
+        self._numbers = array("d", (0.0, 0.0))
+        self._left = PIECES_MAX
+        self.here = self.origin = 0j
+
+    def move(self, point: complex) -> None:
+        """Start a path."""
+        self._kinds.append(MOVE)
+        self._numbers.extend((point.real, point.imag))
+        self.here = self.origin = point
+
+    def draw(self, kind: int, values: list[float]) -> None:
+        """Draw curves of one kind: x and y of all their points after the beginning, see POINTS."""
+        count = len(values) // (2 * int(POINTS[kind]))
+        self._take_in(count)
+        self._kinds += bytes((kind,)) * count
+        self._numbers.extend(values)
+        self.here = complex(values[-2], values[-1])
+
+    def draw_paths(self, kinds: Kinds, values: Floats) -> None:
+        """Draw whole paths, MOVE being the first of their kinds: x and y of all points, in their order."""
+        self._take_in(int(np.count_nonzero(kinds < MOVE)))
+        self._kinds += kinds.tobytes()
+        self._numbers.frombytes(values.tobytes())
+
+    def line(self, end: complex) -> None:
+        """Draw a line."""
+        self.curve(LINE, end)
+
+    def curve(self, kind: int, *points: complex) -> None:
+        """Draw one curve by its points."""
+        self.draw(kind, [part for point in points for part in (point.real, point.imag)])
+
+    def elliptical(self, arc: EllipticalArc) -> None:
+        """Draw an arc of an ellipse."""
+        for curve in arc.cubics(arc.cubic_count(self._accuracy / arc.ellipse.largest)):
+            self.curve(CUBIC, *curve)
+
+    def close(self) -> None:
+        """Join the path's end with its beginning, by a line if need be."""
+        self._kinds.append(CLOSE)
+        self.here = self.origin
+
+    def curves(self) -> DrawnCurves:
+        """All that was drawn and has a length; a circular arc whose end is its beginning has none."""
+        points = np.frombuffer(self._numbers).view(np.complex128)
+        kind = np.frombuffer(self._kinds, np.uint8)
+        size = POINTS[kind]
+        after = np.cumsum(size)
+        end = points[after - 1]
+        is_move, is_close = kind == MOVE, kind == CLOSE
+        begun = np.maximum.accumulate(np.where(is_move, np.arange(len(kind)), 0))
+        end[is_close] = end[begun[is_close]]
+        start = np.roll(end, 1)
+        control = np.stack((end, end))
+        for row, before in ((0, size), (1, 2)):
+            bent = np.flatnonzero(size > row + 1)
+            control[row, bent] = points[(after - before)[bent]]
+        long = (start != end) | ((kind != ARC) & (control != end).any(axis=0))
+        path = self._path_numbers()
+        closed = np.zeros(path[-1] + 1, np.bool_)
+        closed[path[is_close]] = True
+        kind = np.where(is_close, LINE, kind).astype(np.uint8)
+        return DrawnCurves(start, end, control, kind, path, closed).take(long & ~is_move)
+
+    def _path_numbers(self) -> Ints:
+        """The path of each move, curve and closing."""
+        kind = np.frombuffer(self._kinds, np.uint8)
+        return np.cumsum((kind == MOVE) | (np.roll(kind, 1) == CLOSE)) - 1
+
+    def _take_in(self, count: int) -> None:
+        """Refuse too many curves."""
+        self._left -= count
+        if self._left < 0:
+            raise DrawingError(
+                f"more than {PIECES_MAX:,} lines and curves", remedy="Split the drawing, or simplify its curves."
+            )
+
+
+class Pen(PathPen):
+    """Draws shapes on a page: `begin` with the map of its coordinates, then its paths; `shapes` gives them all.
+
+    Raises DrawingError also when numbers are beyond COORDINATE_MAX on the page.
     """
 
     def __init__(self) -> None:
-        self._numbers = array("d")
-        self._kinds = bytearray()
-        self._paths = array("q")  # where each path begins
-        self._closed = bytearray()
-        self._shapes = array("q")  # the first path of each shape
+        super().__init__(CURVE_ACCURACY)
+        self._shapes: list[int] = []  # where each begins among all moves, curves and closings
         self._maps: list[Affine] = []
-        self._map = Affine(1 + 0j, 0j, 0j)
-        self.here = self.origin = 0j
-        self._open = False
 
     def begin(self, to_page: Affine) -> None:
         """Start a shape."""
-        self._finish_path()
-        self._shapes.append(len(self._paths))
+        self._shapes.append(len(self._kinds))
         self._maps.append(to_page)
-        self._map = to_page
-        self.here = self.origin = 0j
+        self.move(0j)
 
     def cancel(self) -> None:
         """Drop the shape that was begun, where nothing was drawn."""
         self._shapes.pop()
         self._maps.pop()
 
-    @property
-    def has_drawn(self) -> bool:
-        """Whether the shape that was begun has a piece."""
-        return len(self._paths) > self._shapes[-1]
+    def elliptical(self, arc: EllipticalArc) -> None:
+        """Draw an arc of an ellipse.
 
-    def move(self, point: complex) -> None:
-        """Start a path."""
-        self._finish_path()
-        self.here = self.origin = point
-
-    def line(self, end: complex) -> None:
-        """Draw a line."""
-        if end != self.here:
-            self._piece(LINE, 0j, 0j, end)
-
-    def quad(self, control: complex, end: complex) -> None:
-        """Draw a quadratic Bezier curve."""
-        if not self.here == control == end:
-            self._piece(QUAD, control, 0j, end)
-
-    def cubic(self, first: complex, second: complex, end: complex) -> None:
-        """Draw a cubic Bezier curve."""
-        if not self.here == first == second == end:
-            self._piece(CUBIC, first, second, end)
-
-    def ellipse(self, centre: complex, to_ellipse: Affine, begin: float, turn: float, end: complex) -> None:
-        """Draw an arc of the image of the unit circle under the linear part of `to_ellipse`, about `centre`.
-
-        It begins at the angle `begin` of the unit circle, turns by `turn` (radians, > 0 from x to y) and ends at
-        `end`, which is taken as it is. Where the arc is a circle on the page it is drawn as ARCs of at most half a
-        circle, else as cubics within CURVE_ACCURACY on the page.
+        Where it is circular on the page it is drawn as ARCs of at most half a circle, else as cubics within
+        CURVE_ACCURACY on the page.
         """
-        linear = Affine(to_ellipse.a, to_ellipse.b, 0j)
-        on_page = self._map @ linear
-        if on_page.is_similar:
-            count = max(1, math.ceil(abs(turn) / math.pi - 1e-9))
-        else:
-            # Goldapp 1991: handles 4/3 tan(t/4) stay within 4/27 sin(t/4)^6 / cos(t/4)^2 of a unit arc of angle t.
-            share = max(CURVE_ACCURACY / on_page.largest, 1e-15)
-            step = min(math.pi / 2, 4.0 * (share * 27.0 / 4.0 * math.cos(math.pi / 8) ** 2) ** (1.0 / 6.0))
-            count = math.ceil(abs(turn) / step)
-        step = turn / count
-        handle = 4.0 / 3.0 * math.tan(step / 4)
+        on_page = self._maps[-1] @ arc.ellipse
+        if not on_page.is_similar:
+            for curve in arc.cubics(arc.cubic_count(CURVE_ACCURACY / on_page.largest)):
+                self.curve(CUBIC, *curve)
+            return
+        count = max(1, math.ceil(2.0 * arc.half / math.pi - 1e-9))
         for k in range(count):
-            first, last = begin + k * step, begin + (k + 1) * step
-            to = end if k == count - 1 else centre + linear(cmath.rect(1.0, last))
-            if on_page.is_similar:
-                if to != self.here:
-                    self._piece(ARC, centre + linear(cmath.rect(1.0, (first + last) / 2)), 0j, to)
-            else:
-                out = self.here + linear(cmath.rect(handle, first + math.pi / 2))
-                back = to - linear(cmath.rect(handle, last + math.pi / 2))
-                self.cubic(out, back, to)
-
-    def arc(self, middle: complex, end: complex) -> None:
-        """Draw a circular arc over its middle; only where the map is similar."""
-        if end != self.here:
-            self._piece(ARC, middle, 0j, end)
-
-    def close(self) -> None:
-        """Join the path's end with its beginning."""
-        if self._open:
-            self._snap()
-            self.line(self.origin)
-            self._closed[-1] = 1
-            self._open = False
-        self.here = self.origin
+            middle, last = (arc.half * (n - count) / count for n in (2 * k + 1, 2 * k + 2))
+            self.curve(ARC, arc.point(middle), arc.end if k == count - 1 else arc.point(last))
 
     def shapes(self) -> list[Paths]:
-        """The paths of every shape that was begun, on the page."""
-        self._finish_path()
-        points = np.frombuffer(self._numbers, np.float64).reshape(-1, 8)
-        kind = np.frombuffer(bytes(self._kinds), np.uint8)
-        offsets = np.append(np.frombuffer(self._paths, np.int64), len(kind)).astype(np.intp)
-        firsts = np.append(np.frombuffer(self._shapes, np.int64), len(self._paths)).astype(np.intp)
-        maps = np.array(self._maps, np.complex128).reshape(-1, 3)
-        counts = np.diff(offsets[firsts])
-        image = _mapped(points, np.repeat(maps, counts, axis=0))
-        image[1, kind == LINE] = 0
-        image[2, (kind != CUBIC)] = 0
-        if image.size and not (
-            np.abs(image.real).max() <= COORDINATE_MAX and np.abs(image.imag).max() <= COORDINATE_MAX
-        ):
-            raise beyond()
-        closed = np.frombuffer(bytes(self._closed), np.uint8).astype(np.bool_)
-        start, end, control = image[0], image[3], np.ascontiguousarray(image[1:3].T)
-        result = []
-        for k in range(len(firsts) - 1):
-            low, high = firsts[k], firsts[k + 1]
-            first, last = offsets[low], offsets[high]
-            result.append(
-                Paths(
-                    start=start[first:last],
-                    end=end[first:last],
-                    control=control[first:last],
-                    kind=kind[first:last],
-                    offsets=offsets[low : high + 1] - first,
-                    closed=closed[low:high],
-                )
-            )
-        return result
-
-    def _piece(self, kind: int, first: complex, second: complex, end: complex) -> None:
-        """Add a piece to the path, which begins with it if need be."""
-        if not self._open:
-            self._paths.append(len(self._kinds))
-            self._closed.append(0)
-            self._open = True
-        if len(self._kinds) >= PIECES_MAX:
-            raise DrawingError(
-                f"more than {PIECES_MAX:,} lines and curves", remedy="Split the drawing, or simplify its curves."
-            )
-        here = self.here
-        self._numbers.extend(
-            (here.real, here.imag, first.real, first.imag, second.real, second.imag, end.real, end.imag)
+        """The paths of every shape that was begun, on the page; a shape without curves has none."""
+        if not self._maps:
+            return []
+        curves = self.curves()
+        paths = len(curves.closed)
+        # Whatever was drawn before the first shape has no curves.
+        shape = np.searchsorted(self._path_numbers()[self._shapes], np.arange(paths), side="right") - 1
+        maps = np.array(self._maps, np.complex128)[shape]
+        curves = _without_closing(curves, np.abs(maps[:, 0]) + np.abs(maps[:, 1]))
+        image = _mapped(np.stack((curves.start, curves.end, *curves.control)), maps[curves.path])
+        image[2, curves.kind == LINE] = image[3, curves.kind != CUBIC] = 0.0
+        counts = np.bincount(curves.path, minlength=paths)
+        drawn = counts > 0
+        offsets = np.append(0, np.cumsum(counts[drawn])).astype(np.intp)
+        everything = Paths(
+            start=image[0],
+            end=image[1],
+            control=np.ascontiguousarray(image[2:].T),
+            kind=curves.kind,
+            offsets=offsets,
+            closed=curves.closed[drawn],
         )
-        self._kinds.append(kind)
-        self.here = end
+        bounds = np.append(0, np.cumsum(np.bincount(shape[drawn], minlength=len(self._maps))))
+        return [everything.part(low, high) for low, high in pairwise(bounds.tolist())]
 
-    def _snap(self) -> None:
-        """Let the path end where it began, where sums of rounded numbers have missed that by less than the accuracy."""
-        begun_at, ended_at = complex(*self._numbers[-8:-6]), self.origin
-        if abs(self.here - ended_at) * self._map.largest <= CURVE_ACCURACY and begun_at != ended_at:
-            self._numbers[-2], self._numbers[-1] = ended_at.real, ended_at.imag
-            self.here = ended_at
 
-    def _finish_path(self) -> None:
-        self._open = False
+def _without_closing(curves: DrawnCurves, growth: Floats) -> DrawnCurves:
+    """Leave out lines that only close a path where sums of rounded numbers have missed its beginning.
+
+    `growth` is by how much each path grows on the page, where such a line is no longer than CURVE_ACCURACY. What comes
+    before it ends at the beginning instead.
+    """
+    last = np.flatnonzero(curves.path != np.append(curves.path[1:], -1))
+    length = np.abs(curves.end - curves.start)[last] * growth[curves.path[last]]
+    last = last[curves.closed[curves.path[last]] & (curves.kind[last] == LINE) & (length <= CURVE_ACCURACY)]
+    # The curve before is of the same path, and must not become one that goes nowhere.
+    before = last - 1
+    some = (last > 0) & (curves.path[before] == curves.path[last]) & (curves.start[before] != curves.end[last])
+    curves.end[before[some]] = curves.end[last[some]]
+    kept = np.ones(len(curves.path), np.bool_)
+    kept[last[some]] = False
+    return curves.take(kept)
 
 
 def beyond() -> DrawingError:
@@ -190,20 +233,19 @@ def beyond() -> DrawingError:
     )
 
 
-def _mapped(points: NDArray[np.float64], maps: Complexes) -> Complexes:
-    """The images of four points of each piece; shape (4, n).
+def _mapped(points: Complexes, maps: Complexes) -> Complexes:
+    """The images of points (k, n) under the maps (n, 3) of their curves. Raises DrawingError beyond COORDINATE_MAX.
 
     In real numbers spelt out, so that a point has the same bits wherever it stands in an array.
     """
     a, b, c = maps.T
-    xx, xy = a.real + b.real, b.imag - a.imag
-    yx, yy = a.imag + b.imag, a.real - b.real
-    image = np.empty((4, len(points)), np.complex128)
-    for k in range(4):
-        x, y = points[:, 2 * k], points[:, 2 * k + 1]
-        with np.errstate(over="ignore", invalid="ignore"):
-            image[k].real = xx * x + xy * y + c.real
-            image[k].imag = yx * x + yy * y + c.imag
+    x, y = points.real, points.imag
+    image = np.empty_like(points)
+    with np.errstate(over="ignore", invalid="ignore"):
+        image.real = (a.real + b.real) * x + (b.imag - a.imag) * y + c.real
+        image.imag = (a.imag + b.imag) * x + (a.real - b.real) * y + c.imag
     parts = image.view(np.float64)
     parts[np.abs(parts) < _TINY] = 0.0
+    if not (np.abs(parts) <= COORDINATE_MAX).all():
+        raise beyond()
     return image

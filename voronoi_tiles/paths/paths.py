@@ -114,6 +114,18 @@ class Paths:
             closed=self.closed[paths],
         )
 
+    def part(self, low: int, high: int) -> Paths:
+        """The paths from `low` up to, not including, `high`, in the same memory."""
+        first, last = self.offsets[low], self.offsets[high]
+        return Paths(
+            start=self.start[first:last],
+            end=self.end[first:last],
+            control=self.control[first:last],
+            kind=self.kind[first:last],
+            offsets=self.offsets[low : high + 1] - first,
+            closed=self.closed[low:high],
+        )
+
     def reversed(self, flags: Bools | None = None) -> Paths:
         """The same paths, those with a flag (all without `flags`) run through backwards."""
         turned = np.ones(len(self), np.bool_) if flags is None else flags
@@ -251,11 +263,11 @@ def _cubic_lengths(p0: Complexes, p1: Complexes, p2: Complexes, p3: Complexes) -
     owner = np.arange(len(p0))
     rough = _quadrature(curves)
     while len(owner):
-        halves = _halves(curves)
-        fine = _quadrature(halves.reshape(4, -1)).reshape(2, -1)
+        parts = halves(curves)
+        fine = _quadrature(parts.reshape(4, -1)).reshape(2, -1)
         uneven = np.abs(fine.sum(axis=0) - rough) > _LENGTH_ERROR * scale[owner]
         np.add.at(lengths, owner[~uneven], fine.sum(axis=0)[~uneven])
-        curves, rough = halves[:, :, uneven].reshape(4, -1), fine[:, uneven].ravel()
+        curves, rough = parts[:, :, uneven].reshape(4, -1), fine[:, uneven].ravel()
         owner = np.tile(owner[uneven], 2)
     return lengths
 
@@ -269,12 +281,12 @@ def _quadrature(curves: Complexes) -> Floats:
     return np.asarray(speed @ (_GAUSS_WEIGHTS / 2), np.float64)
 
 
-def _halves(curves: Complexes) -> Complexes:
+def halves(curves: Complexes) -> Complexes:
     """Both halves of cubic Bezier curves (4, n), by de Casteljau: (4, 2, n)."""
     a, b, c, d = curves
-    ab, bc, cd = (a + b) / 2, (b + c) / 2, (c + d) / 2
-    abc, bcd = (ab + bc) / 2, (bc + cd) / 2
-    middle = (abc + bcd) / 2
+    ab, bc, cd = (a + b) * 0.5, (b + c) * 0.5, (c + d) * 0.5
+    abc, bcd = (ab + bc) * 0.5, (bc + cd) * 0.5
+    middle = (abc + bcd) * 0.5
     return np.stack((np.stack((a, middle)), np.stack((ab, bcd)), np.stack((abc, cd)), np.stack((middle, d))))
 
 

@@ -9,10 +9,13 @@ from typing import Any, Final
 import numpy as np
 from ezdxf.math import Vec2, Vec3
 
+from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.maps import Affine
 from voronoi_tiles.formats.dxf.splines import bezier_spans, fitted_cubics
 from voronoi_tiles.formats.pen import Pen
 from voronoi_tiles.formats.shapes import CURVE_ACCURACY, DrawingError
+from voronoi_tiles.paths.ellipses import EllipticalArc
+from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD
 
 _MIRRORED: Final = Affine(0j, -1 + 0j, 0j)  # seen from below, x runs to the left
 _UPRIGHT: Final = 1e-9  # how far an axis may lean; relative. Programs write axes with 10 digits or more.
@@ -95,10 +98,11 @@ def _draw_about(pen: Pen, centre: complex, to_ellipse: Affine, begin: float, tur
     start = centre + to_ellipse(cmath.rect(1.0, begin))
     pen.move(start)
     if whole:
-        pen.ellipse(centre, to_ellipse, begin, math.tau, start)
+        pen.elliptical(EllipticalArc.about(start, start, to_ellipse, begin, math.tau))
         pen.close()
     else:
-        pen.ellipse(centre, to_ellipse, begin, turn, centre + to_ellipse(cmath.rect(1.0, begin + turn)))
+        end = centre + to_ellipse(cmath.rect(1.0, begin + turn))
+        pen.elliptical(EllipticalArc.about(start, end, to_ellipse, begin, turn))
 
 
 def _draw_ellipse(pen: Pen, dxf: Any) -> None:
@@ -123,7 +127,7 @@ def _draw_bulges(pen: Pen, vertices: list[tuple[complex, float]], closed: bool) 
     following = [*vertices[1:], *(vertices[:1] if closed else [])]
     for (start, bulge), (end, _) in zip(vertices, following, strict=False):
         if bulge:
-            pen.arc((start + end) / 2 - 0.5j * (end - start) * bulge, end)
+            pen.curve(ARC, (start + end) / 2 - 0.5j * (end - start) * bulge, end)
         else:
             pen.line(end)
     if closed:
@@ -163,20 +167,14 @@ def _draw_spline(pen: Pen, entity: Any, to_page: Affine) -> None:
         heavy = bezier_spans(weights * points, knots, degree)
         weight = bezier_spans((weights * np.ones(len(points))).astype(np.complex128), knots, degree)
         _draw_spans(pen, fitted_cubics(heavy, weight, CURVE_ACCURACY / to_page.largest))
-    if pen.has_drawn and abs(pen.here - pen.origin) * to_page.largest <= CURVE_ACCURACY:
+    if abs(pen.here - pen.origin) * to_page.largest <= CURVE_ACCURACY:
         pen.close()
 
 
-def _draw_spans(pen: Pen, spans: Any) -> None:
+def _draw_spans(pen: Pen, spans: Complexes) -> None:
     """Bezier curves of one degree, one after the other."""
     if not len(spans):
         return
     pen.move(complex(spans[0, 0]))
-    for span in spans.tolist():
-        match span:
-            case [_, end]:
-                pen.line(end)
-            case [_, control, end]:
-                pen.quad(control, end)
-            case [_, first, second, end]:
-                pen.cubic(first, second, end)
+    kind = {2: LINE, 3: QUAD, 4: CUBIC}[spans.shape[1]]
+    pen.draw(kind, np.ascontiguousarray(spans[:, 1:]).view(np.float64).ravel().tolist())

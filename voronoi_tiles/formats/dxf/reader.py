@@ -170,13 +170,11 @@ class _DxfWalk:
                 raise error.under(source) from None
             except Exception as error:
                 raise DrawingError(f"broken: {_reason(error)}", key=source, remedy=_REMEDY) from error
-            if self._pen.has_drawn:
-                self._looks.append((self._layer(visit), self._colour(visit), self._width(entity), source))
-            else:
-                self._pen.cancel()
+            self._looks.append((self._layer(visit), self._colour(visit), self._width(entity), source))
         shapes = tuple(
             Shape(paths, layer, colour, None, width, source)
             for (layer, colour, width, source), paths in zip(self._looks, self._pen.shapes(), strict=True)
+            if len(paths)
         )
         return ReadDrawing(
             format="dxf",

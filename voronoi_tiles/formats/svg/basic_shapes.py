@@ -12,6 +12,7 @@ from voronoi_tiles.formats.shapes import DrawingError
 from voronoi_tiles.formats.svg.pathdata import draw_path
 from voronoi_tiles.formats.svg.transforms import numbers
 from voronoi_tiles.formats.svg.viewport import length
+from voronoi_tiles.paths.ellipses import EllipticalArc
 
 DRAWN: Final = frozenset({"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"})
 
@@ -124,14 +125,19 @@ def _draw_rect(pen: Pen, sizes: _Sizes) -> None:
     quarter = math.pi / 2
     pen.move(complex(left, y))
     pen.line(complex(right, y))
-    pen.ellipse(complex(right, top), round_, -quarter, quarter, complex(x + across, top))
+    _draw_corner(pen, round_, -quarter, complex(x + across, top))
     pen.line(complex(x + across, bottom))
-    pen.ellipse(complex(right, bottom), round_, 0.0, quarter, complex(right, y + down))
+    _draw_corner(pen, round_, 0.0, complex(right, y + down))
     pen.line(complex(left, y + down))
-    pen.ellipse(complex(left, bottom), round_, quarter, quarter, complex(x, bottom))
+    _draw_corner(pen, round_, quarter, complex(x, bottom))
     pen.line(complex(x, top))
-    pen.ellipse(complex(left, top), round_, 2 * quarter, quarter, complex(left, y))
+    _draw_corner(pen, round_, 2 * quarter, complex(left, y))
     pen.close()
+
+
+def _draw_corner(pen: Pen, round_: Affine, begin: float, end: complex) -> None:
+    """A quarter of an ellipse, from an angle on."""
+    pen.elliptical(EllipticalArc.about(pen.here, end, round_, begin, math.pi / 2))
 
 
 def _draw_ellipse(pen: Pen, centre: complex, rx: float, ry: float) -> None:
@@ -141,5 +147,5 @@ def _draw_ellipse(pen: Pen, centre: complex, rx: float, ry: float) -> None:
     round_ = Affine(complex((rx + ry) / 2), complex((rx - ry) / 2), 0j)
     start = centre + rx
     pen.move(start)
-    pen.ellipse(centre, round_, 0.0, math.tau, start)
+    pen.elliptical(EllipticalArc.about(start, start, round_, 0.0, math.tau))
     pen.close()

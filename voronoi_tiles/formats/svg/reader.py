@@ -164,6 +164,8 @@ class _SvgWalk:
             raise error.with_file(self._file) from None
         shapes = []
         for look, paths in zip(self._looks, drawn, strict=True):
+            if not len(paths):
+                continue
             try:
                 width = abs(length(look.style.width, self._page.view[0])) * look.scale
             except DrawingError as error:
@@ -236,10 +238,7 @@ class _SvgWalk:
             return
         self._pen.begin(visit.to_page)
         draw_shape(self._pen, tag, visit.node.attributes, self._page.view)
-        if self._pen.has_drawn:
-            self._looks.append(_Look(visit.style, visit.to_page.scale, visit.layer, visit.node))
-        else:
-            self._pen.cancel()
+        self._looks.append(_Look(visit.style, visit.to_page.scale, visit.layer, visit.node))
 
     def _use(self, visit: _SvgVisit) -> None:
         """Have the target of a clone drawn."""

@@ -6,11 +6,12 @@ import math
 import re
 
 from voronoi_tiles.base.maps import IDENTITY_MAP, Affine, from_matrix, unit_at
+from voronoi_tiles.base.text import NUMBER
 from voronoi_tiles.base.tolerance import COORDINATE_MAX
 from voronoi_tiles.formats.shapes import DrawingError
 
 _FUNCTION = re.compile(r"[\s,]*([A-Za-z]+)\s*\(([^()]*)\)[\s,]*")
-_NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
+_NUMBER = re.compile(NUMBER)
 _COUNTS = {"matrix": (6,), "translate": (1, 2), "scale": (1, 2), "rotate": (1, 3), "skewX": (1,), "skewY": (1,)}
 
 
