@@ -64,7 +64,7 @@ class BlockLists:
 
 
 def find_candidates(scene: Scene, frame: Frame, *, looseness: float = 0.0) -> BlockLists:
-    """Give the candidate lists of a frame's blocks; the scene must hold all that may be nearest in the frame.
+    """The candidate lists of a frame's blocks; the scene must hold all that may be nearest in the frame.
 
     With `looseness` e the lists hold for any distance functions that are within a factor of 1 +- e of the true ones.
     """

@@ -96,7 +96,7 @@ class Pattern:
         return 16 * EPSILON * max(self.scale, abs(frame.origin + frame.middle) + frame.radius)
 
     def _symmetry(self, site: Site) -> tuple[Operation, ...]:
-        """Find the operations that map a site onto itself: they map its nodes' centre to itself."""
+        """The operations that map a site onto itself: they map its nodes' centre to itself."""
         nodes = site.nodes
         middle = nodes[len(nodes) // 2]
         local = nodes - middle

@@ -51,7 +51,7 @@ Arc = LineArc | ParabolaArc
 
 
 def parabola_controls(start: Complexes, end: Complexes, focus: Complexes, directrix: Complexes) -> Complexes:
-    """Return the control points of parabolic arcs as quadratic Bezier curves.
+    """The control points of parabolic arcs as quadratic Bezier curves.
 
     In the frame of its directrix a parabola is h(s) = ((s - p)^2 + q^2) / 2q, and the control point between s0 and
     s1 is at their mean, at the height of the polar form h(s0, s1).

@@ -36,7 +36,7 @@ class Placed:
     representatives: tuple[Motion, ...]
 
     def canonical(self, motion: Motion) -> Motion:
-        """Return the motion that names the copy onto which `motion` takes the site."""
+        """The motion that names the copy onto which `motion` takes the site."""
         if len(self.stabilizer) == 1:
             return motion
         return next(
@@ -45,7 +45,7 @@ class Placed:
 
 
 def place(action: Action, nodes: Complexes, segments: Ints) -> Placed:
-    """Return a site moved near the origin, with its stabilizer."""
+    """A site moved near the origin, with its stabilizer."""
     box = complex(nodes.real.min(), nodes.imag.min()), complex(nodes.real.max(), nodes.imag.max())
     x, y = action.fractional((box[0] + box[1]) / 2)
     # A site within a cell of the origin stays where it was drawn.
@@ -73,12 +73,12 @@ def place(action: Action, nodes: Complexes, segments: Ints) -> Placed:
 
 
 def translation(placed: Placed, sign: int) -> Motion:
-    """Return the lattice translation from the placed site to the drawn one, or back."""
+    """The lattice translation from the placed site to the drawn one, or back."""
     return (*IDENTITY[:4], 2 * sign * placed.shift[0], 2 * sign * placed.shift[1])
 
 
 def _stabilizer(action: Action, nodes: Complexes, segments: Ints) -> tuple[Motion, ...]:
-    """Return the motions that map a site onto itself, the identity first."""
+    """The motions that map a site onto itself, the identity first."""
     if len(segments):
         ends = nodes[segments]
         length = np.abs(ends[:, 1] - ends[:, 0])
@@ -102,7 +102,7 @@ def _stabilizer(action: Action, nodes: Complexes, segments: Ints) -> tuple[Motio
 
 
 def _maps_onto_itself(images: Complexes, nodes: Complexes, segments: Ints, close: float) -> bool:
-    """Tell whether nodes moved to `images` are the same nodes, joined by the same segments."""
+    """Whether nodes moved to `images` are the same nodes, joined by the same segments."""
     distance, partner = Neighbours(nodes).nearest(images)
     if distance.max() > close:
         return False
@@ -125,7 +125,7 @@ class Copies:
 
 
 def copies_near(action: Action, base: Placed, other: Placed) -> Copies:
-    """Return every copy of `other` that can shape the tile of `base`; where they are the same site, itself first.
+    """Every copy of `other` that can shape the tile of `base`; where they are the same site, itself first.
 
     A point x of the tile, its nearest point y of the base site and its nearest point z of any copy satisfy
     x - y and x - z in V, the Voronoi cell of the lattice about 0: otherwise a translated copy would be nearer.

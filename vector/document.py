@@ -24,7 +24,7 @@ _BROKEN_LEVELS = 5  # containers above the level of an edge are written one item
 
 
 def outline_document(units: str, group: str, lattice: Lattice, tiles: Iterable[dict[str, Any]]) -> dict[str, Any]:
-    """Put the records of the tiles under the design's head; lengths are in `units`."""
+    """The records of the tiles under the design's head; lengths are in `units`."""
     return {
         "schema": SCHEMA,
         "units": units,
@@ -41,7 +41,7 @@ def tile_record(
     copies_per_cell: int,
     symmetry: Sequence[Operation],
 ) -> dict[str, Any]:
-    """Describe one tile: its site's flattened strokes (k, 4), its symmetry and its rings."""
+    """One tile: its site's flattened strokes, float64 (k, 4), its symmetry and its rings."""
     return {
         "site": site,
         "area": outline.area,
@@ -53,12 +53,12 @@ def tile_record(
 
 
 def document_text(document: dict[str, Any]) -> str:
-    """Write a document as JSON text: floats with 17 significant digits, one edge or element per line."""
+    """A document as JSON text: floats with 17 significant digits, one edge or element per line."""
     return _text(document, 0) + "\n"
 
 
 def _edge(arc: Arc) -> dict[str, Any]:
-    """Describe one edge."""
+    """One edge: its kind, points, focus and directrix, and the copy on its other side."""
     match arc:
         case LineArc(start, end, neighbour):
             return {
@@ -79,17 +79,17 @@ def _edge(arc: Arc) -> dict[str, Any]:
 
 
 def _neighbour(neighbour: Neighbour) -> dict[str, str]:
-    """Describe the copy on the other side."""
+    """The copy on the other side of an edge: its site's name and its operation."""
     return {"site": neighbour.site, "operation": str(neighbour.operation)}
 
 
 def _point(point: complex) -> list[float]:
-    """Give a point as its two coordinates."""
+    """A point as its two coordinates."""
     return [float(point.real), float(point.imag)]
 
 
 def _text(value: Any, level: int) -> str:
-    """Write one JSON value whose first line stands at `level`."""
+    """One JSON value as text whose first line stands at `level`."""
     if isinstance(value, float):
         return f"{value + 0.0:.17g}"  # adding zero makes -0.0 a 0
     if not isinstance(value, (dict, list)):

@@ -21,14 +21,14 @@ IDENTITY: Motion = (1, 0, 0, 1, 0, 0)
 
 
 def compose(outer: Motion, inner: Motion) -> Motion:
-    """Return the motion that applies `inner` first and `outer` to its result."""
+    """The motion that applies `inner` first and `outer` to its result."""
     a, b, c, d, s, t = outer
     e, f, g, h, u, v = inner
     return (a * e + b * g, a * f + b * h, c * e + d * g, c * f + d * h, a * u + b * v + s, c * u + d * v + t)
 
 
 def inverse(motion: Motion) -> Motion:
-    """Return the motion that undoes `motion`."""
+    """The motion that undoes `motion`."""
     a, b, c, d, s, t = motion
     det = a * d - b * c  # 1 or -1
     a, b, c, d = det * d, -det * b, -det * c, det * a
@@ -36,12 +36,12 @@ def inverse(motion: Motion) -> Motion:
 
 
 def reverses_orientation(motion: Motion) -> bool:
-    """Tell whether a motion turns the plane over."""
+    """Whether a motion turns the plane over."""
     return motion[0] * motion[3] - motion[1] * motion[2] < 0
 
 
 def to_motion(operation: Operation) -> Motion:
-    """Return an operation as a motion.
+    """An operation as a motion.
 
     Raises ValueError where its translation does not consist of halves, as in all plane groups it does.
     """
@@ -52,7 +52,7 @@ def to_motion(operation: Operation) -> Motion:
 
 
 def to_operation(motion: Motion) -> Operation:
-    """Return a motion as an operation."""
+    """A motion as an operation."""
     return Operation((motion[0], motion[1], motion[2], motion[3]), (Fraction(motion[4], 2), Fraction(motion[5], 2)))
 
 
@@ -81,7 +81,7 @@ class Action:
         return (round(m), round(n)), (round(i), round(j))
 
     def cartesian(self, x: npt.ArrayLike, y: npt.ArrayLike) -> Complexes:
-        """Return fractional coordinates as points."""
+        """Fractional coordinates as points."""
         x, y = np.asarray(x, float), np.asarray(y, float)
         a, b = self.lattice.a, self.lattice.b
         result = np.empty(x.shape, complex)
@@ -90,7 +90,7 @@ class Action:
         return result
 
     def fractional(self, z: complex) -> tuple[float, float]:
-        """Return a point in fractional coordinates."""
+        """A point in fractional coordinates."""
         return self.lattice.fractional(z)
 
     @cached_property
@@ -113,33 +113,33 @@ class Action:
         return Isometry(unit, self._shift(motion), conj)
 
     def apply(self, motion: Motion, z: Complexes) -> Complexes:
-        """Return the images of points under one motion."""
+        """The images of points under one motion."""
         unit, conj = self.linear[motion[:4]]
         return move(z, unit, self._shift(motion), conj)
 
     def apply_to_point(self, motion: Motion, z: complex) -> complex:
-        """Return the image of one point: the same bits as `apply` gives, without an array's overhead."""
+        """The image of one point: the same bits as `apply` gives, without an array's overhead."""
         unit, conj = self.linear[motion[:4]]
         shift = self._shift(motion)
         x, y = z.real, (-z.imag if conj else z.imag)
         return complex(unit.real * x - unit.imag * y + shift.real, unit.imag * x + unit.real * y + shift.imag)
 
     def _shift(self, motion: Motion) -> complex:
-        """Return the translation of a motion."""
+        """The translation of a motion."""
         s, t, a, b = motion[4] / 2, motion[5] / 2, self.lattice.a, self.lattice.b
         return complex(s * a.real + t * b.real, s * a.imag + t * b.imag)
 
 
 def modulo_lattice(motion: Motion) -> Motion:
-    """Return the one of a motion's lattice translates that stands for all."""
+    """The one of a motion's lattice translates that stands for all."""
     return (*motion[:4], motion[4] % 2, motion[5] % 2)
 
 
 def split(motion: Motion) -> tuple[Motion, int, int]:
-    """Return what stands for a motion modulo the lattice, and the lattice vector that comes after it."""
+    """What stands for a motion modulo the lattice, and the lattice vector that comes after it."""
     return modulo_lattice(motion), motion[4] // 2, motion[5] // 2
 
 
 def translated(motion: Motion, i: int, j: int) -> Motion:
-    """Return a motion followed by a lattice translation."""
+    """A motion followed by a lattice translation."""
     return (*motion[:4], motion[4] + 2 * i, motion[5] + 2 * j)

@@ -12,7 +12,7 @@ _NEWTON_STEPS = 8
 
 
 def distance_to_arcs(outline: Outline, arc: Ints, points: Complexes) -> Floats:
-    """Return the distance of each point from one arc: float64 (n,) in units, for `arc` and `points` of shape (n,).
+    """The distance of each point from one arc: float64 (n,) in units, for `arc` and `points` of shape (n,).
 
     On a line it is a closed form. On a parabolic arc Newton's method finds the foot of the perpendicular, from the best
     of nine samples and of the arc's points beside and above the given one (across the axis a parabola runs linearly in
@@ -32,7 +32,7 @@ def distance_to_arcs(outline: Outline, arc: Ints, points: Complexes) -> Floats:
 
 
 def _from_parabolas(control: Complexes, end: Complexes, away: Complexes) -> Floats:
-    """Return the distances of points from quadratic curves that start at 0."""
+    """The distances of points from quadratic curves that start at 0."""
     bend = end - 2 * control
     size = np.abs(bend)
     axis = bend / np.where(size > 0.0, size, 1.0)

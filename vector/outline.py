@@ -51,7 +51,7 @@ class Outline:
 
     @classmethod
     def from_rings(cls, rings: Iterable[Iterable[Arc]]) -> Outline:
-        """Make the outline of given rings; outer rings counter-clockwise and first, holes clockwise."""
+        """The outline of given rings; outer rings counter-clockwise and first, holes clockwise."""
         offsets = [0]
         rows: list[tuple[complex, complex, complex, bool, complex, tuple[complex, complex]]] = []
         neighbour: list[int] = []
@@ -80,7 +80,7 @@ class Outline:
         )
 
     def __len__(self) -> int:
-        """Count the arcs."""
+        """The number of arcs."""
         return len(self.start)
 
     @cached_property
@@ -181,7 +181,7 @@ class Outline:
         return np.split(points, (np.cumsum(steps)[self.ring_offsets[1:-1] - 1])) if len(self) else []
 
     def to_shapely(self, *, accuracy: float) -> Polygon | MultiPolygon:
-        """Give the tile as a shapely polygon whose chords stay within `accuracy` (in units) of the outline.
+        """The tile as a shapely polygon whose chords stay within `accuracy` (in units) of the outline.
 
         A tile in several parts is a MultiPolygon, an outline without arcs an empty Polygon. Raises as `flatten` does.
         """
@@ -201,7 +201,7 @@ class Outline:
         return shapely.MultiPolygon(list(zip(outer, inside, strict=True)))
 
     def transformed(self, isometry: Isometry, operation: Operation | None = None) -> Outline:
-        """Map the outline; a reflection also reverses every ring, so that the tile stays on the left.
+        """The image of the outline; a reflection also reverses every ring, so that the tile stays on the left.
 
         With `operation`, the isometry's lattice form, the neighbours are named as seen from the base site (operation
         @ the neighbour's operation); without it they keep their names, relative to the mapped tile.
@@ -222,12 +222,12 @@ class Outline:
         return Outline(start, control, end, curved, focus, directrix, self.neighbour[order], neighbours, offsets)
 
     def _ring_slices(self) -> list[slice]:
-        """Give the arcs of each ring as a slice."""
+        """The arcs of each ring as a slice."""
         offsets = self.ring_offsets.tolist()
         return [slice(*pair) for pair in pairwise(offsets)]
 
     def _area_of(self, arcs: slice) -> float:
-        """Integrate x dy over some arcs.
+        """The integral of x dy over some arcs.
 
         Six times the area is an integer combination of cross products of the control points. The products are split
         without error and summed without error, so that neither a thin tile nor one far from the origin loses digits.
@@ -240,7 +240,7 @@ class Outline:
 
 
 def _extent(start: Floats, control: Floats, end: Floats, curved: NDArray[np.bool_]) -> tuple[float, float]:
-    """Give the least and greatest value of one coordinate over all arcs."""
+    """The least and greatest value of one coordinate over all arcs."""
     bend = start - 2 * control + end
     turns = curved & ((start - control) * (end - control) > 0.0) & (bend != 0.0)
     a, b, c = start[turns], control[turns], end[turns]
@@ -251,14 +251,14 @@ def _extent(start: Floats, control: Floats, end: Floats, curved: NDArray[np.bool
 
 
 def _exact_cross(u: Complexes, v: Complexes) -> Floats:
-    """Give the cross products u x v as four floats each, (4, n), whose exact sum is the exact product."""
+    """The cross products u x v as four floats each, (4, n), whose exact sum is the exact product."""
     gain = _exact_product(u.real, v.imag)
     loss = _exact_product(u.imag, v.real)
     return np.concatenate((gain, -loss))
 
 
 def _exact_product(a: Floats, b: Floats) -> Floats:
-    """Give the products a*b as rounded value and rounding error, (2, n) (Dekker 1971)."""
+    """The products a*b as rounded value and rounding error, (2, n) (Dekker 1971)."""
     product = a * b
     wide_a, wide_b = _SPLITTER * a, _SPLITTER * b
     high_a, high_b = wide_a - (wide_a - a), wide_b - (wide_b - b)

@@ -37,7 +37,7 @@ _FEW = 256
 def proved_tiles(
     sites: Sequence[Site], group: WallpaperGroup, lattice: Lattice
 ) -> tuple[list[TileRecord], ProofReport]:
-    """Return the tile of each site, and the proof that they are right.
+    """The tile of each site, and the proof that they are right.
 
     Raises TouchingCopiesError where two copies touch, ProofError where the result fails its proof.
     """
@@ -76,7 +76,7 @@ class ProofReport:
     unshared: int
 
     def rows(self) -> list[tuple[str, float, float, bool]]:
-        """Return for each figure its name, value, limit and whether it holds."""
+        """For each figure its name, value, limit and whether it holds."""
         figures = [
             ("area", self.area, PROOF_LIMIT),
             ("equidistance", self.equidistance, PROOF_LIMIT),
@@ -103,7 +103,7 @@ class ProofReport:
 
 
 def prove(group: WallpaperGroup, lattice: Lattice, records: Sequence[TileRecord]) -> ProofReport:
-    """Return the proof's figures for the tiles of all sites of a design."""
+    """The proof's figures for the tiles of all sites of a design."""
     size = max(abs(lattice.a), abs(lattice.b))
     tiles = [record.local() for record in records]
     areas = [
@@ -136,7 +136,7 @@ class _ProvedSite:
         self.radius = float(np.abs(tile.nodes - self.centre).max())
 
     def distance(self, points: Complexes) -> Floats:
-        """Return the distance of each point."""
+        """The distance of each point."""
         import shapely
 
         where = shapely.points(points.real, points.imag)
@@ -150,7 +150,7 @@ class _ProvedSite:
 
 
 def _distances(group: WallpaperGroup, lattice: Lattice, tiles: Sequence[LocalTile]) -> tuple[float, float]:
-    """Return the largest error of equidistance, and by how much any copy is too near, over points of all edges."""
+    """The largest error of equidistance, and by how much any copy is too near, over points of all edges."""
     sites = {tile.name: _ProvedSite(tile) for tile in tiles}
     equidistance = emptiness = 0.0
     for tile in tiles:
@@ -172,7 +172,7 @@ def _distances(group: WallpaperGroup, lattice: Lattice, tiles: Sequence[LocalTil
 def _nearest_translate(
     lattice: Lattice, operation: Operation, site: _ProvedSite, points: Complexes, enough: Floats
 ) -> Floats:
-    """Return each point's distance from the nearest of the site's copies under an operation and all translations.
+    """Each point's distance from the nearest of the site's copies under an operation and all translations.
 
     Copies that are farther than `enough` are passed over; where all are, the result is `enough`.
     """
@@ -194,20 +194,20 @@ def _nearest_translate(
 
 
 def _sample(outline: Outline) -> tuple[Complexes, Ints]:
-    """Return points of every arc, and the index of each point's arc."""
+    """Points of every arc, and the index of each point's arc."""
     arc = np.tile(np.arange(len(outline)), len(_PARAMETERS))
     return _at(outline, arc, np.repeat(_PARAMETERS, len(outline))), arc
 
 
 def _open_joints(outline: Outline) -> int:
-    """Count the arcs whose end is not the start of the next of their ring."""
+    """The number of arcs whose end is not the start of the next of their ring."""
     following = np.arange(1, len(outline) + 1)
     following[outline.ring_offsets[1:] - 1] = outline.ring_offsets[:-1]
     return int((outline.end != outline.start[following]).sum())
 
 
 def _crossings(outline: Outline, size: float) -> int:
-    """Count the places where an outline crosses itself; where it merely touches itself it does not.
+    """The number of places where an outline crosses itself; where it merely touches itself it does not.
 
     Chords of curves may cross where the curves do not: where chords cross, these arcs are divided further, until no
     chords cross or the chords are as good as the curves.
@@ -242,7 +242,7 @@ _Piece = tuple[Ints, Floats, Floats]
 
 
 def _divide(first: _Piece, second: _Piece) -> tuple[_Piece, _Piece]:
-    """Return the four pairs of halves of each pair of pieces."""
+    """The four pairs of halves of each pair of pieces."""
     halves = []
     for arc, low, high in (first, second):
         middle = (low + high) / 2
@@ -253,7 +253,7 @@ def _divide(first: _Piece, second: _Piece) -> tuple[_Piece, _Piece]:
 
 
 def _crossing(outline: Outline, first: _Piece, second: _Piece, limit: float) -> Ints:
-    """Return the pairs of pieces whose chords cross farther than `limit` from their ends."""
+    """The pairs of pieces whose chords cross farther than `limit` from their ends."""
     import shapely
 
     a, b = _at(outline, first[0], first[1]), _at(outline, first[0], first[2])
@@ -267,7 +267,7 @@ def _crossing(outline: Outline, first: _Piece, second: _Piece, limit: float) -> 
 
 
 def _lines(start: Complexes, end: Complexes) -> npt.NDArray[np.object_]:
-    """Return straight lines as shapely geometries."""
+    """Straight lines as shapely geometries."""
     import shapely
 
     ends = np.stack((start, end), axis=1)
@@ -275,7 +275,7 @@ def _lines(start: Complexes, end: Complexes) -> npt.NDArray[np.object_]:
 
 
 def _at(outline: Outline, arc: Ints, t: Floats) -> Complexes:
-    """Return points of arcs at their parameter, the ends exactly."""
+    """Points of arcs at their parameter, the ends exactly."""
     start, control, end = outline.start[arc], outline.control[arc], outline.end[arc]
     point = np.where(
         outline.curved[arc],
@@ -286,7 +286,7 @@ def _at(outline: Outline, arc: Ints, t: Floats) -> Complexes:
 
 
 def _strayed(tile: LocalTile, size: float) -> int:
-    """Count the connected parts of a site around which the outline of its tile does not run exactly once.
+    """The number of connected parts of a site around which the outline of its tile does not run exactly once.
 
     A part meets no edge, so one of its nodes stands for all. Where copies are a distance d apart, the edge between
     them is known to eps R^2 / d at a distance R: a node nearer to an outline than the root of eps times the cell
@@ -307,7 +307,7 @@ def _strayed(tile: LocalTile, size: float) -> int:
 
 
 def winding_number(outline: Outline, point: complex) -> int:
-    """Return how often an outline runs counter-clockwise around a point that is not on it.
+    """How often an outline runs counter-clockwise around a point that is not on it.
 
     An arc turns about the point as its chord does, except that a point between the two is passed on the other side. The
     barycentric coordinates (s, t, r) of such a point in the triangle of start, control and end are positive, and
@@ -328,12 +328,12 @@ def winding_number(outline: Outline, point: complex) -> int:
 
 
 def _cross(u: Complexes, v: Complexes) -> Floats:
-    """Return the cross products of vectors."""
+    """The cross products of vectors."""
     return np.asarray(u.real * v.imag - u.imag * v.real)
 
 
 def _unshared(tile: LocalTile, tiles: Sequence[LocalTile]) -> int:
-    """Count the arcs that the tile beyond does not have, reversed, bit for bit."""
+    """The number of arcs that the tile beyond does not have, reversed, bit for bit."""
     outline = tile.outline
     missing = 0
     by_name = {other.name: other for other in tiles}
@@ -347,5 +347,5 @@ def _unshared(tile: LocalTile, tiles: Sequence[LocalTile]) -> int:
 
 
 def _bits(*columns: Complexes) -> set[tuple[complex, ...]]:
-    """Return rows of numbers as a set."""
+    """Rows of numbers as a set."""
     return set(zip(*(column.tolist() for column in columns), strict=True))

@@ -53,14 +53,14 @@ class Grid:
         return self.a.real * self.b.imag - self.a.imag * self.b.real
 
     def to_grid(self, z: Complexes) -> tuple[Floats, Floats]:
-        """Return the coordinates x, y of points, of the same shape; sample (i, j) has about i, j."""
+        """The coordinates x, y of points, of the same shape; sample (i, j) has about i, j."""
         away = z - self.origin
         x = (away.real * self.b.imag - away.imag * self.b.real) / self.det * self.nx - self.phase[0]
         y = (self.a.real * away.imag - self.a.imag * away.real) / self.det * self.ny - self.phase[1]
         return x, y
 
     def at(self, x: npt.ArrayLike, y: npt.ArrayLike) -> Complexes:
-        """Return the points of coordinates, which may be fractions: the samples, for integers."""
+        """The points of coordinates, which may be fractions: the samples, for integers."""
         s = (np.asarray(x, np.float64) + self.phase[0]) / self.nx
         t = (np.asarray(y, np.float64) + self.phase[1]) / self.ny
         return np.asarray(self.origin + (s * self.a + t * self.b))
@@ -117,7 +117,7 @@ class OwnerImage:
 
 
 def crossings(outline: Outline, isometry: Isometry, grid: Grid, axis: Literal[0, 1] = 0) -> ScanCrossings:
-    """Return where the image of an outline crosses the lines of samples: rows along a (axis 0), columns along b (1).
+    """Where the image of an outline crosses the lines of samples: rows along a (axis 0), columns along b (1).
 
     An arc's pieces between its ends and its turning point meet the rows j with ceil(low) <= j < ceil(high), where low
     and high are the y of the piece's ends: a ring enters every line as often as it leaves it, whatever it touches. The
@@ -165,7 +165,7 @@ def crossings(outline: Outline, isometry: Isometry, grid: Grid, axis: Literal[0,
 
 
 def scan_spans(copies: Sequence[tuple[Outline, Isometry]], grid: Grid) -> Spans:
-    """Return the samples in the images of outlines, row by row, over the whole plane.
+    """The samples in the images of outlines, row by row, over the whole plane.
 
     Copy k is the image of the outline copies[k][0] under the isometry copies[k][1]. Raises ValueError where a ring is
     not closed.
@@ -189,7 +189,7 @@ def scan_spans(copies: Sequence[tuple[Outline, Isometry]], grid: Grid) -> Spans:
 
 
 def owners(copies: Sequence[tuple[Outline, Isometry]], grid: Grid) -> OwnerImage:
-    """Return which copy each sample of a cell lies in, where each copy stands for all its lattice translates.
+    """Which copy each sample of a cell lies in, where each copy stands for all its lattice translates.
 
     Copy k is the image of the outline copies[k][0] under the isometry copies[k][1]. Raises ValueError where a ring is
     not closed.
@@ -216,12 +216,12 @@ def owners(copies: Sequence[tuple[Outline, Isometry]], grid: Grid) -> OwnerImage
 
 
 def _snapped(x: Floats) -> Floats:
-    """Round to the quantum."""
+    """Numbers rounded to the quantum."""
     return np.asarray(np.rint(x / QUANTUM) * QUANTUM)
 
 
 def _polynomial(x: Floats, curved: npt.NDArray[np.bool_]) -> tuple[Floats, Floats]:
-    """Return the coefficients of 2 t and of t^2 of one coordinate of arcs; the control points of lines are not read.
+    """The coefficients of 2 t and of t^2 of one coordinate of arcs; the control points of lines are not read.
 
     Args:
         x: (3, n) start, control, end.
@@ -230,13 +230,13 @@ def _polynomial(x: Floats, curved: npt.NDArray[np.bool_]) -> tuple[Floats, Float
 
 
 def _runs(lengths: Ints) -> tuple[Ints, Ints]:
-    """Return for each place in runs of given lengths, one after another, the number of its run and its place in it."""
+    """For each place in runs of given lengths, one after another, the number of its run and its place in it."""
     run = np.repeat(np.arange(len(lengths)), lengths)
     return run, np.arange(len(run)) - (np.cumsum(lengths) - lengths)[run]
 
 
 def _accumulated(ends: Ints, height: Ints, grid: Grid) -> npt.NDArray[np.int32]:
-    """Return the (ny, nx) sum of steps of given heights, whose 2 k ends are indices of the flattened image."""
+    """The (ny, nx) sum of steps of given heights, whose 2 k ends are indices of the flattened image."""
     image = np.zeros(grid.ny * grid.nx + 1, np.int32)
     np.add.at(image, ends, np.concatenate((height, -height)).astype(np.int32))
     np.cumsum(image, out=image)

@@ -64,7 +64,7 @@ class TileRecord:
     _index: int
 
     def copy(self, operation: Operation) -> Outline:
-        """Return the outline of the copy of this tile onto which an operation of the group takes it.
+        """The outline of the copy of this tile onto which an operation of the group takes it.
 
         Where two copies share an edge, its points are the same in both, bit for bit. Raises ValueError where the group
         has no such operation.
@@ -81,7 +81,7 @@ class TileRecord:
         refuse_touching(tessellation.action, tessellation.names, tessellation.placed)
 
     def local(self) -> LocalTile:
-        """Return the tile of the site moved by the lattice to near the origin, where rounding is least."""
+        """The tile of the site moved by the lattice to near the origin, where rounding is least."""
         return LocalTile(self.name, self.tessellation, self._index)
 
 
@@ -112,7 +112,7 @@ class LocalTile:
         return self._tessellation.placed_outline(self._index, IDENTITY)
 
     def copy(self, operation: Operation) -> Outline:
-        """Return the outline of a copy."""
+        """The outline of a copy."""
         return self._tessellation.placed_outline(self._index, to_motion(operation))
 
 
@@ -127,6 +127,7 @@ class Tessellation:
 
     @cached_property
     def _boundaries(self) -> list[TileBoundary]:
+        """The boundary of each site's base tile."""
         return [TileBoundary.of(self.quotient, tile) for tile in range(len(self.placed))]
 
     @cached_property
@@ -135,7 +136,7 @@ class Tessellation:
         return make_period(self.action, self.placed, self.quotient)
 
     def placed_outline(self, tile: int, motion: Motion) -> Outline:
-        """Return the outline of a copy of a tile, named by a motion of the placed site."""
+        """The outline of a copy of a tile, named by a motion of the placed site."""
         boundary = self._boundaries[tile]
         # The copy, not the motion that names it, decides on the bits.
         here = self.placed[tile].canonical(motion)
@@ -146,7 +147,7 @@ class Tessellation:
         return boundary.outline(here, neighbours)
 
     def outline(self, tile: int, motion: Motion) -> Outline:
-        """Return the outline of a copy of a tile, named by a motion of the site as it was drawn."""
+        """The outline of a copy of a tile, named by a motion of the site as it was drawn."""
         outline = self.placed_outline(tile, compose(motion, translation(self.placed[tile], 1)))
         if all(placed.shift == (0, 0) for placed in self.placed):
             return outline
@@ -160,7 +161,7 @@ class Tessellation:
 def tessellate(
     sites: Sequence[Site], group: WallpaperGroup, lattice: Lattice, *, without_short: bool = False
 ) -> list[TileRecord]:
-    """Return the tile of each site: all that is nearer to it than to any other copy of any site.
+    """The tile of each site: all that is nearer to it than to any other copy of any site.
 
     Args:
         sites, group, lattice: of a design.
@@ -201,7 +202,7 @@ def tessellate(
 
 
 def _trace(action: Action, placed: list[Placed], contours: list[Contour], tile: int) -> tuple[Traced, float]:
-    """Return the boundary of one tile, and the site's distance from the nearest of its vertices."""
+    """The boundary of one tile, and the site's distance from the nearest of its vertices."""
     contour = contours[tile]
     copies = [copies_near(action, placed[tile], other) for other in placed]
     targets = [
@@ -222,7 +223,7 @@ def _trace(action: Action, placed: list[Placed], contours: list[Contour], tile: 
 def _curves(
     rows: Rows, contours: list[Contour], tile: int, parts: Parts, boundary: Boundary, copies: list[Copies]
 ) -> tuple[Traced, float]:
-    """Return a boundary with the curve that each arc lies on, and its least distance from the site."""
+    """A boundary with the curve that each arc lies on, and its least distance from the site."""
     contour = contours[tile]
     part = boundary.part
     row, target, copy, item = parts.row[part], parts.target[part], parts.copy[part], parts.item[part]
@@ -271,7 +272,7 @@ def _curves(
 
 
 def _tidy(traced: Traced, curve: Ints) -> Traced:
-    """Join neighbouring arcs of one curve, and put outer rings before holes.
+    """The boundary with neighbouring arcs of one curve joined, and outer rings before holes.
 
     Args:
         curve: (k, n) what determines each arc's curve.
@@ -297,7 +298,7 @@ def _tidy(traced: Traced, curve: Ints) -> Traced:
 def _pair(
     action: Action, placed: list[Placed], traced: list[Traced], *, without_short: bool
 ) -> tuple[list[Traced], list[Edge]]:
-    """Pair the edges; those that rounding has made, where four tiles or more meet, are left out."""
+    """The boundaries and their edges, paired; edges that rounding has made, where many tiles meet, are left out."""
     limit = (_ONE_SIDED if without_short else PROOF_LIMIT) * action.size
     traced = [boundary.take(long_edges(boundary, limit)) for boundary in traced]
     pinched = True

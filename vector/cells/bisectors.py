@@ -59,23 +59,23 @@ class PartialQuadratics:
     item: Ints
 
     def take(self, index: Ints) -> PartialQuadratics:
-        """Return the pieces at the given indices."""
+        """The pieces at the given indices."""
         return PartialQuadratics(*(getattr(self, name)[index] for name in self.__slots__))
 
     def value(self, index: Ints, x: Floats) -> Floats:
-        """Return the values at x of the pieces at the given indices."""
+        """The values at x of the pieces at the given indices."""
         step = x - self.m[index]
         return self.c[index] + step * (self.b[index] + step * self.a[index])
 
     def slope(self, index: Ints, x: Floats) -> Floats:
-        """Return the derivatives at x of the pieces at the given indices."""
+        """The derivatives at x of the pieces at the given indices."""
         return self.b[index] + 2.0 * self.a[index] * (x - self.m[index])
 
 
 def bisector_pieces(
     rows: Rows, contour: Contour, targets: list[tuple[Surroundings, Candidates]], bounds: Bounds
 ) -> PartialQuadratics:
-    """Return all bisectors that may shape the rows' cells, sorted by row.
+    """All bisectors that may shape the rows' cells, sorted by row.
 
     Args:
         rows, contour: of the base site.
@@ -111,7 +111,7 @@ def bisector_pieces(
 
 
 def _items(candidates: Candidates, segments: int) -> tuple[Ints, Ints, Ints]:
-    """Return (row, copy, item) of the half-edges of the candidates, which are corners too, and of lone corners."""
+    """(row, copy, item) of the half-edges of the candidates, which are corners too, and of lone corners."""
     row, copy, element = candidates.row, candidates.copy, candidates.element
     if not len(element) or element.max() < segments:
         items = (2 * element[:, None] + np.arange(2)).reshape(-1)
@@ -123,14 +123,14 @@ def _items(candidates: Candidates, segments: int) -> tuple[Ints, Ints, Ints]:
 
 
 def _coordinates(axis: Complexes, vector: Complexes) -> tuple[Floats, Floats]:
-    """Return the coordinates of vectors along and to the left of unit vectors."""
+    """The coordinates of vectors along and to the left of unit vectors."""
     along = axis.real * vector.real + axis.imag * vector.imag
     left = axis.real * vector.imag - axis.imag * vector.real
     return along, left
 
 
 def _tangent(cosine: Floats, sine: Floats, infinite: float) -> Floats:
-    """Return -cot(th / 2) for angles th; `infinite` where th is exactly 0."""
+    """-cot(th / 2) for angles th; `infinite` where th is exactly 0."""
     with np.errstate(divide="ignore", invalid="ignore"):
         result = np.where(cosine < 0.0, -sine / (1.0 - cosine), -(1.0 + cosine) / sine)
     return np.where((sine == 0.0) & (cosine > 0.0), infinite, result)
@@ -147,7 +147,7 @@ def _pieces(
     quadratic: tuple[Floats, Floats, Floats, Floats],
     wraps: Ints,
 ) -> PartialQuadratics:
-    """Return pieces on [low, high], or, where an interval wraps around infinity, on its two rays, within the rows."""
+    """Pieces on [low, high], or, where an interval wraps around infinity, on its two rays, within the rows."""
     a, b, c, m = quadratic
     if len(wraps):
         index = np.concatenate((np.arange(len(row)), wraps))
@@ -238,7 +238,7 @@ def _straight_points(
 
 
 def _half_tangent(direction: Complexes, axis: Complexes, vector: Complexes, square: Floats, infinite: float) -> Floats:
-    """Return x of the ray on which a disc through 0 touches a line of this direction, from its left, at `vector`.
+    """x of the ray on which a disc through 0 touches a line of this direction, from its left, at `vector`.
 
     `infinite` where that ray is exactly opposite to the axis.
     """
@@ -323,7 +323,7 @@ def _round_points(
 
 
 def _below_bounds(rows: Rows, bounds: Bounds, pieces: PartialQuadratics) -> Ints:
-    """Return the indices of the pieces that somewhere fall below both bounds of their rows."""
+    """The indices of the pieces that somewhere fall below both bounds of their rows."""
     straight = rows.straight
     # The height's: h <= H, or -(1 + x^2) / r <= -(1 + x^2) / H.
     flat = np.where(straight, 0.0, -1.0 / bounds.height)
@@ -346,7 +346,7 @@ def _below_bounds(rows: Rows, bounds: Bounds, pieces: PartialQuadratics) -> Ints
 def _below(
     rows: Rows, pieces: PartialQuadratics, a0: Floats, b0: Floats, c0: Floats, m0: Floats, doubt: Floats
 ) -> Ints:
-    """Return the indices of the pieces that somewhere fall below the quadratic of their row, give or take its doubt."""
+    """The indices of the pieces that somewhere fall below the quadratic of their row, give or take its doubt."""
     row, low, high = pieces.row, pieces.low, pieces.high
     a0, b0, c0, m0 = a0[row], b0[row], c0[row], m0[row]
     x, y = low - m0, high - m0

@@ -55,7 +55,7 @@ class Hierarchy:
 
 
 def build_hierarchy(contour: Contour, copies: Copies) -> Hierarchy:
-    """Return the hierarchy of a site's elements, neighbours in the plane being neighbours in the order."""
+    """The hierarchy of a site's elements, neighbours in the plane being neighbours in the order."""
     start, end = contour.nodes[contour.source[::2]], contour.nodes[contour.target[::2]]
     isolated = contour.nodes[contour.corner_node[len(contour.source) :: 4]]
     if len(isolated):
@@ -78,7 +78,7 @@ def build_hierarchy(contour: Contour, copies: Copies) -> Hierarchy:
 
 
 def _capsules(start: Complexes, end: Complexes, first: Ints) -> tuple[Complexes, Complexes, Floats]:
-    """Return the ends and radii of capsules along the principal axes of runs of segments, which start at `first`."""
+    """The ends and radii of capsules along the principal axes of runs of segments, which start at `first`."""
     count = np.diff(np.append(first, len(start)))
     middle = np.add.reduceat(start + end, first) / (2 * count)
     which = np.repeat(np.arange(len(first)), count)
@@ -134,7 +134,7 @@ class TooManyPairsError(Exception):
 def find_candidates(
     rows: Rows, targets: list[Hierarchy], covering_radius: float, most: float
 ) -> tuple[list[Candidates], Bounds]:
-    """Return, for each target, a superset of the pairs in which the element shapes the row's cell.
+    """For each target, a superset of the pairs in which the element shapes the row's cell; and bounds of the cells.
 
     Raises TooManyPairsError where more than `most` pairs, or four times as many before they are narrowed, would be held
     at once.
@@ -175,7 +175,7 @@ def find_candidates(
 
 
 def _children(row: Ints, copy: Ints, place: Ints, count: int) -> tuple[Ints, Ints, Ints]:
-    """Return the pairs with each capsule replaced by its children on the next level, which has `count` capsules."""
+    """The pairs with each capsule replaced by its children on the next level, which has `count` capsules."""
     child = (place[:, None] * _BRANCH + np.arange(_BRANCH)).reshape(-1)
     row, copy = np.repeat(row, _BRANCH), np.repeat(copy, _BRANCH)
     exists = child < count
@@ -185,7 +185,7 @@ def _children(row: Ints, copy: Ints, place: Ints, count: int) -> tuple[Ints, Int
 
 
 def _narrow(rows: Rows, row: Ints, copy: Ints, place: Ints, level: Level, bounds: Bounds) -> tuple[Ints, Ints, Ints]:
-    """Drop the pairs with capsules that cannot matter; tighten the bounds by their anchors."""
+    """The pairs whose capsules can matter, after their anchors have tightened the bounds."""
     kept = _in_reach(rows, row, copy * len(level.radius) + place, level.radius[place], level, bounds)
     row, copy, place = row[kept], copy[kept], place[kept]
     flat = copy * len(level.radius) + place
@@ -211,7 +211,7 @@ def _narrow(rows: Rows, row: Ints, copy: Ints, place: Ints, level: Level, bounds
 
 
 def _wide(rows: Rows, bounds: Bounds) -> Bools:
-    """Tell which rows are long beside their height."""
+    """Which rows are long beside their height."""
     return rows.spread > bounds.height / 8.0
 
 
@@ -224,7 +224,7 @@ def _lower(bound: Floats, row: Ints, height: Floats) -> None:
 
 
 def _in_reach(rows: Rows, row: Ints, flat: Ints, radius: Floats, level: Level, bounds: Bounds) -> Ints:
-    """Return the pairs whose capsule may hold an element that matters."""
+    """The pairs whose capsule may hold an element that matters."""
     start, end = level.start.reshape(-1)[flat], level.end.reshape(-1)[flat]
     chord = end - start
     square = chord.real**2 + chord.imag**2
@@ -253,13 +253,13 @@ def _in_reach(rows: Rows, row: Ints, flat: Ints, radius: Floats, level: Level, b
 
 
 def _frame(origin: Complexes, ray: Complexes, points: Complexes) -> tuple[Floats, Floats]:
-    """Return coordinates to the right of rays and along them."""
+    """Coordinates to the right of rays and along them."""
     away = points - origin
     return away.real * ray.imag - away.imag * ray.real, away.real * ray.real + away.imag * ray.imag
 
 
 def _enters_box(x0: Floats, y0: Floats, x1: Floats, y1: Floats, width: Floats, low: Floats, high: Floats) -> Bools:
-    """Tell which segments enter the boxes |x| <= width, low <= y <= high (Liang and Barsky)."""
+    """Which segments enter the boxes |x| <= width, low <= y <= high (Liang and Barsky)."""
     enter, leave = np.zeros(len(x0)), np.ones(len(x0))
     with np.errstate(divide="ignore", invalid="ignore"):
         for at, step, least, most in ((x0, x1 - x0, -width, width), (y0, y1 - y0, low, high)):
@@ -272,7 +272,7 @@ def _enters_box(x0: Floats, y0: Floats, x1: Floats, y1: Floats, width: Floats, l
 
 
 def _bisector(base: Complexes, ray: Complexes, points: Complexes, rounding: float) -> Floats:
-    """Return bounds on the heights at which rays meet the bisectors of their base and points; infinite if they do not.
+    """Bounds on the heights at which rays meet the bisectors of their base and points; infinite if they do not.
 
     Coordinates are uncertain by `rounding`, which counts where a point is near the base or square to the ray.
     """
@@ -283,7 +283,7 @@ def _bisector(base: Complexes, ray: Complexes, points: Complexes, rounding: floa
 
 
 def _bisector_of_segment(base: Complexes, ray: Complexes, start: Complexes, end: Complexes, rounding: float) -> Floats:
-    """Return the same for segments.
+    """Bounds on the heights at which rays meet the bisectors of their base and segments; infinite if they do not.
 
     Where the base is near a segment's line only its ends count: it may be the row's own.
     """

@@ -50,7 +50,7 @@ def bound_cells(
     targets: list[tuple[Surroundings, Hierarchy]],
     covering_radius: float,
 ) -> Parts:
-    """Return what bounds every cell of a site.
+    """What bounds every cell of a site.
 
     Args:
         rows, contour: of the base site.
@@ -83,7 +83,7 @@ def bound_cells(
 
 
 def _locate(rows: Rows, pieces: PartialQuadratics, row: Ints, start: Floats, end: Floats, piece: Ints) -> Parts:
-    """Return an envelope's parts with their ends in the plane."""
+    """An envelope's parts with their ends in the plane."""
     # Where three functions meet, rounding may leave one of them an interval of an ulp: a break would be located by it.
     null = 4.0 * EPSILON * np.maximum(np.abs(rows.low), np.abs(rows.high))
     kept = np.flatnonzero(end - start > null[row])
@@ -111,7 +111,7 @@ def _locate(rows: Rows, pieces: PartialQuadratics, row: Ints, start: Floats, end
 
 
 def _point(rows: Rows, row: Ints, x: Floats, value: Floats) -> Complexes:
-    """Return the points of rows at x where the function has this value."""
+    """The points of rows at x where the function has this value."""
     straight = rows.straight[row]
     if (value[~straight] >= 0.0).any():
         raise UnboundedCellError

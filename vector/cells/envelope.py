@@ -13,7 +13,7 @@ _NEAR = 1e-3
 
 
 def lower_envelope(pieces: PartialQuadratics, low: Floats, high: Floats) -> tuple[Ints, Floats, Floats, Ints]:
-    """Return the lower envelope of each row's pieces.
+    """The lower envelope of each row's pieces.
 
     By divide and conquer: each piece is an envelope of its own, and neighbouring envelopes are merged in pairs, all
     rows at once, until each row has one. In a merge every interval between break points has one function from either
@@ -55,7 +55,7 @@ def lower_envelope(pieces: PartialQuadratics, low: Floats, high: Floats) -> tupl
 def _merge(
     pieces: PartialQuadratics, group: Ints, side: Ints, start: Floats, piece: Ints, high: Floats, stride: int
 ) -> tuple[Ints, Floats, Ints]:
-    """Merge in each group the envelopes of side 0 and side 1; return their union's (group, start, piece), sorted."""
+    """The lower envelopes of each group's two, those of side 0 and side 1: (group, start, piece), sorted."""
     order = np.lexsort((start, group))
     group, side, start, piece = group[order], side[order], start[order], piece[order]
     place = np.arange(len(group))
@@ -98,8 +98,8 @@ def _contest(
 ) -> tuple[Ints, Floats, Ints] | None:
     """Decide intervals on which both sides have a function.
 
-    Sets `winner` in place for each interval's first part; returns the further parts as (interval, start, piece), in
-    order, or None.
+    Sets `winner` in place for each interval's first part; the result are the further parts as (interval, start, piece),
+    in order, or None.
     """
     f, g = np.minimum(first[index], second[index]), np.maximum(first[index], second[index])
     x0, x1 = start[index], end[index]

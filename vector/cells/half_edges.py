@@ -45,7 +45,7 @@ class Contour:
     turn: Floats
 
     def faces(self) -> Ints:
-        """Return for each half-edge a number of the cycle that it belongs to: its walk around one face."""
+        """For each half-edge a number of the cycle that it belongs to: its walk around one face."""
         following = self.following.tolist()
         label = [-1] * len(following)
         number = 0
@@ -70,7 +70,7 @@ class Contour:
 
 
 def trace_contour(nodes: Complexes, segments: Ints) -> Contour:
-    """Return the contour of a site.
+    """The contour of a site.
 
     Args:
         nodes: (m,) positions.
@@ -123,7 +123,7 @@ _AREA = 1e-9
 
 
 def enclosed(contour: Contour, strangers: Complexes, siblings: Complexes) -> Bools:
-    """Tell which half-edges look into a region that the site encloses, and in which no other copy lies.
+    """Which half-edges look into a region that the site encloses, and in which no other copy lies.
 
     Such a region belongs to the site, whatever its elements share of it. A copy of a connected site cannot lie in one
     of its regions without touching it: it would have to be smaller.

@@ -42,7 +42,7 @@ class Surroundings:
 
 
 def surround(contour: Contour, copies: Copies, *, own: bool) -> Surroundings:
-    """Return all copies of a contour."""
+    """All copies of a contour."""
     unit, shift, conj = copies.unit[:, None], copies.shift[:, None], copies.conj[:, None]
     turned, still = np.where(conj, -unit, unit), np.zeros((1, 1), complex)
     before, after = move(contour.arriving, turned, still, conj), move(contour.leaving, turned, still, conj)

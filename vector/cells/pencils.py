@@ -56,12 +56,12 @@ class Rows:
         return self.corner < 0
 
     def slice(self, start: int, stop: int) -> Rows:
-        """Return the rows from start to stop."""
+        """The rows from start to stop."""
         return Rows(*(getattr(self, name)[start:stop] for name in self.__slots__))
 
 
 def make_rows(contour: Contour, covering_radius: float, without: Bools) -> Rows:
-    """Return the rows of a contour: those of half-edges in order, then those of convex corners in order.
+    """The rows of a contour: those of half-edges in order, then those of convex corners in order.
 
     Long half-edges and wide corners have several rows, by ascending x.
 
@@ -111,7 +111,7 @@ def make_rows(contour: Contour, covering_radius: float, without: Bools) -> Rows:
 
 
 def _divide(size: Floats) -> tuple[Ints, Ints, Floats]:
-    """Divide things of these sizes into parts of size at most 1; return (thing, part's number, parts' count)."""
+    """The parts, of size at most 1, of things of these sizes: the thing, the part's number, the count of its parts."""
     parts = np.maximum(np.ceil(size), 1.0)
     thing = np.repeat(np.arange(len(size)), parts.astype(np.intp))
     part = np.arange(len(thing)) - (np.cumsum(parts) - parts)[thing]
@@ -119,5 +119,5 @@ def _divide(size: Floats) -> tuple[Ints, Ints, Floats]:
 
 
 def _ray(axis: Complexes, x: Floats) -> Complexes:
-    """Return the unit directions at x from the axes."""
+    """The unit directions at x from the axes."""
     return axis * ((1.0 - x) * (1.0 + x) + 2j * x) / (1.0 + x * x)

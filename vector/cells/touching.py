@@ -46,7 +46,7 @@ def refuse_touching(action: Action, names: tuple[str, ...], placed: list[Placed]
 
 
 def _geometry(nodes: Complexes, segments: Ints) -> Geometry:
-    """Return a site as a shapely geometry."""
+    """A site as a shapely geometry."""
     import shapely
 
     ends = nodes[segments]

@@ -33,7 +33,7 @@ class OpenBoundaryError(ArithmeticError):
 
 
 def trace_boundary(rows: Rows, contour: Contour, parts: Parts, inner: Bools, null: float) -> Boundary:
-    """Chain the parts that face other copies to rings.
+    """The rings to which the parts that face other copies chain up.
 
     Args:
         rows, contour, parts: of the site.
@@ -75,7 +75,7 @@ def trace_boundary(rows: Rows, contour: Contour, parts: Parts, inner: Bools, nul
 
 
 def _links(rows: Rows, contour: Contour, parts: Parts, inner: Bools, straight: Bools) -> Ints:
-    """Return for each outer part the next one where that is plain from the order of the contour, else -1."""
+    """For each outer part the next one where that is plain from the order of the contour, else -1."""
     count = len(parts.row)
     following = np.full(count, -1)
     same = np.flatnonzero(parts.row[1:] == parts.row[:-1])
@@ -110,7 +110,7 @@ def _links(rows: Rows, contour: Contour, parts: Parts, inner: Bools, straight: B
 
 
 def _ends(owner: Ints, count: int, opening: Ints, closing: Ints, first: Ints, last: Ints) -> tuple[Ints, Ints]:
-    """Return the first and last part of each half-edge or corner, -1 where it has no rows."""
+    """The first and last part of each half-edge or corner, -1 where it has no rows."""
     result = np.full((2, count), -1)
     rows = np.flatnonzero(owner[opening] >= 0)
     which = owner[opening[rows]]
@@ -119,7 +119,7 @@ def _ends(owner: Ints, count: int, opening: Ints, closing: Ints, first: Ints, la
 
 
 def _match(ends: Complexes, starts: Complexes) -> Ints:
-    """Return for each end the index of the start that continues it: each other's nearest, then among those left."""
+    """For each end the index of the start that continues it: each other's nearest, then among those left."""
     if len(ends) != len(starts):
         raise OpenBoundaryError
     partner = np.full(len(ends), -1)
@@ -134,7 +134,7 @@ def _match(ends: Complexes, starts: Complexes) -> Ints:
 
 
 def _without_null(part: Ints, vertex: Complexes, ring: Ints, null: float) -> Boundary:
-    """Leave out arcs without length, and rings that have no other."""
+    """The boundary without arcs that have no length, and without rings that have no other."""
     while len(part):
         opening = np.flatnonzero(np.append(True, ring[1:] != ring[:-1]))
         following = np.arange(1, len(part) + 1)

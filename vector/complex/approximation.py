@@ -18,7 +18,7 @@ from voronoi_tiles.vector.complex.quotient import Quotient
 
 
 def approximated(period: Period, quotient: Quotient, fit: Callable[[Paths], Paths]) -> Period:
-    """Replace all edges by images of what `fit` gives for the one that stands for each orbit.
+    """A period whose edges are images of what `fit` gives for the one that stands for each orbit.
 
     `fit` replaces every path by another one from the same start to the same end. Of an edge that a motion maps onto
     itself backwards it gets one half. It is not asked about edges that are one straight line, as all on mirrors are.

@@ -38,7 +38,7 @@ class TileBoundary:
 
     @classmethod
     def of(cls, quotient: Quotient, tile: int) -> TileBoundary:
-        """Return the boundary of the base tile of a site."""
+        """The boundary of the base tile of a site."""
         start, control, focus, directrix = [], [], [], []
         beyond, counts = [], []
         faces: dict[tuple[int, Motion], int] = {}
@@ -65,7 +65,7 @@ class TileBoundary:
         )
 
     def outline(self, motion: Motion, neighbours: tuple[Neighbour, ...]) -> Outline:
-        """Return the outline of the image under a motion; `neighbours` are the names of the images of `neighbours`."""
+        """The outline of the image under a motion; `neighbours` names the copies that are then beyond its arcs."""
         action = self.representatives.action
         start = self.representatives.locate(self.start.moved(motion))
         offsets = self.ring_offsets

@@ -16,7 +16,7 @@ Corners = dict[Corner, tuple[int, Motion]]
 
 
 def find_corners(builder: Builder, traced: list[Traced], edges: list[Edge]) -> Corners:
-    """Return all corners as images of representatives, and put those on rotation centres and mirrors there."""
+    """All corners as images of representatives; those on rotation centres and mirrors are put exactly there."""
     related: defaultdict[Corner, list[tuple[Corner, Motion]]] = defaultdict(list)
     ends: defaultdict[Corner, list[tuple[Edge, int]]] = defaultdict(list)
     images: set[Edge] = set()
@@ -69,7 +69,7 @@ def _sharpened(
     sources: list[tuple[Edge, int]],
     ends: list[tuple[Edge, int]],
 ) -> complex:
-    """Return a corner's representative, moved onto the bisector of two nodes that are near to each other.
+    """A corner's representative, moved onto the bisector of two nodes that are near to each other.
 
     Copies that nearly touch leave a corner uncertain across the bisector between them: by eps R^2 / d at a distance R
     from nodes a distance d apart. Where the edge passes between these nodes this matters; along the other edge that
@@ -92,7 +92,7 @@ def _sharpened(
 
 
 def _across(traced: list[Traced], ends: list[tuple[Edge, int]]) -> complex | None:
-    """Return the direction of an edge at a corner, of one that does not lie on a mirror."""
+    """The direction of an edge at a corner, of one that does not lie on a mirror."""
     for edge, place in ends:
         if not any(image is edge and motion != IDENTITY and not flips for motion, image, flips in edge.images):
             return _tangent(traced[edge.tile], edge, place)
@@ -100,7 +100,7 @@ def _across(traced: list[Traced], ends: list[tuple[Edge, int]]) -> complex | Non
 
 
 def _tangent(boundary: Traced, edge: Edge, place: int) -> complex:
-    """Return the direction of an edge at its start (place 0) or end (place -1)."""
+    """The direction of an edge at its start (place 0) or end (place -1)."""
     arc, (start, end) = edge.arcs[place], edge.vertex[[place, place + 1] if place == 0 else [-2, -1]]
     if not boundary.curved[arc]:
         return complex(end - start)
@@ -110,7 +110,7 @@ def _tangent(boundary: Traced, edge: Edge, place: int) -> complex:
 
 
 def _generated(motions: set[Motion]) -> tuple[Motion, ...]:
-    """Return the finite group that motions with a common fixed point generate, in a fixed order."""
+    """The finite group that motions with a common fixed point generate, in a fixed order."""
     group = {IDENTITY}
     stack = [IDENTITY]
     while stack:

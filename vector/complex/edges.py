@@ -44,17 +44,17 @@ class Traced:
     copies: list[Copies]
 
     def take(self, index: Ints) -> Traced:
-        """Return the boundary with these arcs only, each ending where the next one starts."""
+        """The boundary of these arcs only, each ending where the next one starts."""
         arrays = {name: getattr(self, name)[index] for name in self.__slots__ if name != "copies"}
         return Traced(**arrays, copies=self.copies)
 
     def rings(self) -> list[Ints]:
-        """Return the indices of each ring's arcs."""
+        """The indices of each ring's arcs."""
         opening = np.flatnonzero(np.append(True, self.ring[1:] != self.ring[:-1]))
         return np.split(np.arange(len(self.ring)), opening[1:])
 
     def middles(self) -> Complexes:
-        """Return the point of each arc halfway between its ends, by its parameter."""
+        """The point of each arc halfway between its ends, by its parameter."""
         following = np.arange(1, len(self.vertex) + 1)
         for ring in self.rings():
             following[ring[-1]] = ring[0]
@@ -117,7 +117,7 @@ class UnpairedEdgeError(ArithmeticError):
 
 
 def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pinched: bool = False) -> list[Edge]:
-    """Return the edges of all tiles, ring after ring, each with its images.
+    """The edges of all tiles, ring after ring, each with its images.
 
     Args:
         pinched: look for vertices at which a boundary touches itself, and end edges there. Such a tile may have the
@@ -151,7 +151,7 @@ def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pi
 
 
 def long_edges(boundary: Traced, limit: float) -> Ints:
-    """Return the arcs of the edges that extend farther than a limit; all, where no other would be left of a ring."""
+    """The arcs of the edges that extend farther than a limit; all, where no other would be left of a ring."""
     kept = []
     for ring, cut in zip(boundary.rings(), _cuts(boundary), strict=True):
         long = [
@@ -164,7 +164,7 @@ def long_edges(boundary: Traced, limit: float) -> Ints:
 
 
 def _gap(one: Complexes, other: Complexes, limit: float) -> float:
-    """Return how far the courses of two edges are from being the same.
+    """How far the courses of two edges are from being the same.
 
     Where they do not agree one by one, points at equal shares of their lengths are compared: rounding may split a
     vertex, on one side only, into several.
@@ -184,7 +184,7 @@ def _gap(one: Complexes, other: Complexes, limit: float) -> float:
 
 
 def _cuts(boundary: Traced) -> list[list[int]]:
-    """Return for each ring the places in it where the copy beyond changes."""
+    """For each ring the places in it where the copy beyond changes."""
     result = []
     for ring in boundary.rings():
         target, copy = boundary.target[ring], boundary.copy[ring]
@@ -194,6 +194,7 @@ def _cuts(boundary: Traced) -> list[list[int]]:
 
 
 def _motion(boundary: Traced, arc: int) -> Motion:
+    """The copy beyond an arc."""
     a, b, c, d, s, t = boundary.copies[boundary.target[arc]].motions[boundary.copy[arc]].tolist()
     return (a, b, c, d, s, t)
 
@@ -201,7 +202,7 @@ def _motion(boundary: Traced, arc: int) -> Motion:
 def _images(
     placed: list[Placed], tile: int, target: int, beyond: Motion
 ) -> Iterator[tuple[Motion, int, int, Motion, bool]]:
-    """Yield every way to move an edge onto a base tile: (motion, tile, target, copy beyond, whether it reverses)."""
+    """Every way to move an edge onto a base tile: (motion, tile, target, copy beyond, whether it reverses)."""
     for element in placed[tile].stabilizer:
         motion = compose(element, beyond)
         yield element, tile, target, placed[target].canonical(motion), reverses_orientation(element)
@@ -249,12 +250,12 @@ def _cut_further(
 
 
 def _at(boundary: Traced, point: Complexes, limit: float) -> list[int]:
-    """Return the arcs that start at a point."""
+    """The arcs that start at a point."""
     return [int(arc) for arc in np.flatnonzero(np.abs(boundary.vertex - point) <= limit)]
 
 
 def _pinches(boundary: Traced, limit: float) -> list[int]:
-    """Return the vertices that another one coincides with."""
+    """The vertices that another one coincides with."""
     # Sorted from left to right, turned by the slant, few vertices are near each other.
     along = (boundary.vertex * _SLANT).real
     order = np.argsort(along)
@@ -274,13 +275,13 @@ def _pinches(boundary: Traced, limit: float) -> list[int]:
 
 
 def _runs(ring: Ints, cut: list[int]) -> Iterator[tuple[Ints, int]]:
-    """Yield the arcs between the places where a ring is cut, and the arc that starts where they end."""
+    """The arcs between the places where a ring is cut, and the arc that starts where they end."""
     for first, last in zip(cut, [*cut[1:], *(place + len(ring) for place in cut[:1])], strict=True):
         yield ring[np.arange(first, last) % len(ring)], int(ring[last % len(ring)])
 
 
 def _edges(tile: int, boundary: Traced, cuts: list[list[int]]) -> Iterator[Edge]:
-    """Yield the edges of a boundary whose rings are cut at these places."""
+    """The edges of a boundary whose rings are cut at these places."""
     middle = boundary.middles()
     for ring, cut in zip(boundary.rings(), cuts, strict=True):
         for arcs, end in _runs(ring, cut):

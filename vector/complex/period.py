@@ -148,7 +148,7 @@ class Period:
 
 
 def make_period(action: Action, placed: Sequence[Placed], quotient: Quotient) -> Period:
-    """Collect one period of a tessellation.
+    """One period of a tessellation.
 
     Args:
         placed: the sites, of which `quotient` is the complex.
@@ -207,7 +207,7 @@ class _Collector:
         self._number: dict[tuple[int, Motion], int] = {}
 
     def rings(self, tiles: Sequence[tuple[int, Motion]]) -> Rings:
-        """Describe tiles, each the image of a site's base tile under a motion, by edges."""
+        """The rings of tiles, each the image of a site's base tile under a motion; new edges of them get numbers."""
         entries: list[tuple[int, int, int, bool]] = []
         offsets, bounds = [0], [0]
         for site, motion in tiles:
@@ -227,7 +227,7 @@ class _Collector:
         )
 
     def _entry(self, use: EdgeUse, outer: Motion) -> tuple[int, int, int, bool]:
-        """Return the image of a use of an edge: number of the edge, lattice vector, whether it runs forward."""
+        """The image of a use of an edge: number of the edge, lattice vector, whether it runs forward."""
         here = compose(outer, use.motion)
         rest, i, j, flips = min(
             (*split(compose(here, motion)), flips) for motion, flips in self.quotient.edges[use.edge].stabilizer
@@ -248,7 +248,7 @@ class _Located:
         self._number: dict[Motion, int] = {}
 
     def name(self, points: Points) -> Ints:
-        """Name points: rows of four, (n, 4); the first is -1 where there is none."""
+        """The names of points, intp (n, 4); the first of the four is -1 where there is no point."""
         table = np.array([self._row(motion) for motion in points.motions])
         rows = np.column_stack((points.index, table[points.motion]))
         for k, motion in self.representatives.canonical(points):
@@ -256,6 +256,7 @@ class _Located:
         return rows
 
     def _row(self, motion: Motion) -> tuple[int, int, int]:
+        """The number of a motion modulo the lattice, and its lattice vector."""
         rest, i, j = split(motion)
         number = self._number.setdefault(rest, len(self.motions))
         if number == len(self.motions):
@@ -263,7 +264,7 @@ class _Located:
         return number, i, j
 
     def locate(self, rows: Ints, shift: Ints) -> Complexes:
-        """Return the positions of named points, moved back by lattice vectors (n, 2)."""
+        """The positions of named points, moved back by lattice vectors (n, 2)."""
         basis = np.array([self.action.lattice.a, self.action.lattice.b])
         result = np.empty(len(rows), np.complex128)
         for number in np.unique(rows[:, 1]).tolist():

@@ -106,7 +106,7 @@ class Quotient:
 
 
 def build_quotient(action: Action, traced: list[Traced], edges: list[Edge]) -> Quotient:
-    """Return the quotient complex of a tessellation.
+    """The quotient complex of a tessellation.
 
     Args:
         traced: for each site its tile's boundary.
@@ -133,7 +133,7 @@ def build_quotient(action: Action, traced: list[Traced], edges: list[Edge]) -> Q
 def _represent(
     builder: Builder, positions: Representatives, boundary: Traced, edge: Edge, corners: Corners
 ) -> QuotientEdge:
-    """Return the edge that stands for its orbit, symmetric under the motions that map it onto itself."""
+    """The edge that stands for its orbit, symmetric under the motions that map it onto itself."""
     action = builder.action
     stabilizer = tuple((motion, flips) for motion, image, flips in edge.images if image is edge)
     start, end = corners[edge.start], corners[edge.end]
@@ -205,7 +205,7 @@ class _Arcs:
         reversal: Motion,
         stabilizer: tuple[tuple[Motion, bool], ...],
     ) -> QuotientEdge:
-        """Return the edge between two corners."""
+        """The edge between two corners."""
         motions = (IDENTITY, reversal)
         corners = [Points(np.array([index]), np.zeros(1, np.intp), (motion,)) for index, motion in (start, end)]
         return QuotientEdge(
@@ -218,7 +218,7 @@ class _Arcs:
 
 
 def _symmetric(action: Action, mirror: Motion, vertex: Complexes, arcs: Ints) -> tuple[Complexes, Ints]:
-    """Leave out vertices of a symmetric edge that have no counterpart: rounding splits a vertex on one side only."""
+    """The vertices of a symmetric edge that have a counterpart, and its arcs: rounding splits some on one side only."""
     image = action.apply(mirror, vertex)[::-1]
     if len(arcs) == 1 or np.abs(image - vertex).max() <= PAIRING * action.size:
         return vertex, arcs
@@ -235,7 +235,7 @@ def _symmetric(action: Action, mirror: Motion, vertex: Complexes, arcs: Ints) ->
 
 
 def _controls(builder: Builder, boundary: Traced, arcs: Ints, vertex: Complexes) -> Ints:
-    """Add the control points of arcs between consecutive vertices; return their indices, -1 for lines."""
+    """The indices of the control points, which are added, of arcs between consecutive vertices; -1 for lines."""
     control = np.full(len(arcs), -1)
     curved = np.flatnonzero(boundary.curved[arcs])
     bent = arcs[curved]

@@ -27,16 +27,16 @@ class Points:
     motions: tuple[Motion, ...]
 
     def moved(self, outer: Motion) -> Points:
-        """Return the images under one more motion."""
+        """The images under one more motion."""
         return Points(self.index, self.motion, tuple(compose(outer, motion) for motion in self.motions))
 
     def take(self, places: Ints) -> Points:
-        """Return the points at these places."""
+        """The points at these places."""
         return Points(self.index[places], self.motion[places], self.motions)
 
     @classmethod
     def concatenate(cls, parts: Sequence[Points]) -> Points:
-        """Return all points of several, in their order."""
+        """All points of several, in their order."""
         numbers: dict[Motion, int] = {}
         motion = [np.zeros(0, np.intp)]
         for part in parts:
@@ -68,7 +68,7 @@ class Representatives:
         return special
 
     def locate(self, points: Points) -> Complexes:
-        """Return the positions of images of representatives."""
+        """The positions of images of representatives."""
         result = np.empty(len(points.index), complex)
         for number, motion in enumerate(points.motions):
             chosen = points.motion == number
@@ -78,7 +78,7 @@ class Representatives:
         return result
 
     def canonical(self, points: Points) -> Iterator[tuple[int, Motion]]:
-        """Yield those points to which several motions lead, with the one of these that stands for all."""
+        """Those points to which several motions lead, with the one of these that stands for all."""
         for k in np.flatnonzero(self._special[points.index] & (points.index >= 0)).tolist():
             point = int(points.index[k])
             yield k, min(compose(points.motions[points.motion[k]], s) for s in self.stabilizer[point])
@@ -94,13 +94,13 @@ class Builder:
         self._stabilizer: dict[int, tuple[Motion, ...]] = {}
 
     def add(self, positions: Complexes) -> Ints:
-        """Add representatives; return their indices."""
+        """Add representatives; the result are their indices."""
         self._positions.append(positions)
         self._count += len(positions)
         return np.arange(self._count - len(positions), self._count)
 
     def add_fixed(self, position: complex, stabilizer: tuple[Motion, ...], tangent: complex | None = None) -> int:
-        """Add a representative that these motions fix, put exactly where they do; return its index.
+        """Add a representative that these motions fix, put exactly where they do; the result is its index.
 
         Onto a mirror it is moved along `tangent`, if one is given.
         """
@@ -120,13 +120,13 @@ class Builder:
         return number
 
     def _centred(self, position: complex, stabilizer: tuple[Motion, ...]) -> complex:
-        """Return the mean of a point's images, which all the motions fix."""
+        """The mean of a point's images, which all the motions fix."""
         return sum(self.action.apply_to_point(motion, position) for motion in stabilizer) / len(stabilizer)
 
     def last(self) -> complex:
-        """Return the position of the representative added last."""
+        """The position of the representative added last."""
         return complex(self._positions[-1][-1])
 
     def snapshot(self) -> Representatives:
-        """Return the representatives so far."""
+        """The representatives so far."""
         return Representatives(self.action, np.concatenate(self._positions), self._stabilizer)
