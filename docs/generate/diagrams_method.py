@@ -63,7 +63,7 @@ def _parabola() -> None:
             _draw(axes, scene.curve(part), color=PARABOLA, lw=2.0)
             inside = (scene.start[part] <= _FEET) & (scene.end[part] > _FEET)
             s = _FEET[inside]
-            on = scene.points(side, s, scene.pieces.value(np.full(len(s), scene.piece[part]), s))
+            on = scene.points(side, s, scene.functions.value(np.full(len(s), scene.lowest[part]), s))
             for z, foot in zip(on, scene.points(side, s, 0.0 * s), strict=True):
                 _draw(axes, np.array([focus[0], z, foot]), color=GREY, lw=0.8)
                 axes.plot(z.real, z.imag, "o", color=PARABOLA, ms=4, zorder=5)
@@ -120,9 +120,9 @@ def _envelope() -> None:
         for part in np.flatnonzero(scene.row == side):
             curve = scene.curve(part, 40)
             area = np.concatenate([curve, scene.feet(part)[::-1]])
-            colour = FIELDS[scene.pieces.target[scene.piece[part]]]
+            colour = FIELDS[scene.functions.target[scene.lowest[part]]]
             right.fill(area.real, area.imag, fc=colour, ec="none", alpha=0.55)
-            _draw(right, curve, color=_dark(scene.pieces.target[scene.piece[part]]), lw=2.4)
+            _draw(right, curve, color=_dark(scene.functions.target[scene.lowest[part]]), lw=2.4)
         _draw_sites(right, [(base, _SEGMENT), *others])
 
 
@@ -139,14 +139,14 @@ def _draw_sites(axes: Axes, sites: list[tuple[Complexes, Ints]]) -> None:
 
 def _envelope_of(axes: Axes, scene: Scene, row: int) -> None:
     """The functions of a row, thin, and their lower envelope, bold."""
-    pieces = scene.pieces
-    for k in np.flatnonzero(pieces.row == row):
-        x = np.linspace(pieces.low[k], pieces.high[k], 40)
-        axes.plot(x, pieces.value(np.full(40, k), x), color=_dark(pieces.target[k]), lw=0.9, alpha=0.8)
+    functions = scene.functions
+    for k in np.flatnonzero(functions.row == row):
+        x = np.linspace(functions.low[k], functions.high[k], 40)
+        axes.plot(x, functions.value(np.full(40, k), x), color=_dark(functions.target[k]), lw=0.9, alpha=0.8)
     for part in np.flatnonzero(scene.row == row):
         x = np.linspace(scene.start[part], scene.end[part], 40)
-        colour = _dark(pieces.target[scene.piece[part]])
-        axes.plot(x, pieces.value(np.full(40, scene.piece[part]), x), color=colour, lw=3.0, solid_capstyle="butt")
+        colour = _dark(functions.target[scene.lowest[part]])
+        axes.plot(x, functions.value(np.full(40, scene.lowest[part]), x), color=colour, lw=3.0, solid_capstyle="butt")
 
 
 def _functions(axes: Axes, scene: Scene, row: int) -> None:
@@ -174,10 +174,10 @@ def _fan() -> None:
             _fan_functions(left, scene, row)
             for part in np.flatnonzero(scene.row == row):
                 curve = scene.curve(part, 40)
-                colour = FIELDS[scene.pieces.target[scene.piece[part]]]
+                colour = FIELDS[scene.functions.target[scene.lowest[part]]]
                 area = np.append(curve, scene.rows.origin[row])
                 right.fill(area.real, area.imag, fc=colour, ec="none", alpha=0.55)
-                _draw(right, curve, color=_dark(scene.pieces.target[scene.piece[part]]), lw=2.4)
+                _draw(right, curve, color=_dark(scene.functions.target[scene.lowest[part]]), lw=2.4)
             ray = np.array([0, 7 * scene.rows.ray0[row]])
             _draw(right, ray, color=GREY, lw=0.6, dashes=(3, 3), zorder=0)
         _draw_sites(right, [(base, _SEGMENT), *others])

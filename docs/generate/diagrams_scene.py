@@ -15,11 +15,12 @@ from diagrams_style import Complexes
 from numpy.typing import NDArray
 
 from voronoi_tiles import Design
-from voronoi_tiles.vector.cells.bisectors import PartialQuadratics, bisector_pieces
+from voronoi_tiles.vector.cells.bisectors import find_bisectors
 from voronoi_tiles.vector.cells.candidates import Bounds, Candidates
 from voronoi_tiles.vector.cells.envelope import NOTHING, lower_envelope
 from voronoi_tiles.vector.cells.half_edges import Contour, trace_contour
 from voronoi_tiles.vector.cells.images import Surroundings, surround
+from voronoi_tiles.vector.cells.partial_quadratics import PartialQuadratics
 from voronoi_tiles.vector.cells.pencils import Rows, make_rows
 from voronoi_tiles.vector.copies import Copies, copies_near, place
 from voronoi_tiles.vector.motions import IDENTITY, Action
@@ -34,17 +35,18 @@ _FAR = 1e6  # farther than anything that is drawn
 class Scene:
     """Rows of a site, all bisectors that bound them, and the lower envelope of each row.
 
-    `row`, `start`, `end`, `piece` are the envelope's parts: piece is -1 where nothing bounds the row. A piece's target
-    is the site beyond, its copy that copy's index (0, 0: the site itself). `half_edges` counts those of each site.
+    `row`, `start`, `end`, `lowest` are the envelope's parts: `lowest` is -1 where nothing bounds the row. A function's
+    target is the site beyond, its copy that copy's index (0, 0: the site itself). `half_edges` counts those of each
+    site.
     """
 
     contour: Contour
     rows: Rows
-    pieces: PartialQuadratics
+    functions: PartialQuadratics
     row: Ints
     start: Floats
     end: Floats
-    piece: Ints
+    lowest: Ints
     half_edges: list[int]
 
     def points(self, row: int, x: Floats, value: Floats) -> Complexes:
@@ -57,9 +59,9 @@ class Scene:
         return np.asarray(rows.origin[row] + rows.axis[row] * (1.0 + 1j * x) ** 2 * inverse)
 
     def curve(self, part: int, samples: int = 24) -> Complexes:
-        """The bisector's piece that a part of an envelope is, (samples,) points."""
+        """The stretch of a bisector that a part of an envelope is, (samples,) points."""
         x = np.linspace(self.start[part], self.end[part], samples)
-        return self.points(self.row[part], x, self.pieces.value(np.full(samples, self.piece[part]), x))
+        return self.points(self.row[part], x, self.functions.value(np.full(samples, self.lowest[part]), x))
 
     def feet(self, part: int) -> Complexes:
         """The points of the row's element nearest to the two ends of a part."""
@@ -68,19 +70,19 @@ class Scene:
         return np.asarray(rows.origin[row] + (x * rows.axis[row] if rows.straight[row] else 0.0 * x))
 
     def parabola(self, part: int) -> bool:
-        """Whether a part is a piece of a parabola: between a point and a segment."""
-        of_segment = self.pieces.item[self.piece[part]] < self.half_edges[self.pieces.target[self.piece[part]]]
+        """Whether a part lies on a parabola: between a point and a segment."""
+        of_segment = self.functions.item[self.lowest[part]] < self.half_edges[self.functions.target[self.lowest[part]]]
         return bool(self.rows.straight[self.row[part]] != of_segment)
 
     @property
     def bounded(self) -> Ints:
         """The parts where something bounds the row."""
-        return np.flatnonzero(self.piece != NOTHING)
+        return np.flatnonzero(self.lowest != NOTHING)
 
     def inner(self, part: int) -> bool:
         """Whether the element beyond a part belongs to the site itself."""
-        piece = self.piece[part]
-        return bool(self.pieces.target[piece] == 0 and self.pieces.copy[piece] == 0)
+        lowest = self.lowest[part]
+        return bool(self.functions.target[lowest] == 0 and self.functions.copy[lowest] == 0)
 
 
 def lone_scene(sites: Sequence[tuple[Complexes, Ints]]) -> Scene:
@@ -109,9 +111,9 @@ def _scene(contours: list[Contour], around: list[Surroundings], covering_radius:
     every = [_all_pairs(len(rows), surroundings) for surroundings in around]
     none = np.full(len(rows), _FAR)
     bounds = Bounds(1e-12, none, none.copy(), np.full(len(rows), np.nan, complex))
-    pieces = bisector_pieces(rows, contour, list(zip(around, every, strict=True)), bounds)
-    envelope = lower_envelope(pieces, rows.low, rows.high)
-    return Scene(contour, rows, pieces, *envelope, [2 * surroundings.segments for surroundings in around])
+    functions = find_bisectors(rows, contour, list(zip(around, every, strict=True)), bounds)
+    envelope = lower_envelope(functions, rows.low, rows.high)
+    return Scene(contour, rows, functions, *envelope, [2 * surroundings.segments for surroundings in around])
 
 
 def _all_pairs(rows: int, around: Surroundings) -> Candidates:

@@ -1,23 +1,43 @@
-"""Bisectors of a row's element with other elements, as partial quadratics in the row's variable.
+"""Bisectors of a row's element with other elements, as partial quadratics in the row's variable x.
 
-In the row of a half-edge the function is the height h of the bisector; in the row of a corner it is -(1 + x^2) / r
-with r its distance. Either way it is a quadratic on an interval known in closed form, and the cell lies below the
-lower envelope of all of them.
+A point of a bisector is the centre of a disc that touches both elements. In the row of a half-edge, x is the coordinate
+s along it and the function the height h of the bisector; in the row of a corner, x = tan(t/2) for a ray in direction t
+from the row's axis, and the function -(1 + x^2) / r with r the bisector's distance along it. Either way it is a
+quadratic, and the cell lies below the lower envelope of all of them. The four combinations:
 
-The arithmetic is spelt out in real numbers: the end of a half-edge's piece and the start of the next corner's are the
-same expression, and must come out as the same bits wherever they stand in their arrays.
+    row        element    function of x                            defined between the discs
+    ---------  ---------  ---------------------------------------  -------------------------------------------------
+    half-edge  half-edge  h = c + k (s - m), with k = -cot(a/2)    that touch it at its end and start, above h = 0
+    half-edge  corner     h = ((s - p)^2 + q^2) / 2q               that touch its leaving and arriving line in it
+    corner     half-edge  -(2 / D) (cos(f/2) + x sin(f/2))^2       that touch it at its start and end
+    corner     corner     -(2 / d) ((1 - x^2) cos f + 2 x sin f)   that touch its arriving and leaving line in it
+
+In the frame of the row, a is the direction of the half-edge beyond and (p, q) the place of the corner beyond; D and f
+are the distance of the half-edge's line and the direction of its foot, d and f those of the corner beyond. The discs
+at the ends touch, at a node, the line through it of one half-edge, from the left. Their place depends on node and line
+alone:
+
+    row of a half-edge: s = p - q cot(a/2)          `_bisecting_slope` is -cot(a/2)
+    row of a corner:    x = tan(t/2), where exp(it) = i (v/|v|)^2 conj(u) for the node v and the line's direction u,
+                        both over the axis          `_touching_ray`
+
+The arithmetic is spelt out in real numbers: where a half-edge's function ends and the next corner's begins, both ends
+are the same expression, and must come out as the same bits wherever they stand in their arrays.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
+import numpy.typing as npt
 
-from voronoi_tiles.base.arrays import Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
 from voronoi_tiles.vector.cells.candidates import Bounds, Candidates
 from voronoi_tiles.vector.cells.half_edges import Contour
 from voronoi_tiles.vector.cells.images import Surroundings
+from voronoi_tiles.vector.cells.partial_quadratics import PartialQuadratics, Quadratics
 from voronoi_tiles.vector.cells.pencils import Rows
 
 # Stands for an infinite tangent where a product with it must stay finite.
@@ -25,93 +45,50 @@ _INFINITE = 1e100
 # A half-edge that leaves at a smaller angle than the inverse of this bounds nothing but its own end.
 _STEEPEST = 1e18
 # An interval whose ends come out swapped passes through infinity if the angle that it sweeps is larger than this; else
-# rounding has swapped the ends of a tiny one. A tiny one at infinity is out of every row's reach, whatever rounding
-# makes of its ends: there 1 + low * high, the addition theorem's denominator, is negative.
+# rounding has swapped the ends of a tiny one.
 _TINY = 1e-6
-# Pieces above the row's bound by less than this, relative, are kept: far above rounding.
+# Functions above the row's bound by less than this, relative, are kept: far above rounding.
 _SLACK = 1e-9
+
+
+_Scalar = TypeVar("_Scalar", bound=np.generic)
 
 
 class TouchingElementsError(ArithmeticError):
     """A node of one copy lies on another copy."""
 
 
-@dataclass(frozen=True, slots=True)
-class PartialQuadratics:
-    """Partial quadratics a (x - m)^2 + b (x - m) + c on [low, high].
-
-    Attributes:
-        row: (k,) the row each belongs to, ascending.
-        low, high, a, b, c, m: (k,) floats.
-        target, copy: (k,) whose copy bounds the row there.
-        item: (k,) the half-edge i, or the corner c as h + c.
-    """
-
-    row: Ints
-    low: Floats
-    high: Floats
-    a: Floats
-    b: Floats
-    c: Floats
-    m: Floats
-    target: Ints
-    copy: Ints
-    item: Ints
-
-    def take(self, index: Ints) -> PartialQuadratics:
-        """The pieces at the given indices."""
-        return PartialQuadratics(*(getattr(self, name)[index] for name in self.__slots__))
-
-    def value(self, index: Ints, x: Floats) -> Floats:
-        """The values at x of the pieces at the given indices."""
-        step = x - self.m[index]
-        return self.c[index] + step * (self.b[index] + step * self.a[index])
-
-    def slope(self, index: Ints, x: Floats) -> Floats:
-        """The derivatives at x of the pieces at the given indices."""
-        return self.b[index] + 2.0 * self.a[index] * (x - self.m[index])
-
-
-def bisector_pieces(
+def find_bisectors(
     rows: Rows, contour: Contour, targets: list[tuple[Surroundings, Candidates]], bounds: Bounds
 ) -> PartialQuadratics:
-    """All bisectors that may shape the rows' cells, sorted by row.
+    """All bisectors that may shape the cells of a site's rows, sorted by row.
 
-    Args:
-        rows, contour: of the base site.
-        targets: for each site its copies and the pairs to look at.
-        bounds: of the rows; pieces above them are left out.
-
-    Raises:
-        TouchingElementsError: where a node lies, but for rounding, on an element of another copy.
+    `targets` has for each site its copies and the pairs to look at; `bounds` are the rows', and what lies above them is
+    left out. Raises TouchingElementsError where a node lies, but for rounding, on an element of another copy.
     """
-    parts: list[PartialQuadratics] = []
-    straight = rows.straight
-    for t, (around, candidates) in enumerate(targets):
-        row, copy, items = _items(candidates, around.segments)
-        line = items < 2 * around.segments
-        corner = around.bounding[items]
-        for straight_rows in (True, False):
-            kind = straight[row] == straight_rows
-            chosen = np.flatnonzero(kind & line)
-            if len(chosen):
-                lines = _straight_lines if straight_rows else _round_lines
-                parts.append(lines(rows, contour, t, around, row[chosen], copy[chosen], items[chosen]))
-            chosen = np.flatnonzero(kind & corner)
-            if len(chosen):
-                points = _straight_points if straight_rows else _round_points
-                parts.append(
-                    points(rows, contour, t, around, row[chosen], copy[chosen], items[chosen], bounds.rounding)
-                )
-    pieces = PartialQuadratics(
-        *(np.concatenate([getattr(part, name) for part in parts]) for name in PartialQuadratics.__slots__)
-    )
-    kept = _below_bounds(rows, bounds, pieces)
-    return pieces.take(kept[np.argsort(pieces.row[kept], kind="stable")])
+    found: list[PartialQuadratics] = []
+    for target, (around, candidates) in enumerate(targets):
+        row, copy, item = _items(candidates, around.segments)
+        pairs = _RowPairs(rows, contour, target, around, bounds.rounding, row, copy, item)
+        of_half_edge = rows.straight[row]
+        of_corner = ~of_half_edge
+        half_edge, corner = item < 2 * around.segments, around.bounding[item]
+        for chosen, bisectors in (
+            (of_half_edge & half_edge, _half_edge_with_half_edge),
+            (of_half_edge & corner, _half_edge_with_corner),
+            (of_corner & half_edge, _corner_with_half_edge),
+            (of_corner & corner, _corner_with_corner),
+        ):
+            index = np.flatnonzero(chosen)
+            if len(index):
+                found.append(bisectors(pairs.take(index)))
+    functions = PartialQuadratics.concatenate(found)
+    kept = _below_bounds(rows, bounds, functions)
+    return functions.take(kept[np.argsort(functions.row[kept], kind="stable")])
 
 
 def _items(candidates: Candidates, segments: int) -> tuple[Ints, Ints, Ints]:
-    """(row, copy, item) of the half-edges of the candidates, which are corners too, and of lone corners."""
+    """(row, copy, item) of the candidates' half-edges, item i meaning corner i as well, and of lone corners."""
     row, copy, element = candidates.row, candidates.copy, candidates.element
     if not len(element) or element.max() < segments:
         items = (2 * element[:, None] + np.arange(2)).reshape(-1)
@@ -122,6 +99,208 @@ def _items(candidates: Candidates, segments: int) -> tuple[Ints, Ints, Ints]:
     return np.repeat(row, count), np.repeat(copy, count), items
 
 
+@dataclass(frozen=True, slots=True)
+class _RowPairs:
+    """Pairs of a row and an element beyond: half-edge or corner `item` of a copy (`row`, `copy`, `item`: intp, k).
+
+    `rows` and `contour` are of the base site, `around` are the copies of the site with the number `target`;
+    coordinates may be off by `rounding`.
+    """
+
+    rows: Rows
+    contour: Contour
+    target: int
+    around: Surroundings
+    rounding: float
+    row: Ints
+    copy: Ints
+    item: Ints
+
+    def take(self, index: Ints) -> _RowPairs:
+        """The pairs at the given indices."""
+        some = self.row[index], self.copy[index], self.item[index]
+        return _RowPairs(self.rows, self.contour, self.target, self.around, self.rounding, *some)
+
+    def of(self, values: npt.NDArray[_Scalar], index: Ints) -> npt.NDArray[_Scalar]:
+        """What each pair's copy has at an index, among the values of all copies, (copies, n)."""
+        result: npt.NDArray[_Scalar] = values.reshape(-1)[self.copy * values.shape[1] + index]
+        return result
+
+    def functions(
+        self, item: Ints, low: Floats, high: Floats, quadratics: Quadratics, tiny: Bools | None = None
+    ) -> PartialQuadratics:
+        """Quadratics on [low, high], as far as that lies within the rows; `item` is what they are bisectors with.
+
+        Where an interval's ends are swapped and it is not `tiny`, it passes through infinity: there are two functions
+        then, on its two rays. Without `tiny` no interval does.
+        """
+        row, copy = self.row, self.copy
+        a, b, c, m = quadratics
+        wraps = np.flatnonzero((low > high) & ~tiny) if tiny is not None else ()
+        if len(wraps):
+            index = np.concatenate((np.arange(len(row)), wraps))
+            upper = high.copy()
+            upper[wraps] = np.inf
+            low, high = np.concatenate((low, np.full(len(wraps), -np.inf))), np.concatenate((upper, high[wraps]))
+            row, copy, item = row[index], copy[index], item[index]
+            a, b, c, m = a[index], b[index], c[index], m[index]
+        low, high = np.maximum(low, self.rows.low[row]), np.minimum(high, self.rows.high[row])
+        i = np.flatnonzero(low < high)
+        target = np.full(len(i), self.target)
+        return PartialQuadratics(row[i], low[i], high[i], a[i], b[i], c[i], m[i], target, copy[i], item[i])
+
+
+def _half_edge_with_half_edge(pairs: _RowPairs) -> PartialQuadratics:
+    """Bisectors of half-edges' rows with half-edges: h = c + k (s - m).
+
+    Let a disc touch the row's line at s, and from its left a line of direction a at (p, q). Tangents from where the
+    lines meet are equally long: s = p + q k with k = -cot(a/2), and the radius is h = q (1 + k^2) / 2. As (p, q) moves
+    along the other half-edge at speed 1, s falls at speed 1 and h at speed k: so k is the slope, and the interval is as
+    long as the other half-edge.
+    """
+    rows, contour, around = pairs.rows, pairs.contour, pairs.around
+    row, item = pairs.row, pairs.item
+    axis, origin = rows.axis[row], rows.origin[row]
+    start, end = pairs.of(around.start, item), pairs.of(around.end, item)
+    p1, q1 = _coordinates(axis, pairs.of(around.node, start) - origin)
+    p2, q2 = _coordinates(axis, pairs.of(around.node, end) - origin)
+    k = _bisecting_slope(*_coordinates(axis, pairs.of(around.direction, item)), _INFINITE)
+    other = np.ones(len(row), bool)
+    if around.own:
+        own, half_edge = pairs.copy == 0, rows.half_edge[row]
+        # The end of the row's half-edge lies on its line and at its length, exactly.
+        last, length = contour.target[half_edge], contour.length[half_edge]
+        for node, p, q in ((start, p1, q1), (end, p2, q2)):
+            here = own & (node == last)
+            q[here] = 0.0
+            p[here] = length[here]
+        other = ~(own & (item >> 1 == half_edge >> 1))
+    s1, s2 = p1 + q1 * k, p2 + q2 * k
+    valid = other & (np.maximum(q1, q2) > 0.0) & (np.abs(k) < _STEEPEST) & (s1 > rows.low[row]) & (s2 < rows.high[row])
+    v = np.flatnonzero(valid)
+    q1, q2, s1, s2, k = q1[v], q2[v], s1[v], s2[v], k[v]
+    half_square = (1.0 + k * k) / 2.0
+    # The nearer end has the smaller rounding error; an end behind the row's line is none.
+    at_start = (q1 >= 0.0) & ((q1 <= q2) | (q2 < 0.0))
+    m, c = np.where(at_start, s1, s2), np.where(at_start, q1, q2) * half_square
+    # What crosses the row's line counts in front of it only, above h = 0.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        foot = m - c / k
+    low, high = np.where(q2 < 0.0, foot, s2), np.where(q1 < 0.0, foot, s1)
+    return pairs.take(v).functions(item[v], low, high, (np.zeros(len(v)), k, c, m))
+
+
+def _half_edge_with_corner(pairs: _RowPairs) -> PartialQuadratics:
+    """Bisectors of half-edges' rows with corners: h = ((s - p)^2 + q^2) / 2q, a parabola with the corner for focus.
+
+    (s, h) is as far from (p, q) as from the row's line: (s - p)^2 + (h - q)^2 = h^2. Behind the line there is none. As
+    the corner turns right, from its arriving to its leaving line, the angle a of the line falls, and s with it. Raises
+    TouchingElementsError where a corner lies on the row's half-edge.
+    """
+    rows, contour, around = pairs.rows, pairs.contour, pairs.around
+    row = pairs.row
+    node = around.corner[pairs.item]
+    p, q = _coordinates(rows.axis[row], pairs.of(around.node, node) - rows.origin[row])
+    half_edge = rows.half_edge[row]
+    other = np.ones(len(row), bool)
+    if around.own:
+        own_end = (node == contour.source[half_edge]) | (node == contour.target[half_edge])
+        other = ~((pairs.copy == 0) & own_end)
+    on_line = np.flatnonzero(other & (np.abs(q) <= pairs.rounding))
+    half_length = contour.length[half_edge[on_line]] / 2
+    if (np.abs(p[on_line] - half_length) <= half_length + pairs.rounding).any():
+        raise TouchingElementsError
+    v = np.flatnonzero(other & (q > 0.0))
+    pairs, p, q = pairs.take(v), p[v], q[v]
+    corner, axis = pairs.item, rows.axis[pairs.row]
+    leaving = _bisecting_slope(*_coordinates(axis, pairs.of(around.leaving, corner)), -_INFINITE)
+    arriving = _bisecting_slope(*_coordinates(axis, pairs.of(around.arriving, corner)), _INFINITE)
+    tiny = around.turn[corner] <= _TINY
+    low, high = p + q * leaving, p + q * _unswapped(leaving, arriving, tiny)
+    return pairs.functions(2 * around.segments + corner, low, high, _height_of_corner(p, q), tiny)
+
+
+def _corner_with_half_edge(pairs: _RowPairs) -> PartialQuadratics:
+    """Bisectors of corners' rows with half-edges: -(2 / D) (cos(f/2) + x sin(f/2))^2, a perfect square.
+
+    On a ray in direction t the point at r is at D - r cos(t - f) from the line, and that is r on the bisector: 1 / r =
+    (1 + cos(t - f)) / D = 2 cos^2((t - f)/2) / D. By cos^2(t/2) = 1 / (1 + x^2), (1 + x^2) / r is the square.
+
+    The corner sees a half-edge only from its left, and each point of it on one ray: x rises from start to end.
+    """
+    rows, contour, around = pairs.rows, pairs.contour, pairs.around
+    row, item = pairs.row, pairs.item
+    origin = rows.origin[row]
+    start, end = pairs.of(around.start, item), pairs.of(around.end, item)
+    to1, to2 = pairs.of(around.node, start) - origin, pairs.of(around.node, end) - origin
+    direction = pairs.of(around.direction, item)
+    along1, left1 = _coordinates(direction, to1)
+    along2, left2 = _coordinates(direction, to2)
+    square1, square2 = to1.real**2 + to1.imag**2, to2.real**2 + to2.imag**2
+    # The distance of the line, positive where the corner lies on its left; the nearer end has the smaller error.
+    distance = -np.where(square1 < square2, left1, left2)
+    valid = distance > 0.0
+    if around.own:
+        here = contour.corner_node[rows.corner[row]]
+        valid &= ~((pairs.copy == 0) & ((start == here) | (end == here)))
+    v = np.flatnonzero(valid)
+    pairs, direction, distance = pairs.take(v), direction[v], distance[v]
+    row, axis = pairs.row, rows.axis[pairs.row]
+    low = _touching_ray(direction, axis, to1[v], square1[v], -_INFINITE)
+    high = _touching_ray(direction, axis, to2[v], square2[v], _INFINITE)
+    # Half the angle swept is that between the lines to the two ends: compare its sine and cosine, up to a factor.
+    tiny = distance * (along2[v] - along1[v]) <= _TINY * (distance * distance + along1[v] * along2[v])
+    high = _unswapped(low, high, tiny)
+    # cos(f/2) and sin(f/2): the foot lies a right angle to the right of the direction. The larger one comes first.
+    along, across = _coordinates(axis, direction)
+    big, small = np.sqrt((1.0 + np.abs(across)) / 2.0), -along / 2.0
+    cosine = np.where(across >= 0.0, big, small / big)
+    sine = np.where(across >= 0.0, small / big, big)
+    # About a point m of the interval and the row: far from it the square would lose its digits.
+    m = np.minimum(np.maximum(low, rows.low[row]), rows.high[row])
+    root = cosine + m * sine
+    scale = -2.0 / distance
+    quadratics = (scale * sine * sine, 2.0 * scale * sine * root, scale * root * root, m)
+    return pairs.functions(pairs.item, low, high, quadratics, tiny)
+
+
+def _corner_with_corner(pairs: _RowPairs) -> PartialQuadratics:
+    """Bisectors of corners' rows with corners: -(2 / d) ((1 - x^2) cos f + 2 x sin f).
+
+    On a ray in direction t the perpendicular bisector is at r cos(t - f) = d / 2, so 1 / r = 2 cos(t - f) / d; and
+    (1 + x^2) cos t = 1 - x^2, (1 + x^2) sin t = 2 x. Raises TouchingElementsError where corners of two copies coincide.
+    """
+    rows, contour, around = pairs.rows, pairs.contour, pairs.around
+    node = around.corner[pairs.item]
+    away = pairs.of(around.node, node) - rows.origin[pairs.row]
+    square = away.real**2 + away.imag**2
+    other = np.ones(len(node), bool)
+    if around.own:
+        other = ~((pairs.copy == 0) & (node == contour.corner_node[rows.corner[pairs.row]]))
+    if (square[other] <= pairs.rounding**2).any():
+        raise TouchingElementsError
+    v = np.flatnonzero(other)
+    pairs, away, square = pairs.take(v), away[v], square[v]
+    corner, axis = pairs.item, rows.axis[pairs.row]
+    low = _touching_ray(pairs.of(around.arriving, corner), axis, away, square, -_INFINITE)
+    high = _touching_ray(pairs.of(around.leaving, corner), axis, away, square, _INFINITE)
+    tiny = around.turn[corner] <= _TINY
+    high = _unswapped(low, high, tiny)
+    quadratics = _distance_of_corner(*_coordinates(axis, away), square)
+    return pairs.functions(2 * around.segments + corner, low, high, quadratics, tiny)
+
+
+def _height_of_corner(p: Floats, q: Floats) -> Quadratics:
+    """h = ((s - p)^2 + q^2) / 2q."""
+    return 0.5 / q, np.zeros(len(q)), q / 2.0, p
+
+
+def _distance_of_corner(along: Floats, across: Floats, square: Floats) -> Quadratics:
+    """-(2 / d) ((1 - x^2) cos f + 2 x sin f), where along = d cos f, across = d sin f and square = d^2."""
+    a, b = 2.0 * along / square, -4.0 * across / square
+    return a, b, -a, np.zeros(len(a))
+
+
 def _coordinates(axis: Complexes, vector: Complexes) -> tuple[Floats, Floats]:
     """The coordinates of vectors along and to the left of unit vectors."""
     along = axis.real * vector.real + axis.imag * vector.imag
@@ -129,118 +308,22 @@ def _coordinates(axis: Complexes, vector: Complexes) -> tuple[Floats, Floats]:
     return along, left
 
 
-def _tangent(cosine: Floats, sine: Floats, infinite: float) -> Floats:
-    """-cot(th / 2) for angles th; `infinite` where th is exactly 0."""
+def _bisecting_slope(cosine: Floats, sine: Floats, infinite: float) -> Floats:
+    """-cot(a/2) for angles a, given by cosine and sine; `infinite` where a is exactly 0.
+
+    cot(a/2) = (1 + cos a) / sin a = sin a / (1 - cos a): the one that does not cancel.
+    """
     with np.errstate(divide="ignore", invalid="ignore"):
         result = np.where(cosine < 0.0, -sine / (1.0 - cosine), -(1.0 + cosine) / sine)
     return np.where((sine == 0.0) & (cosine > 0.0), infinite, result)
 
 
-def _pieces(
-    rows: Rows,
-    t: int,
-    row: Ints,
-    copy: Ints,
-    item: Ints,
-    low: Floats,
-    high: Floats,
-    quadratic: tuple[Floats, Floats, Floats, Floats],
-    wraps: Ints,
-) -> PartialQuadratics:
-    """Pieces on [low, high], or, where an interval wraps around infinity, on its two rays, within the rows."""
-    a, b, c, m = quadratic
-    if len(wraps):
-        index = np.concatenate((np.arange(len(row)), wraps))
-        upper = high.copy()
-        upper[wraps] = np.inf
-        low, high = np.concatenate((low, np.full(len(wraps), -np.inf))), np.concatenate((upper, high[wraps]))
-        row, copy, item = row[index], copy[index], item[index]
-        a, b, c, m = a[index], b[index], c[index], m[index]
-    low, high = np.maximum(low, rows.low[row]), np.minimum(high, rows.high[row])
-    i = np.flatnonzero(low < high)
-    return PartialQuadratics(row[i], low[i], high[i], a[i], b[i], c[i], m[i], np.full(len(i), t), copy[i], item[i])
+def _touching_ray(direction: Complexes, axis: Complexes, vector: Complexes, square: Floats, infinite: float) -> Floats:
+    """x of the ray on which a disc through 0 touches a line of direction u, from its left, at a vector v.
 
-
-_NO_WRAPS = np.zeros(0, np.intp)
-
-
-def _straight_lines(
-    rows: Rows, contour: Contour, t: int, around: Surroundings, row: Ints, copy: Ints, item: Ints
-) -> PartialQuadratics:
-    """Bisectors of half-edges' rows with half-edges: linear, over an interval as long as the other half-edge.
-
-    A disc that touches the row's line at s from its left, and another line of direction th at (p, q) from its left, has
-    s = p - q cot(th/2) and radius h = q (1 + cot(th/2)^2) / 2.
-    """
-    place = copy * (2 * around.segments) + item
-    axis, origin = rows.axis[row], rows.origin[row]
-    start, end = around.start.reshape(-1)[place], around.end.reshape(-1)[place]
-    first = copy * around.node.shape[1]
-    node = around.node.reshape(-1)
-    p1, q1 = _coordinates(axis, node[first + start] - origin)
-    p2, q2 = _coordinates(axis, node[first + end] - origin)
-    if around.own:
-        # The half-edge's own end lies on its line and at its length, exactly.
-        here, edge = copy == 0, rows.half_edge[row]
-        last, length = contour.target[edge], contour.length[edge]
-        for node_here, p, q in ((start, p1, q1), (end, p2, q2)):
-            own_end = here & (node_here == last)
-            q[own_end] = 0.0
-            p[own_end] = length[own_end]
-        other = ~(here & (item >> 1 == edge >> 1))
-    else:
-        other = np.ones(len(row), bool)
-    tangent = _tangent(*_coordinates(axis, around.direction.reshape(-1)[place]), _INFINITE)
-    s1, s2 = p1 + q1 * tangent, p2 + q2 * tangent
-    v = np.flatnonzero(
-        other
-        & (np.maximum(q1, q2) > 0.0)
-        & (np.abs(tangent) < _STEEPEST)
-        & (s1 > rows.low[row])
-        & (s2 < rows.high[row])
-    )
-    row, copy, item, q1, q2, s1, s2, tangent = row[v], copy[v], item[v], q1[v], q2[v], s1[v], s2[v], tangent[v]
-    square = (1.0 + tangent * tangent) / 2.0
-    # The nearer end has the smaller rounding error; an end behind the row's line is none.
-    at_start = (q1 >= 0.0) & ((q1 <= q2) | (q2 < 0.0))
-    m, c = np.where(at_start, s1, s2), np.where(at_start, q1, q2) * square
-    with np.errstate(divide="ignore", invalid="ignore"):
-        foot = m - c / tangent
-    low, high = np.where(q2 < 0.0, foot, s2), np.where(q1 < 0.0, foot, s1)
-    return _pieces(rows, t, row, copy, item, low, high, (np.zeros(len(row)), tangent, c, m), _NO_WRAPS)
-
-
-def _straight_points(
-    rows: Rows, contour: Contour, t: int, around: Surroundings, row: Ints, copy: Ints, corner: Ints, rounding: float
-) -> PartialQuadratics:
-    """Bisectors of half-edges' rows with corners: h = ((s - p)^2 + q^2) / 2q where the wedge sees the row."""
-    node = around.corner[corner]
-    axis = rows.axis[row]
-    p, q = _coordinates(axis, around.node.reshape(-1)[copy * around.node.shape[1] + node] - rows.origin[row])
-    edge = rows.half_edge[row]
-    if around.own:
-        other = ~((copy == 0) & ((node == contour.source[edge]) | (node == contour.target[edge])))
-    else:
-        other = np.ones(len(row), bool)
-    on_line = np.flatnonzero(other & (np.abs(q) <= rounding))
-    if (np.abs(p[on_line] - contour.length[edge[on_line]] / 2) <= contour.length[edge[on_line]] / 2 + rounding).any():
-        raise TouchingElementsError
-    v = np.flatnonzero(other & (q > 0.0))
-    row, copy, corner, p, q, axis = row[v], copy[v], corner[v], p[v], q[v], axis[v]
-    place = copy * len(around.corner) + corner
-    first = _tangent(*_coordinates(axis, around.arriving.reshape(-1)[place]), _INFINITE)
-    last = _tangent(*_coordinates(axis, around.leaving.reshape(-1)[place]), -_INFINITE)
-    tiny = around.turn[corner] <= _TINY
-    low, high = p + q * last, p + q * np.where(tiny & (1.0 + first * last < 0.0), last, first)
-    wraps = np.flatnonzero((low > high) & ~tiny)
-    quadratic = (0.5 / q, np.zeros(len(q)), q / 2.0, p)
-    return _pieces(rows, t, row, copy, 2 * around.segments + corner, low, high, quadratic, wraps)
-
-
-def _half_tangent(direction: Complexes, axis: Complexes, vector: Complexes, square: Floats, infinite: float) -> Floats:
-    """x of the ray on which a disc through 0 touches a line of this direction, from its left, at `vector`.
-
-    `infinite` where that ray is exactly opposite to the axis.
+    `square` is |v|^2; the result is `infinite` where the ray is exactly opposite to the axis. The centre z = v + i r u
+    has |z| = r, so z / r is -i u mirrored at the line through 0 and v, i (v/|v|)^2 conj(u). Over the axis its cosine
+    and sine, times |v|^2, are the real and imaginary part of i v^2 conj(u axis); x is the tangent of half its angle.
     """
     along = direction.real * axis.real - direction.imag * axis.imag
     across = direction.real * axis.imag + direction.imag * axis.real
@@ -253,113 +336,51 @@ def _half_tangent(direction: Complexes, axis: Complexes, vector: Complexes, squa
     return np.where((sine == 0.0) & (cosine < 0.0), infinite, result)
 
 
-def _round_lines(
-    rows: Rows, contour: Contour, t: int, around: Surroundings, row: Ints, copy: Ints, item: Ints
-) -> PartialQuadratics:
-    """Bisectors of corners' rows with half-edges: 1 / r = (1 + cos) / D, a perfect square in x after scaling."""
-    place = copy * (2 * around.segments) + item
-    origin = rows.origin[row]
-    start, end = around.start.reshape(-1)[place], around.end.reshape(-1)[place]
-    first = copy * around.node.shape[1]
-    node = around.node.reshape(-1)
-    to1, to2 = node[first + start] - origin, node[first + end] - origin
-    direction = around.direction.reshape(-1)[place]
-    c1, l1 = _coordinates(direction, to1)
-    c2, l2 = _coordinates(direction, to2)
-    square1, square2 = to1.real**2 + to1.imag**2, to2.real**2 + to2.imag**2
-    # The distance of the line, positive where the corner lies on its left; the nearer end has the smaller error.
-    distance = -np.where(square1 < square2, l1, l2)
-    valid = distance > 0.0
-    if around.own:
-        here = contour.corner_node[rows.corner[row]]
-        valid &= ~((copy == 0) & ((start == here) | (end == here)))
-    v = np.flatnonzero(valid)
-    row, copy, item, direction, distance = row[v], copy[v], item[v], direction[v], distance[v]
-    axis = rows.axis[row]
-    low = _half_tangent(direction, axis, to1[v], square1[v], -_INFINITE)
-    high = _half_tangent(direction, axis, to2[v], square2[v], _INFINITE)
-    # The half angle swept is that between the lines to the two ends; its cosine and sine, up to a factor.
-    forward = distance * distance + c1[v] * c2[v]
-    tiny = distance * (c2[v] - c1[v]) <= _TINY * forward
-    high = np.where(tiny & (1.0 + low * high < 0.0), low, high)
-    wraps = np.flatnonzero((low > high) & ~tiny)
-    # cos and sin of half the angle from the axis to the foot on the line, which lies to the right of it.
-    along, across = _coordinates(axis, direction)
-    big, small = np.sqrt((1.0 + np.abs(across)) / 2.0), -along / 2.0
-    cosine = np.where(across >= 0.0, big, small / big)
-    sine = np.where(across >= 0.0, small / big, big)
-    m = np.minimum(np.maximum(low, rows.low[row]), rows.high[row])
-    root = cosine + m * sine
-    scale = -2.0 / distance
-    quadratic = (scale * sine * sine, 2.0 * scale * sine * root, scale * root * root, m)
-    return _pieces(rows, t, row, copy, item, low, high, quadratic, wraps)
+def _unswapped(low: Floats, high: Floats, tiny: Bools) -> Floats:
+    """The high ends of intervals between two tangents; the low ones where a tiny interval lies about infinity.
+
+    It is out of every row's reach, whatever rounding makes of its ends, and is to be empty. There 1 + low * high, the
+    denominator of the addition theorem for the tangent of the difference, is negative.
+    """
+    return np.where(tiny & (1.0 + low * high < 0.0), low, high)
 
 
-def _round_points(
-    rows: Rows, contour: Contour, t: int, around: Surroundings, row: Ints, copy: Ints, corner: Ints, rounding: float
-) -> PartialQuadratics:
-    """Bisectors of corners' rows with corners: 1 / r = 2 cos / d."""
-    node = around.corner[corner]
-    away = around.node.reshape(-1)[copy * around.node.shape[1] + node] - rows.origin[row]
-    square = away.real**2 + away.imag**2
-    other = np.ones(len(row), bool)
-    if around.own:
-        other = ~((copy == 0) & (node == contour.corner_node[rows.corner[row]]))
-    if (square[other] <= rounding**2).any():
-        raise TouchingElementsError
-    v = np.flatnonzero(other)
-    row, copy, corner, away, square = row[v], copy[v], corner[v], away[v], square[v]
-    axis = rows.axis[row]
-    place = copy * len(around.corner) + corner
-    low = _half_tangent(around.arriving.reshape(-1)[place], axis, away, square, -_INFINITE)
-    high = _half_tangent(around.leaving.reshape(-1)[place], axis, away, square, _INFINITE)
-    tiny = around.turn[corner] <= _TINY
-    high = np.where(tiny & (1.0 + low * high < 0.0), low, high)
-    wraps = np.flatnonzero((low > high) & ~tiny)
-    along, across = _coordinates(axis, away)
-    along, across = 2.0 * along / square, 4.0 * across / square
-    quadratic = (along, -across, -along, np.zeros(len(row)))
-    return _pieces(rows, t, row, copy, 2 * around.segments + corner, low, high, quadratic, wraps)
-
-
-def _below_bounds(rows: Rows, bounds: Bounds, pieces: PartialQuadratics) -> Ints:
-    """The indices of the pieces that somewhere fall below both bounds of their rows."""
+def _below_bounds(rows: Rows, bounds: Bounds, functions: PartialQuadratics) -> Ints:
+    """The indices of the functions that somewhere fall below both bounds of their rows."""
     straight = rows.straight
     # The height's: h <= H, or -(1 + x^2) / r <= -(1 + x^2) / H.
     flat = np.where(straight, 0.0, -1.0 / bounds.height)
     zero = np.zeros(len(rows))
-    kept = _below(rows, pieces, flat, zero, np.where(straight, bounds.height, flat), zero, zero)
+    kept = _below(rows, functions, (flat, zero, np.where(straight, bounds.height, flat), zero), zero)
     if np.isnan(bounds.champion).any():
         return kept
-    # The bisector's with the champion.
+    # The bisector's with the champion, as with a corner.
     away = bounds.champion - rows.origin
     p, q = _coordinates(rows.axis, away)
     square = away.real**2 + away.imag**2
-    a = np.where(straight, 0.5 / np.where(straight, q, 1.0), 2.0 * p / square)
-    b = np.where(straight, 0.0, -4.0 * q / square)
-    c = np.where(straight, q / 2.0, -2.0 * p / square)
+    of_half_edge, of_corner = _height_of_corner(p, np.where(straight, q, 1.0)), _distance_of_corner(p, q, square)
+    a, b, c, m = (np.where(straight, *either) for either in zip(of_half_edge, of_corner, strict=True))
     # A champion that is near is known to fewer digits.
     doubt = 4.0 * bounds.rounding / np.where(straight, q, np.sqrt(square))
-    return np.asarray(kept[_below(rows, pieces.take(kept), a, b, c, np.where(straight, p, 0.0), doubt)])
+    return np.asarray(kept[_below(rows, functions.take(kept), (a, b, c, m), doubt)])
 
 
-def _below(
-    rows: Rows, pieces: PartialQuadratics, a0: Floats, b0: Floats, c0: Floats, m0: Floats, doubt: Floats
-) -> Ints:
-    """The indices of the pieces that somewhere fall below the quadratic of their row, give or take its doubt."""
-    row, low, high = pieces.row, pieces.low, pieces.high
-    a0, b0, c0, m0 = a0[row], b0[row], c0[row], m0[row]
+def _below(rows: Rows, functions: PartialQuadratics, limits: Quadratics, doubt: Floats) -> Ints:
+    """The indices of the functions that somewhere fall below the limit of their row, give or take its doubt."""
+    row, low, high = functions.row, functions.low, functions.high
+    a0, b0, c0, m0 = (coefficient[row] for coefficient in limits)
     x, y = low - m0, high - m0
-    bound_low, bound_high = c0 + x * (b0 + x * a0), c0 + y * (b0 + y * a0)
-    u, v = low - pieces.m, high - pieces.m
-    over_low = pieces.c + u * (pieces.b + u * pieces.a) - bound_low
-    over_high = pieces.c + v * (pieces.b + v * pieces.a) - bound_high
-    curvature = pieces.a - a0
-    slope = pieces.b + 2.0 * pieces.a * u - b0 - 2.0 * a0 * x
+    limit_low, limit_high = c0 + x * (b0 + x * a0), c0 + y * (b0 + y * a0)
+    u, v = low - functions.m, high - functions.m
+    over_low = functions.c + u * (functions.b + u * functions.a) - limit_low
+    over_high = functions.c + v * (functions.b + v * functions.a) - limit_high
+    # Of the difference, convex or not: its ends, and its lowest point where that lies between them.
+    curvature = functions.a - a0
+    slope = functions.b + 2.0 * functions.a * u - b0 - 2.0 * a0 * x
     with np.errstate(divide="ignore", invalid="ignore"):
         step = -slope / (2.0 * curvature)
         inside = (curvature > 0.0) & (step > 0.0) & (step < high - low)
         dip = np.where(inside, over_low + slope * step / 2.0, over_low)
     least = np.minimum(np.minimum(over_low, over_high), dip)
-    terms = np.abs(bound_low) + np.abs(bound_high) + np.where(rows.straight[row], 0.0, np.abs(a0) + np.abs(b0))
+    terms = np.abs(limit_low) + np.abs(limit_high) + np.where(rows.straight[row], 0.0, np.abs(a0) + np.abs(b0))
     return np.flatnonzero(least <= (_SLACK + doubt[row]) * terms)

@@ -24,14 +24,10 @@ _SLACK = 1e-9
 class Level:
     """Capsules of all copies that together hold all elements.
 
-    A capsule is all that is within a radius of a segment; it fits a piece of a smooth curve far better than a disc.
-
-    Attributes:
-        start, end: (copies, k) the capsules' segments.
-        radius: (k,).
-        anchor_start, anchor_end: (copies, k) one element in each capsule.
-
-    Capsule j holds the capsules 8 j to 8 j + 7 of the next level.
+    A capsule is all that is within a radius of a segment; it fits a run of a smooth curve's chords far better than a
+    disc. Its segment runs from `start` to `end` (complex128, copies x k) and its radius is `radius` (float64, k);
+    `anchor_start` and `anchor_end` (complex128, copies x k) are the ends of one element in it. Capsule j holds the
+    capsules 8 j to 8 j + 7 of the next level.
     """
 
     start: Complexes
@@ -45,9 +41,8 @@ class Level:
 class Hierarchy:
     """The elements of a site's copies in nested capsules.
 
-    Attributes:
-        levels: from one capsule around each copy to the elements themselves.
-        order: element index of each capsule of the last level; segments first, then isolated nodes.
+    `levels` go from one capsule around each copy to the elements themselves; `order` (intp, k) is the element of each
+    capsule of the last level, numbered segments first, then isolated nodes.
     """
 
     levels: tuple[Level, ...]
@@ -99,11 +94,7 @@ def _capsules(start: Complexes, end: Complexes, first: Ints) -> tuple[Complexes,
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """Pairs of a row and an element of a copy, sorted by row.
-
-    Attributes:
-        row, copy, element: (k,) indices.
-    """
+    """Pairs of a row and an element of a copy, as indices, intp (k,), sorted by row."""
 
     row: Ints
     copy: Ints
@@ -114,11 +105,9 @@ class Candidates:
 class Bounds:
     """What bounds each row's cell; tightened in place.
 
-    Attributes:
-        rounding: by how much coordinates, and their differences, may be off.
-        height: (rows,) no point of the cell is farther from the element.
-        by_point: (rows,) the best such bound by the bisector with a single point.
-        champion: (rows,) that point, NaN where there is none.
+    No point of a row's cell is farther from the row's element than `height` (float64, n). `by_point` (float64, n) is
+    the best such bound by the bisector with a single point, and `champion` (complex128, n) that point, NaN where there
+    is none. `rounding` is by how much coordinates, and their differences, may be off. All are in the design's units.
     """
 
     rounding: float
@@ -136,9 +125,6 @@ def find_candidates(
 ) -> tuple[list[Candidates], Bounds]:
     """For each target, a superset of the pairs in which the element shapes the row's cell; and bounds of the cells.
 
-    Raises TooManyPairsError where more than `most` pairs, or four times as many before they are narrowed, would be held
-    at once.
-
     An element matters only if, for some point of the row's cell, it meets the disc about that point that just reaches
     the row's element. The row's bisector with a point z, its champion, bounds the cell. The discs about the points of
     that bisector all pass through z; let h0 and h1 be the radii of those on the outermost rays, a distance w
@@ -147,6 +133,9 @@ def find_candidates(
 
     Each anchor may become the champion: bisectors with a point or a segment are highest at the ends of a row. So the
     bounds tighten while the capsules shrink, and the number of pairs per row stays small at each level.
+
+    `targets` are the copies of each site. Raises TooManyPairsError where more than `most` pairs, or four times as many
+    before they are narrowed, would be held at once.
     """
     none = np.full(len(rows), np.nan, complex)
     infinite = np.full(len(rows), np.inf)

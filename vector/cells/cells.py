@@ -9,11 +9,12 @@ import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, Floats, Ints
 from voronoi_tiles.base.tolerance import EPSILON
-from voronoi_tiles.vector.cells.bisectors import PartialQuadratics, bisector_pieces
+from voronoi_tiles.vector.cells.bisectors import find_bisectors
 from voronoi_tiles.vector.cells.candidates import Hierarchy, TooManyPairsError, find_candidates
 from voronoi_tiles.vector.cells.envelope import lower_envelope
 from voronoi_tiles.vector.cells.half_edges import Contour
 from voronoi_tiles.vector.cells.images import Surroundings
+from voronoi_tiles.vector.cells.partial_quadratics import PartialQuadratics
 from voronoi_tiles.vector.cells.pencils import Rows
 
 # Rows that are worked on at once: enough for numpy's overhead to vanish, few enough for some 100 MB.
@@ -24,12 +25,12 @@ _PAIRS = 1_000_000
 
 @dataclass(frozen=True, slots=True)
 class Parts:
-    """What bounds the rows' cells, by row and along each row's variable; no part is empty.
+    """What bounds the rows' cells: the parts of their lower envelopes, by row and along each row's variable.
 
-    Attributes:
-        row: (k,) indices.
-        target, copy, item: (k,) the element beyond: half-edge i of the site, or its corner c as h + c.
-        begin, end: (k,) the part's ends; consecutive parts of a row share theirs, bit for bit.
+    Part k belongs to the row `row[k]` (intp). Beyond it lies an element of the copy `copy[k]` (intp) of the site
+    `target[k]` (intp): `item[k]` (intp) is its half-edge i, or its corner c as h + c, where the site has h half-edges.
+    It runs from `begin[k]` to `end[k]` (complex128). No part is empty, and consecutive ones of a row share their ends,
+    bit for bit.
     """
 
     row: Ints
@@ -52,13 +53,8 @@ def bound_cells(
 ) -> Parts:
     """What bounds every cell of a site.
 
-    Args:
-        rows, contour: of the base site.
-        targets: for each site its copies, and the same in nested capsules.
-        covering_radius: of the lattice.
-
-    Raises:
-        UnboundedCellError: as it says.
+    `targets` has for each site its copies, and the same in nested capsules; `covering_radius` is the lattice's. Raises
+    UnboundedCellError where a cell comes out unbounded, TouchingElementsError where a node lies on another copy.
     """
     found = []
     hierarchies = [hierarchy for _, hierarchy in targets]
@@ -74,40 +70,45 @@ def bound_cells(
             waiting += [(middle, stop), (start, middle)]
             continue
         around = [(copies, pairs) for (copies, _), pairs in zip(targets, candidates, strict=True)]
-        pieces = bisector_pieces(chunk, contour, around, bounds)
-        parts = _locate(chunk, pieces, *lower_envelope(pieces, chunk.low, chunk.high))
+        functions = find_bisectors(chunk, contour, around, bounds)
+        parts = _locate(chunk, functions, *lower_envelope(functions, chunk.low, chunk.high))
         found.append(Parts(parts.row + start, parts.target, parts.copy, parts.item, parts.begin, parts.end))
     if len(found) == 1:
         return found[0]
     return Parts(*(np.concatenate([getattr(parts, name) for parts in found]) for name in Parts.__slots__))
 
 
-def _locate(rows: Rows, pieces: PartialQuadratics, row: Ints, start: Floats, end: Floats, piece: Ints) -> Parts:
-    """An envelope's parts with their ends in the plane."""
+def _locate(rows: Rows, functions: PartialQuadratics, row: Ints, start: Floats, end: Floats, function: Ints) -> Parts:
+    """The parts of envelopes with their ends in the plane.
+
+    They are given as `lower_envelope` gives them. Raises UnboundedCellError where one has no function, or a row no
+    part.
+    """
     # Where three functions meet, rounding may leave one of them an interval of an ulp: a break would be located by it.
     null = 4.0 * EPSILON * np.maximum(np.abs(rows.low), np.abs(rows.high))
     kept = np.flatnonzero(end - start > null[row])
-    row, start, end, piece = row[kept], start[kept], end[kept], piece[kept]
+    row, start, end, function = row[kept], start[kept], end[kept], function[kept]
     first = np.append(True, row[1:] != row[:-1])
     start[first] = rows.low[row[first]]
     end[:-1] = np.where(first[1:], end[:-1], start[1:])
     last = np.append(first[1:], True)
     end[last] = rows.high[row[last]]
-    if len(np.unique(row)) < len(rows) or (piece < 0).any():
+    if len(np.unique(row)) < len(rows) or (function < 0).any():
         raise UnboundedCellError
     # Each break is located once, with the flatter of the two functions that meet there: an error in x then moves
     # the point by no more than itself.
     inner = np.flatnonzero(row[1:] == row[:-1])
-    at_start, at_end = piece.copy(), piece.copy()
-    flatter = np.abs(pieces.slope(piece[inner], end[inner])) <= np.abs(pieces.slope(piece[inner + 1], end[inner]))
-    at_end[inner] = np.where(flatter, piece[inner], piece[inner + 1])
-    at_start[inner + 1] = at_end[inner]
-    value = pieces.value(at_start, start)
-    begin = _point(rows, row, start, value)
+    before, after, at = function[inner], function[inner + 1], end[inner]
+    at_start = function.copy()
+    at_start[inner + 1] = np.where(
+        np.abs(functions.slope(before, at)) <= np.abs(functions.slope(after, at)), before, after
+    )
+    begin = _point(rows, row, start, functions.value(at_start, start))
     finish = np.empty(len(row), complex)
     finish[inner] = begin[inner + 1]
-    finish[last] = _point(rows, row[last], end[last], pieces.value(piece[last], end[last]))
-    return Parts(row, pieces.target[piece], pieces.copy[piece], pieces.item[piece], begin, finish)
+    finish[last] = _point(rows, row[last], end[last], functions.value(function[last], end[last]))
+    target, copy, item = functions.target[function], functions.copy[function], functions.item[function]
+    return Parts(row, target, copy, item, begin, finish)
 
 
 def _point(rows: Rows, row: Ints, x: Floats, value: Floats) -> Complexes:

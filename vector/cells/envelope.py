@@ -2,72 +2,71 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 
 from voronoi_tiles.base.arrays import Floats, Ints
-from voronoi_tiles.vector.cells.bisectors import PartialQuadratics
+from voronoi_tiles.vector.cells.partial_quadratics import PartialQuadratics
 
-NOTHING = -1
+NOTHING: Final = -1
+"""The index of no function."""
 # A longer step, relative to the distance of the next root, is not a correction of rounding.
 _NEAR = 1e-3
 
 
-def lower_envelope(pieces: PartialQuadratics, low: Floats, high: Floats) -> tuple[Ints, Floats, Floats, Ints]:
-    """The lower envelope of each row's pieces.
+def lower_envelope(functions: PartialQuadratics, low: Floats, high: Floats) -> tuple[Ints, Floats, Floats, Ints]:
+    """The lower envelope of each row's functions on its interval from `low` to `high`, float64 (rows,).
 
-    By divide and conquer: each piece is an envelope of its own, and neighbouring envelopes are merged in pairs, all
+    The result are the envelopes' parts (row, start, end, lowest): intp, float64, float64 and intp (k,), by row and
+    start, without gaps from low to high. `lowest` is an index into `functions`, or NOTHING where none is defined.
+    `functions` are sorted by row.
+
+    By divide and conquer: each function is an envelope of its own, and neighbouring envelopes are merged in pairs, all
     rows at once, until each row has one. In a merge every interval between break points has one function from either
-    side; their crossings cut it into at most three parts, and the middle of each part decides. No tolerance
-    takes part; equal functions count as their first.
-
-    Args:
-        pieces: sorted by row.
-        low, high: (rows,) each row's interval.
-
-    Returns:
-        (row, start, end, piece) of the envelope's parts, by row and start, without gaps from low to high; piece is
-        -1 where no function is defined.
+    envelope; their crossings cut it into at most three parts, and the middle of each part decides. No tolerance takes
+    part; equal functions count as their first.
     """
     rows = len(low)
-    count = np.bincount(pieces.row, minlength=rows)
-    index = np.arange(len(pieces.row)) - (np.cumsum(count) - count)[pieces.row]
+    count = np.bincount(functions.row, minlength=rows)
+    index = np.arange(len(functions.row)) - (np.cumsum(count) - count)[functions.row]
     stride = int(count.max(initial=0)) or 1
-    group = pieces.row * stride + index
+    group = functions.row * stride + index
     # Every envelope starts at its row's low, with nothing where its function is not defined.
-    late = np.flatnonzero(pieces.low > low[pieces.row])
-    early = np.flatnonzero(pieces.high < high[pieces.row])
+    late = np.flatnonzero(functions.low > low[functions.row])
+    early = np.flatnonzero(functions.high < high[functions.row])
     group = np.concatenate((group, group[late], group[early]))
-    start = np.concatenate((pieces.low, low[pieces.row[late]], pieces.high[early]))
-    piece = np.concatenate((np.arange(len(pieces.row)), np.full(len(late) + len(early), NOTHING)))
+    start = np.concatenate((functions.low, low[functions.row[late]], functions.high[early]))
+    lowest = np.concatenate((np.arange(len(functions.row)), np.full(len(late) + len(early), NOTHING)))
     if stride == 1:
         order = np.lexsort((start, group))
-        group, start, piece = group[order], start[order], piece[order]
+        group, start, lowest = group[order], start[order], lowest[order]
     while stride > 1:
         row, index = np.divmod(group, stride)
         stride = (stride + 1) // 2
-        group, start, piece = _merge(pieces, row * stride + (index >> 1), index & 1, start, piece, high, stride)
+        group, start, lowest = _merge(functions, row * stride + (index >> 1), index & 1, start, lowest, high, stride)
     end = np.append(start[1:], 0.0)
     last = np.append(group[1:] != group[:-1], True)
     end[last] = high[group[last]]
-    return group, start, end, piece
+    return group, start, end, lowest
 
 
 def _merge(
-    pieces: PartialQuadratics, group: Ints, side: Ints, start: Floats, piece: Ints, high: Floats, stride: int
+    functions: PartialQuadratics, group: Ints, which: Ints, start: Floats, lowest: Ints, high: Floats, stride: int
 ) -> tuple[Ints, Floats, Ints]:
-    """The lower envelopes of each group's two, those of side 0 and side 1: (group, start, piece), sorted."""
+    """The lower envelopes of each group's two, that of which 0 and that of which 1: (group, start, lowest), sorted."""
     order = np.lexsort((start, group))
-    group, side, start, piece = group[order], side[order], start[order], piece[order]
+    group, which, start, lowest = group[order], which[order], start[order], lowest[order]
     place = np.arange(len(group))
     fresh = np.empty(len(group), bool)
     fresh[0] = True
     np.not_equal(group[1:], group[:-1], out=fresh[1:])
     opening = np.maximum.accumulate(np.where(fresh, place, 0))
-    # The function of either side that rules from here on: the one that started last.
-    last0 = np.maximum.accumulate(np.where(side == 0, place, -1))
-    last1 = np.maximum.accumulate(np.where(side == 1, place, -1))
-    first = np.where(last0 >= opening, piece[last0], NOTHING)
-    second = np.where(last1 >= opening, piece[last1], NOTHING)
+    # The function of either envelope that rules from here on: the one that started last.
+    last0 = np.maximum.accumulate(np.where(which == 0, place, -1))
+    last1 = np.maximum.accumulate(np.where(which == 1, place, -1))
+    first = np.where(last0 >= opening, lowest[last0], NOTHING)
+    second = np.where(last1 >= opening, lowest[last1], NOTHING)
     end = np.empty(len(group))
     end[:-1] = start[1:]
     final = np.append(fresh[1:], True)
@@ -76,7 +75,7 @@ def _merge(
     wide = end > start
     contested = np.flatnonzero(wide & (first >= 0) & (second >= 0) & (first != second))
     if len(contested):
-        extra = _contest(pieces, contested, first, second, start, end, winner)
+        extra = _contest(functions, contested, first, second, start, end, winner)
         if extra is not None:
             where, at, who = extra
             group, start = np.concatenate((group, group[where])), np.concatenate((start, at))
@@ -94,20 +93,20 @@ def _merge(
 
 
 def _contest(
-    pieces: PartialQuadratics, index: Ints, first: Ints, second: Ints, start: Floats, end: Floats, winner: Ints
+    functions: PartialQuadratics, index: Ints, first: Ints, second: Ints, start: Floats, end: Floats, winner: Ints
 ) -> tuple[Ints, Floats, Ints] | None:
-    """Decide intervals on which both sides have a function.
+    """Decide intervals on which both envelopes have a function.
 
-    Sets `winner` in place for each interval's first part; the result are the further parts as (interval, start, piece),
-    in order, or None.
+    Sets `winner` in place for each interval's first part; the result are the further parts as (interval, start,
+    lowest), in order, or None.
     """
     f, g = np.minimum(first[index], second[index]), np.maximum(first[index], second[index])
     x0, x1 = start[index], end[index]
     middle, half = (x0 + x1) / 2, (x1 - x0) / 2
     # The difference about the interval's middle: v + b t + a t^2 for |t| < half.
-    v = pieces.value(f, middle) - pieces.value(g, middle)
-    b = pieces.slope(f, middle) - pieces.slope(g, middle)
-    a = pieces.a[f] - pieces.a[g]
+    v = functions.value(f, middle) - functions.value(g, middle)
+    b = functions.slope(f, middle) - functions.slope(g, middle)
+    a = functions.a[f] - functions.a[g]
     winner[index] = np.where(v <= 0.0, f, g)
     # Without a root in reach the sign at the middle decides; this spares most intervals the formula.
     reach = np.abs(b) * half + np.abs(a) * half * half
@@ -137,11 +136,13 @@ def _contest(
     two = np.flatnonzero(high > low)
     where = np.concatenate((index, index[two]))
     at = np.concatenate((middle + low, (middle + high)[two]))
-    # About the middle of its interval a steep function is large, and its roots have that many digits fewer: one step of
+    # About the middle of its interval a steep lowest is large, and its roots have that many digits fewer: one step of
     # Newton's method from where the functions themselves are small gives them back.
     one, other = np.concatenate((f, f[two])), np.concatenate((g, g[two]))
     with np.errstate(divide="ignore", invalid="ignore"):
-        step = (pieces.value(one, at) - pieces.value(other, at)) / (pieces.slope(one, at) - pieces.slope(other, at))
+        step = (functions.value(one, at) - functions.value(other, at)) / (
+            functions.slope(one, at) - functions.slope(other, at)
+        )
     reach = _NEAR * np.where(high > low, np.minimum(high - low, half), half)
     at = np.where(np.abs(step) <= np.concatenate((reach, reach[two])), at - step, at)
     # Rounding must not carry a cut over the interval's end: the order of starts is what the next merge relies on.

@@ -22,15 +22,11 @@ class Contour:
     the same face. An isolated node has four corners of a right angle each, which no half-edge bounds: they stand
     behind the half-edges' corners.
 
-    Attributes:
-        nodes: (m,) positions.
-        source, target: (h,) node indices of each half-edge.
-        direction: (h,) unit vectors from source to target.
-        length: (h,).
-        following: (h,) the next half-edge around the face on the left.
-        corner_node: (c,) node index of each corner, c >= h.
-        arriving, leaving: (c,) unit vectors of the half-edges before and after each corner.
-        turn: (c,) angle by which the contour turns right at the corner, in (-pi, pi].
+    `nodes` (complex128, m) are positions. A half-edge runs from the node `source` to the node `target` (intp, h), has
+    the unit vector `direction` (complex128, h) and a `length` (float64, h); `following` (intp, h) is the next one
+    around the face on the left. A corner lies at the node `corner_node` (intp, c, with c >= h); `arriving` and
+    `leaving` (complex128, c) are the unit vectors of the half-edges before and after it, and `turn` (float64, c) is
+    the angle in (-pi, pi], in radians, by which the contour turns right there.
     """
 
     nodes: Complexes
@@ -70,11 +66,9 @@ class Contour:
 
 
 def trace_contour(nodes: Complexes, segments: Ints) -> Contour:
-    """The contour of a site.
+    """The contour of a site with nodes at positions, complex128 (m,), and segments between them, intp (n, 2).
 
-    Args:
-        nodes: (m,) positions.
-        segments: (n, 2) indices into nodes; segments meet only at common nodes.
+    Segments meet only at common nodes.
     """
     count = len(segments)
     source = segments.reshape(-1)
@@ -126,12 +120,8 @@ def enclosed(contour: Contour, strangers: Complexes, siblings: Complexes) -> Boo
     """Which half-edges look into a region that the site encloses, and in which no other copy lies.
 
     Such a region belongs to the site, whatever its elements share of it. A copy of a connected site cannot lie in one
-    of its regions without touching it: it would have to be smaller.
-
-    Args:
-        contour: of the site.
-        strangers: (k,) nodes of copies of other sites.
-        siblings: (l,) nodes of the other copies of this site.
+    of its regions without touching it: it would have to be smaller. `strangers` are the nodes of copies of other
+    sites, `siblings` those of the other copies of this site, complex128 (k,) and (l,). The result is bool (h,).
     """
     face = contour.faces()
     result = np.zeros(len(face), bool)

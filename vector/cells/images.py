@@ -16,16 +16,14 @@ from voronoi_tiles.vector.copies import Copies
 class Surroundings:
     """The half-edges and corners of all copies of a site, the face on the left of each.
 
-    A copy that is turned over has its half-edges run through backwards.
+    A copy that is turned over has its half-edges run through backwards. `own` says whether copy 0 is the site whose
+    rows are looked at; the site has `segments` segments, and twice as many half-edges.
 
-    Attributes:
-        own: whether copy 0 is the site whose rows are looked at.
-        segments: how many the site has; half-edges are twice as many.
-        node: (copies, m) positions.
-        start, end: (copies, h) nodes of each half-edge.
-        direction: (copies, h).
-        corner: (c,) node of each corner; turn: (c,) its angle; bounding: (c,) whether it counts.
-        arriving, leaving: (copies, c) directions of the half-edges before and after.
+    `node` (complex128, copies x m) are positions. A half-edge runs from the node `start` to the node `end` (intp,
+    copies x h) in the direction of the unit vector `direction` (complex128, copies x h). A corner lies at the node
+    `corner` (intp, c) and has the angle `turn` (float64, c) of the site's own; where `bounding` (bool, c) it counts
+    among the elements that bound other cells. `arriving` and `leaving` (complex128, copies x c) are the unit vectors
+    of the half-edges before and after it.
     """
 
     own: bool
@@ -42,7 +40,7 @@ class Surroundings:
 
 
 def surround(contour: Contour, copies: Copies, *, own: bool) -> Surroundings:
-    """All copies of a contour."""
+    """All copies of a contour; `own` where the first of them is the site whose rows are looked at."""
     unit, shift, conj = copies.unit[:, None], copies.shift[:, None], copies.conj[:, None]
     turned, still = np.where(conj, -unit, unit), np.zeros((1, 1), complex)
     before, after = move(contour.arriving, turned, still, conj), move(contour.leaving, turned, still, conj)

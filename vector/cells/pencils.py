@@ -1,4 +1,4 @@
-"""The rows of a site: pencils of rays on the sides of its segments and in its convex corners."""
+"""The rows of a site: pencils of rays from its half-edges, to their left, and from its convex corners."""
 
 from __future__ import annotations
 
@@ -24,13 +24,11 @@ class Rows:
     origin + r axis (1 + i x)^2 / (1 + x^2), with the wedge's middle as axis; x is the tangent of half the angle
     from it.
 
-    Attributes:
-        half_edge: (rows,) index of the half-edge, or -1.
-        corner: (rows,) index of the corner, or -1.
-        origin, axis, low, high: (rows,) as above.
-        base0, ray0, base1, ray1: the first and last ray's origin and unit direction.
-        base, ray: those of a ray between them.
-        spread: how far along the half-edge the rays' origins are from that ray's; 0 in a corner.
+    `half_edge` and `corner` (intp, n) are the index of the element, -1 where it is of the other kind. `origin` and
+    `axis` (complex128, n), `low` and `high` (float64, n) are as above. The first ray of a row starts at `base0` in the
+    direction of the unit vector `ray0`, the last one at `base1` along `ray1`, one between them at `base` along `ray`
+    (complex128, n). The rays' origins are within `spread` (float64, n) of that one's along the half-edge; in a corner
+    this is 0.
     """
 
     half_edge: Ints
@@ -52,7 +50,7 @@ class Rows:
 
     @property
     def straight(self) -> Bools:
-        """(rows,) whether the row belongs to a half-edge."""
+        """Whether each row belongs to a half-edge, bool (n,)."""
         return self.corner < 0
 
     def slice(self, start: int, stop: int) -> Rows:
@@ -63,22 +61,15 @@ class Rows:
 def make_rows(contour: Contour, covering_radius: float, without: Bools) -> Rows:
     """The rows of a contour: those of half-edges in order, then those of convex corners in order.
 
-    Long half-edges and wide corners have several rows, by ascending x.
-
-    Args:
-        contour: of the site.
-        covering_radius: of the lattice.
-        without: (h,) half-edges that get no rows, nor do the corners at their ends.
+    Long half-edges (as measured by the lattice's covering radius) and wide corners have several rows, by ascending x.
+    Half-edges `without` (bool, h) get no rows, nor do the corners at their ends.
     """
     wanted = np.flatnonzero(~without)
-    edge, part, parts = _divide(contour.length[wanted] / (_LONGEST_PART * covering_radius))
-    edge = wanted[edge]
-    start, end, along = (
-        contour.nodes[contour.source[edge]],
-        contour.nodes[contour.target[edge]],
-        contour.direction[edge],
-    )
-    low, high = contour.length[edge] * (part / parts), contour.length[edge] * ((part + 1) / parts)
+    half_edge, part, parts = _divide(contour.length[wanted] / (_LONGEST_PART * covering_radius))
+    half_edge = wanted[half_edge]
+    start, end = contour.nodes[contour.source[half_edge]], contour.nodes[contour.target[half_edge]]
+    along, length = contour.direction[half_edge], contour.length[half_edge]
+    low, high = length * (part / parts), length * ((part + 1) / parts)
     normal = 1j * along
     kept = contour.convex
     kept[: len(without)] &= ~without
@@ -92,9 +83,9 @@ def make_rows(contour: Contour, covering_radius: float, without: Bools) -> Rows:
     axis /= np.abs(axis)
     low_x, high_x = np.tan(turn / 2 * np.stack((part / parts_of_corner, (part + 1) / parts_of_corner)) - turn / 4)
     ray0, ray1, middle = _ray(axis, np.stack((low_x, high_x, (low_x + high_x) / 2)))
-    count = len(edge)
+    count = len(half_edge)
     return Rows(
-        half_edge=np.concatenate((edge, np.full(len(corner), -1))),
+        half_edge=np.concatenate((half_edge, np.full(len(corner), -1))),
         corner=np.concatenate((np.full(count, -1), corner)),
         origin=np.concatenate((start, point)),
         axis=np.concatenate((along, axis)),
@@ -102,7 +93,7 @@ def make_rows(contour: Contour, covering_radius: float, without: Bools) -> Rows:
         high=np.concatenate((high, high_x)),
         base0=np.concatenate((start + low * along, point)),
         ray0=np.concatenate((normal, ray0)),
-        base1=np.concatenate((np.where(high == contour.length[edge], end, start + high * along), point)),
+        base1=np.concatenate((np.where(high == length, end, start + high * along), point)),
         ray1=np.concatenate((normal, ray1)),
         base=np.concatenate((start + (low + high) / 2 * along, point)),
         ray=np.concatenate((normal, middle)),

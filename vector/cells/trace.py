@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints, next_in_ring, starts
 from voronoi_tiles.base.neighbours import Neighbours
 from voronoi_tiles.vector.cells.cells import Parts
 from voronoi_tiles.vector.cells.half_edges import Contour
@@ -15,12 +15,10 @@ from voronoi_tiles.vector.cells.pencils import Rows
 
 @dataclass(frozen=True, slots=True)
 class Boundary:
-    """The closed boundary of a tile: its interior lies to the left of every arc.
+    """The closed boundary of a tile, n arcs ring after ring: its interior lies to the left of every arc.
 
-    Attributes:
-        part: (n,) the part that each arc is, ring after ring.
-        vertex: (n,) where each arc starts; it ends where the next of its ring starts.
-        ring: (n,) index of the ring.
+    Arc k is the part `part[k]` (intp) of some row. It starts at `vertex[k]` (complex128) and ends where the next arc of
+    the ring `ring[k]` (intp) starts.
     """
 
     part: Ints
@@ -33,15 +31,10 @@ class OpenBoundaryError(ArithmeticError):
 
 
 def trace_boundary(rows: Rows, contour: Contour, parts: Parts, inner: Bools, null: float) -> Boundary:
-    """The rings to which the parts that face other copies chain up.
+    """The rings to which those of a site's parts chain up that face other copies.
 
-    Args:
-        rows, contour, parts: of the site.
-        inner: (k,) whether a part faces another element of the site itself.
-        null: arcs whose ends are no farther apart are left out.
-
-    Raises:
-        OpenBoundaryError: as it says.
+    `inner` (bool, k) says which parts face another element of the site itself. Arcs whose ends are no farther apart
+    than `null` are left out. Raises OpenBoundaryError where the parts do not close to rings.
     """
     straight = rows.straight[parts.row]
     # Counter-clockwise around the tile, x falls along half-edges and rises along corners.
@@ -93,15 +86,15 @@ def _links(rows: Rows, contour: Contour, parts: Parts, inner: Bools, straight: B
     # The first and last row of each half-edge and corner.
     opening, closing = np.flatnonzero(np.append(True, ~again)), np.flatnonzero(np.append(~again, True))
     half_edges = len(contour.source)
-    edge_first, edge_last = _ends(rows.half_edge, half_edges, opening, closing, first, last)
+    half_edge_first, half_edge_last = _ends(rows.half_edge, half_edges, opening, closing, first, last)
     corner_first, corner_last = _ends(rows.corner, len(contour.corner_node), opening, closing, first, last)
     # The corner between half-edges a and b = following[a]: counter-clockwise around the tile, from b over it to a.
     b = contour.following
-    present, round_corner = edge_first >= 0, corner_first[:half_edges] >= 0
+    present, round_corner = half_edge_first >= 0, corner_first[:half_edges] >= 0
     has, bare = np.flatnonzero(present & round_corner), np.flatnonzero(present & ~round_corner)
-    following[edge_first[b[has]]] = corner_first[has]
-    following[corner_last[has]] = edge_last[has]
-    following[edge_first[b[bare]]] = edge_last[bare]
+    following[half_edge_first[b[has]]] = corner_first[has]
+    following[corner_last[has]] = half_edge_last[has]
+    following[half_edge_first[b[bare]]] = half_edge_last[bare]
     # An isolated node's four corners are numbered clockwise.
     lone = np.arange(half_edges, len(contour.corner_node))
     following[corner_last[lone]] = corner_first[lone - 1 + 4 * ((lone - half_edges) % 4 == 0)]
@@ -118,15 +111,15 @@ def _ends(owner: Ints, count: int, opening: Ints, closing: Ints, first: Ints, la
     return result[0], result[1]
 
 
-def _match(ends: Complexes, starts: Complexes) -> Ints:
-    """For each end the index of the start that continues it: each other's nearest, then among those left."""
-    if len(ends) != len(starts):
+def _match(ends: Complexes, begins: Complexes) -> Ints:
+    """For each end the index of the begin that continues it: each other's nearest, then among those left."""
+    if len(ends) != len(begins):
         raise OpenBoundaryError
     partner = np.full(len(ends), -1)
-    left, right = np.arange(len(ends)), np.arange(len(starts))
+    left, right = np.arange(len(ends)), np.arange(len(begins))
     while len(left):
-        there = Neighbours(starts[right]).nearest(ends[left])[1][:, 0]
-        back = Neighbours(ends[left]).nearest(starts[right])[1][:, 0]
+        there = Neighbours(begins[right]).nearest(ends[left])[1][:, 0]
+        back = Neighbours(ends[left]).nearest(begins[right])[1][:, 0]
         mutual = np.flatnonzero(back[there] == np.arange(len(left)))
         partner[left[mutual]] = right[there[mutual]]
         left, right = np.delete(left, mutual), np.delete(right, there[mutual])
@@ -136,9 +129,7 @@ def _match(ends: Complexes, starts: Complexes) -> Ints:
 def _without_null(part: Ints, vertex: Complexes, ring: Ints, null: float) -> Boundary:
     """The boundary without arcs that have no length, and without rings that have no other."""
     while len(part):
-        opening = np.flatnonzero(np.append(True, ring[1:] != ring[:-1]))
-        following = np.arange(1, len(part) + 1)
-        following[np.append(opening[1:], len(part)) - 1] = opening
+        following = next_in_ring(np.append(starts(ring), len(ring)))
         kept = np.abs(vertex[following] - vertex) > null
         if kept.all():
             break
