@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.base.maps import Isometry
 from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.paths.conversion import chord_counts, chords
 from voronoi_tiles.paths.paths import LINE, QUAD, Paths
-from voronoi_tiles.paths.quadratics import quadratic_lengths
 from voronoi_tiles.vector.arcs import Arc, LineArc, Neighbour, ParabolaArc
 
 if TYPE_CHECKING:
@@ -128,9 +128,7 @@ class Outline:
     @cached_property
     def lengths(self) -> Floats:
         """The length of each arc in units: float64 (n,)."""
-        lengths = np.abs(self.end - self.start)
-        bent = np.flatnonzero(self.curved)
-        lengths[bent] = quadratic_lengths(self.start[bent], self.control[bent], self.end[bent])
+        lengths = self.paths.lengths
         lengths.setflags(write=False)
         return lengths
 
@@ -152,33 +150,21 @@ class Outline:
         """
         if not len(self):
             raise ValueError("an outline without arcs has no bounds")
-        low_x, high_x = _extent(self.start.real, self.control.real, self.end.real, self.curved)
-        low_y, high_y = _extent(self.start.imag, self.control.imag, self.end.imag, self.curved)
-        return low_x, low_y, high_x, high_y
+        return self.paths.bounds
 
     def flatten(self, *, accuracy: float) -> list[Complexes]:
         """Replace every parabolic arc by chords that stay within `accuracy` (in units) of it.
 
         Returns one complex128 array per ring, closed implicitly: the first point is not repeated. An arc and its
         reverse give the same points bit for bit. Raises ValueError when the accuracy is not positive, or finer than
-        the coordinates' own resolution.
-
-        Source: a quadratic with second difference e, cut into k equal parameter steps, is |e| / (4 k^2) off at most.
+        the coordinates' own resolution. See `paths.conversion.chords`.
         """
         size = float(np.abs(self.start).max(initial=0.0))
         if not accuracy > 4 * np.finfo(np.float64).eps * size:
             raise ValueError(f"accuracy {accuracy!r} must be positive and above the coordinates' resolution")
-        bend = np.where(self.curved, np.abs(self.start - 2 * self.control + self.end), 0.0)
-        steps = np.maximum(np.ceil(np.sqrt(bend / (4 * accuracy))), 1.0).astype(np.intp)
-        arc = np.repeat(np.arange(len(self)), steps)
-        first = np.cumsum(steps) - steps
-        after = np.arange(len(arc)) - first[arc]
-        before = steps[arc] - after
-        # Weights that swap when the arc is reversed, and a sum whose order does not matter: the same bits both ways.
-        ends = self.start[arc] * (before / steps[arc]) ** 2 + self.end[arc] * (after / steps[arc]) ** 2
-        points = ends + self.control[arc] * (2.0 * before * after / (1.0 * steps[arc] * steps[arc]))
-        points[first] = self.start
-        return np.split(points, (np.cumsum(steps)[self.ring_offsets[1:-1] - 1])) if len(self) else []
+        counts = np.maximum(np.ceil(chord_counts(self.paths, accuracy)), 1.0).astype(np.intp)
+        lines = chords(self.paths, counts)
+        return np.split(lines.start, lines.offsets[1:-1]) if len(self) else []
 
     def to_shapely(self, *, accuracy: float) -> Polygon | MultiPolygon:
         """The tile as a shapely polygon whose chords stay within `accuracy` (in units) of the outline.
@@ -237,17 +223,6 @@ class Outline:
         legs = (_exact_cross(start[curved], control[curved]), _exact_cross(control[curved], end[curved]))
         terms = [chords, 2 * chords[:, ~curved], *(2 * leg for leg in legs)]
         return fsum(np.concatenate([term.ravel() for term in terms]).tolist()) / 6
-
-
-def _extent(start: Floats, control: Floats, end: Floats, curved: NDArray[np.bool_]) -> tuple[float, float]:
-    """The least and greatest value of one coordinate over all arcs."""
-    bend = start - 2 * control + end
-    turns = curved & ((start - control) * (end - control) > 0.0) & (bend != 0.0)
-    a, b, c = start[turns], control[turns], end[turns]
-    t = (a - b) / bend[turns]
-    peaks = a * (1 - t) ** 2 + 2 * b * t * (1 - t) + c * t**2
-    values = np.concatenate((start, end, peaks))
-    return float(values.min()), float(values.max())
 
 
 def _exact_cross(u: Complexes, v: Complexes) -> Floats:

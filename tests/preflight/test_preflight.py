@@ -6,6 +6,7 @@ import io
 import json
 import math
 import random
+import tracemalloc
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -22,10 +23,10 @@ from voronoi_tiles.cli.preflight import preflight as command
 from voronoi_tiles.formats.dxf.reader import dxf_drawing
 from voronoi_tiles.formats.recipe import job_of, tab_width
 from voronoi_tiles.formats.svg.reader import svg_drawing
-from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.paths.paths import ARC, CUBIC, QUAD, Paths
 from voronoi_tiles.preflight import Finding, Limits, PreflightReport, chord_search, judge, preflight, report_text
 from voronoi_tiles.preflight.annotated import marked_svg
-from voronoi_tiles.preflight.chords import chords_of
+from voronoi_tiles.preflight.chords import CHORDS_MAX, chords_of, counts_of
 
 NS = 'xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"'
 PAGE = 'width="200mm" height="100mm" viewBox="0 0 200 100"'
@@ -408,6 +409,36 @@ def test_dense_drawings_are_refused(
     assert caught.value.exit_code == 2
 
 
+def test_curves_that_take_too_many_chords_are_refused(tmp_path: Path) -> None:
+    """Before these are made: 20,000 circles of a kilometre would have 80 million."""
+    path = tmp_path / "t.svg"
+    body = '<circle r="1000000"/>' * 20_000
+    path.write_text(f"<svg {NS} {PAGE} fill='none' stroke='#ff0000'>{body}</svg>")
+    tracemalloc.start()
+    try:
+        with pytest.raises(DesignError, match=r"take 80,000,000 chords at a tolerance of 0\.05 mm"):
+            preflight(str(path), limits=Limits(tolerance=0.05))
+        assert tracemalloc.get_traced_memory()[1] < 600e6  # one array of them is 1.3e9
+    finally:
+        tracemalloc.stop()
+
+
+def test_chords_of_hostile_curves() -> None:
+    """Arcs without a sagitta, and of one point; curves of a million kilometres."""
+    far = 1e12
+    start, end = np.array([0, 1, 0, 0, 0j]), np.array([2, 1, far, far, far * 1j])
+    control = np.array([[1, 0], [1, 0], [far * 1j, 0], [far * 1j, -far], [far, 0]])
+    kind = np.array([ARC, ARC, QUAD, CUBIC, ARC], np.uint8)
+    paths = Paths(start, end, control, kind, np.arange(6), np.zeros(5, np.bool_))
+    counts = counts_of(paths, 0.01)
+    assert counts.tolist() == [1, 1, CHORDS_MAX, CHORDS_MAX, CHORDS_MAX]
+    chords = chords_of(paths, counts, 0.01)
+    assert np.isfinite(chords.start).all()
+    assert (chords.start[chords.first[:-1]] == start).all()
+    assert (chords.end[chords.first[1:] - 1] == end).all()
+    assert chords.ring.tolist() == [False, True, False, False, False]
+
+
 def test_the_search_misses_no_pair(monkeypatch: pytest.MonkeyPatch) -> None:
     """In small portions, slices and ways as in large ones: all pairs within the reach, by shapely's distances."""
     generator = np.random.default_rng(8)
@@ -418,7 +449,8 @@ def test_the_search_misses_no_pair(monkeypatch: pytest.MonkeyPatch) -> None:
         )
     )
     drawing = svg_drawing(f"<svg {NS} {PAGE} stroke='red'>{body}</svg>".encode(), "t.svg")
-    chords = chords_of(Paths.concatenate([shape.paths for shape in drawing.shapes]), 0.01, 0.01)
+    paths = Paths.concatenate([shape.paths for shape in drawing.shapes])
+    chords = chords_of(paths, counts_of(paths, 0.01), 0.01)
     segments = [
         shapely.LineString([(p.real, p.imag), (q.real, q.imag)]) for p, q in zip(chords.start, chords.end, strict=True)
     ]

@@ -222,6 +222,9 @@ def _too_fine(accuracy: float) -> DesignError:
 def flatten(pieces: Complexes, accuracy: float) -> tuple[Complexes, NDArray[np.intp]]:
     """Flatten cubic Bezier pieces to chords within `accuracy` of the curve, and the curve within it of them.
 
+    A site's segments cost time, so each part of a curve takes as few as it needs; `paths.conversion` cuts a curve into
+    equal steps, whose points depend on nothing but their count.
+
     `pieces` is complex128 of shape (k, 4), `accuracy` positive and in the same units. Returns the chords'
     ends, complex128 of shape (n, 2), in order along the pieces, and the number of chords of each piece,
     intp of shape (k,). All pieces are bisected together (de Casteljau at 1/2, whose rounding is the same

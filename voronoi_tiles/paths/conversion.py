@@ -1,9 +1,8 @@
-"""Curves of one kind replaced by another within a stated accuracy: by chords, cubic or quadratic Bezier curves."""
+"""Curves of one kind replaced by another within a stated accuracy: by chords or cubic Bezier curves."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Final, NamedTuple, Self
 
@@ -42,15 +41,19 @@ def usable(paths: Paths, accuracy: float) -> float:
 def to_lines(paths: Paths, *, accuracy: float) -> Paths:
     """Replace every curve by chords of it within `accuracy` (in the paths' unit) both ways; LINEs stay.
 
-    The chords of a piece span equal steps of its parameter, or of its angle for an ARC. End points of pieces stay. A
-    piece that is run through backwards has the same points bit for bit. Raises ValueError where the accuracy is not
-    positive and finite, or finer than the coordinates' resolution.
+    Raises ValueError where the accuracy is not positive and finite, or finer than the coordinates' resolution, and
+    where it asks for more than COUNT_MAX chords; see `chords`.
+    """
+    return chords(paths, _whole(chord_counts(paths, usable(paths, accuracy))))
+
+
+def chord_counts(paths: Paths, accuracy: float) -> Floats:
+    """The least numbers of chords, not rounded, that keep each piece within `accuracy` both ways; float64 (n,).
 
     Source: a curve whose second derivative is at most m differs from its k chords by at most m / (8 k^2) at equal
     parameters. For a quadratic with second difference e, m is 2 |e|; for a cubic at most 6 times the larger of
     its two. An arc is r (1 - cos(s / 2)) off a chord of angle s.
     """
-    bound = usable(paths, accuracy)
     start, end, (c0, c1) = paths.start, paths.end, paths.control.T
     quads, cubics, arcs = (np.flatnonzero(paths.kind == kind) for kind in (QUAD, CUBIC, ARC))
     bend = np.zeros(len(start))
@@ -58,10 +61,20 @@ def to_lines(paths: Paths, *, accuracy: float) -> Paths:
     first = np.abs((start[cubics] - 2 * c0[cubics]) + c1[cubics])
     second = np.abs((end[cubics] - 2 * c1[cubics]) + c0[cubics])
     bend[cubics] = np.maximum(first, second) * 0.75
-    steps = np.sqrt(bend / bound)
+    counts = np.sqrt(bend / accuracy)
     frame = _Frames.of_arcs(paths, arcs)
-    steps[arcs] = frame.half / (2 * np.arcsin(np.minimum(np.sqrt(bound / (2 * frame.radius)), 1.0)))
-    split = _Split.of_steps(steps)
+    counts[arcs] = frame.half / (2 * np.arcsin(np.sqrt(accuracy / np.maximum(2 * frame.radius, accuracy))))
+    return counts
+
+
+def chords(paths: Paths, counts: Ints) -> Paths:
+    """Replace every curve by so many chords; those of LINEs are 1.
+
+    The chords of a piece span equal steps of its parameter, or of its angle for an ARC. End points of pieces stay. A
+    piece that is run through backwards has the same points bit for bit.
+    """
+    split = _Split.into(counts)
+    start, end, (c0, c1) = paths.start, paths.end, paths.control.T
     points = start[split.piece]
     t, s = split.number / split.counts, (split.counts - split.number) / split.counts
     # Sums whose terms swap when a piece is reversed, and products whose order stays: the same bits both ways.
@@ -92,22 +105,23 @@ def to_cubics(paths: Paths, *, accuracy: float) -> Paths:
     """
     paths = _raised(paths)
     bound = usable(paths, accuracy)
-    return _arcs_replaced(paths, bound, CUBIC, _cubic_error)
-
-
-def to_quads(paths: Paths, *, accuracy: float) -> Paths:
-    """Replace every ARC by QUADs within `accuracy` (in the paths' unit) both ways; LINEs and QUADs stay.
-
-    An arc is cut into the fewest equal angles; its curves keep its tangents. Raises ValueError where there is a
-    CUBIC, and where the accuracy is not positive and finite, or finer than the coordinates' resolution.
-
-    Source: |p|^2 of the quadratic over a unit arc of angle s = 2 h is 1 + w^2 sin(h)^4 / (4 cos(h)^2) with w from 0 to
-    1, so that it is at most (1 - cos(h))^2 / (2 cos(h)) off, outwards.
-    """
-    bound = usable(paths, accuracy)
-    if np.any(paths.kind == CUBIC):
-        raise ValueError("cubic curves cannot be written as quadratic ones: use to_lines or to_arcs")
-    return _arcs_replaced(paths, bound, QUAD, _quad_error)
+    arcs = np.flatnonzero(paths.kind == ARC)
+    frame = _Frames.of_arcs(paths, arcs)
+    counts = np.ones(len(paths.kind))
+    counts[arcs] = _fewest(2 * frame.half, bound / frame.radius)
+    split = _Split.into(_whole(counts))
+    start, control, kinds = paths.start[split.piece], paths.control[split.piece], paths.kind[split.piece]
+    rows = np.flatnonzero(kinds == ARC)
+    frame, low, high = _steps_of_arcs(paths, split, rows)
+    begins = split.number[rows] == 0
+    start[rows] = np.where(begins, start[rows], frame.place(np.sin(low), 2 * np.sin(low / 2) ** 2))
+    handle = 4 / 3 * np.tan((high - low) / 4)
+    for column, angle, sign in ((0, low, 1.0), (1, high, -1.0)):
+        sine, cosine = np.sin(angle), np.cos(angle)
+        inward = 2 * np.sin(angle / 2) ** 2 + sign * handle * sine
+        control[rows, column] = frame.place(sine + sign * handle * cosine, inward)
+    kinds[rows] = CUBIC
+    return split.joined(paths, start, control, kinds)
 
 
 def _cubic_error(angle: Floats) -> Floats:
@@ -116,11 +130,12 @@ def _cubic_error(angle: Floats) -> Floats:
     return np.asarray(square / (1 + np.sqrt(1 + square)))
 
 
-def _quad_error(angle: Floats) -> Floats:
-    """How far the quadratic is off a unit arc of an angle; from half a turn on, its tangents do not meet."""
-    far = angle > 3.0
-    safe = np.where(far, 1.0, angle)
-    return np.where(far, np.inf, 2 * np.sin(safe / 4) ** 4 / np.cos(safe / 2))
+def _whole(counts: Floats) -> Ints:
+    """Counts rounded up; raises ValueError where they are too many altogether."""
+    whole = np.maximum(np.ceil(counts * (1 - 1e-12)), 1.0)
+    if whole.sum() > COUNT_MAX:
+        raise ValueError(f"the accuracy asks for {whole.sum():.3g} pieces, and {COUNT_MAX} is the limit")
+    return whole.astype(np.intp)
 
 
 class _Split(NamedTuple):
@@ -131,14 +146,10 @@ class _Split(NamedTuple):
     counts: Ints
 
     @classmethod
-    def of_steps(cls, steps: Floats) -> Self:
-        """Cut each piece into at least so many steps; raises ValueError where they are too many altogether."""
-        counts = np.maximum(np.ceil(steps * (1 - 1e-12)), 1.0)
-        if counts.sum() > COUNT_MAX:
-            raise ValueError(f"the accuracy asks for {counts.sum():.3g} pieces, and {COUNT_MAX} is the limit")
-        whole = counts.astype(np.intp)
-        piece = np.repeat(np.arange(len(whole)), whole)
-        return cls(piece, ranges(np.zeros(len(whole), np.intp), whole), whole[piece])
+    def into(cls, counts: Ints) -> Self:
+        """Cut each piece into so many steps."""
+        piece = np.repeat(np.arange(len(counts)), counts)
+        return cls(piece, ranges(np.zeros(len(counts), np.intp), counts), counts[piece])
 
     def joined(self, paths: Paths, start: Complexes, control: Complexes, kind: Kinds) -> Paths:
         """The paths of these steps, each of which ends where the next begins."""
@@ -185,42 +196,14 @@ def _steps_of_arcs(paths: Paths, split: _Split, rows: Ints) -> tuple[_Frames, Fl
     return frame, low, high
 
 
-def _arcs_replaced(paths: Paths, bound: float, kind: int, error: Callable[[Floats], Floats]) -> Paths:
-    """Replace ARCs by the fewest equal curves of a kind that are, by the angle on a unit circle, so far off."""
-    arcs = np.flatnonzero(paths.kind == ARC)
-    frame = _Frames.of_arcs(paths, arcs)
-    counts = _fewest(2 * frame.half, bound / frame.radius, error)
-    steps = np.ones(len(paths.kind))
-    steps[arcs] = counts
-    split = _Split.of_steps(steps)
-    start, control, kinds = paths.start[split.piece], paths.control[split.piece], paths.kind[split.piece]
-    rows = np.flatnonzero(kinds == ARC)
-    frame, low, high = _steps_of_arcs(paths, split, rows)
-    begins = split.number[rows] == 0
-    start[rows] = np.where(begins, start[rows], frame.place(np.sin(low), 2 * np.sin(low / 2) ** 2))
-    if kind == CUBIC:
-        handle = 4 / 3 * np.tan((high - low) / 4)
-        for column, angle, sign in ((0, low, 1.0), (1, high, -1.0)):
-            sine, cosine = np.sin(angle), np.cos(angle)
-            inward = 2 * np.sin(angle / 2) ** 2 + sign * handle * sine
-            control[rows, column] = frame.place(sine + sign * handle * cosine, inward)
-    else:
-        middle, stretch = (low + high) / 2, np.cos((high - low) / 2)
-        # 1 - cos(middle) / stretch, without losing the digits of small angles.
-        inward = 2 * (np.sin(middle / 2) ** 2 - np.sin((high - low) / 4) ** 2) / stretch
-        control[rows, 0] = frame.place(np.sin(middle) / stretch, inward)
-    kinds[rows] = kind
-    return split.joined(paths, start, control, kinds)
-
-
-def _fewest(angle: Floats, limit: Floats, error: Callable[[Floats], Floats]) -> Floats:
-    """The least numbers of equal parts of angles whose error, which grows with the part, is within a limit each."""
+def _fewest(angle: Floats, limit: Floats) -> Floats:
+    """The least numbers of equal parts of angles whose cubics are within a limit each; larger parts are worse."""
     low, high = np.zeros(len(angle)), np.ones(len(angle))
-    while np.any(open_ := error(angle / high) > limit):
+    while np.any(open_ := _cubic_error(angle / high) > limit):
         low, high = np.where(open_, high, low), np.where(open_, 2 * high, high)
     while np.any(high - low > 1):
         middle = np.floor((low + high) / 2)
-        good = (error(angle / np.maximum(middle, 1.0)) <= limit) & (middle > 0)
+        good = (_cubic_error(angle / np.maximum(middle, 1.0)) <= limit) & (middle > 0)
         low, high = np.where(good, low, middle), np.where(good, middle, high)
     return high
 

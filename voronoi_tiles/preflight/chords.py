@@ -10,8 +10,9 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
-from voronoi_tiles.paths.paths import ARC, CUBIC, QUAD, Paths
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.paths.conversion import chord_counts, chords
+from voronoi_tiles.paths.paths import Paths
 
 CHORDS_MAX: Final = 2_000
 """Most chords of one piece; a count. A circle of a kilometre has them at a tenth of a millimetre."""
@@ -110,55 +111,23 @@ def lines(start: Complexes, end: Complexes) -> NDArray[np.object_]:
     return np.asarray(shapely.linestrings(coordinates), dtype=object)
 
 
-def chords_of(paths: Paths, accuracy: float, meeting: float) -> Chords:
-    """Chords within `accuracy` of paths; one whose ends are nearer than `meeting` is a ring."""
-    count = _counts(paths, accuracy)
-    piece = np.repeat(np.arange(len(count)), count)
-    k = ranges(np.zeros(len(count), np.intp), count)
-    steps = count[piece]
-    start, end = _points(paths, piece, k / steps), _points(paths, piece, (k + 1) / steps)
-    # Ends of pieces stay bit for bit.
-    start[k == 0], end[k == steps - 1] = paths.start, paths.end
-    path = paths.owner[piece]
-    first = np.append(0, np.cumsum(np.bincount(path, minlength=len(paths)))).astype(np.intp)
-    lengths = np.abs(end - start)
+def counts_of(paths: Paths, accuracy: float) -> Ints:
+    """How many chords each piece takes that are within `accuracy` of it, at most CHORDS_MAX.
+
+    Unlike `to_lines` it refuses nothing: files of others may be huge beside the accuracy.
+    """
+    return np.ceil(np.clip(chord_counts(paths, accuracy), 1.0, CHORDS_MAX)).astype(np.intp)
+
+
+def chords_of(paths: Paths, counts: Ints, meeting: float) -> Chords:
+    """The chords of paths, so many of each piece; a path whose ends are nearer than `meeting` is a ring."""
+    cut = chords(paths, counts)
+    first, path = cut.offsets, cut.owner
+    lengths = np.abs(cut.end - cut.start)
     running = np.append(0.0, np.cumsum(lengths))
     total = np.diff(running[first])
     # Sums are taken anew for each path, so that the millionth is as exact as the first.
     before = running[:-1] - running[first[:-1]][path]
     ring = paths.closed | (np.abs(paths.end[paths.offsets[1:] - 1] - paths.start[paths.offsets[:-1]]) <= meeting)
-    return Chords(start, end, piece, path, before, first, total, ring)
-
-
-def _counts(paths: Paths, accuracy: float) -> Ints:
-    """How many chords each piece takes.
-
-    The distance between a Bezier curve and n chords is at most its second differences' largest times 1/4 (degree 2) or
-    3/4 (degree 3) over n squared; that of an arc is r (1 - cos(turn / 2n)).
-    """
-    start, end, (one, two) = paths.start, paths.end, paths.control.T
-    count = np.ones(len(start))
-    quad, cubic, arc = (np.flatnonzero(paths.kind == kind) for kind in (QUAD, CUBIC, ARC))
-    count[quad] = np.sqrt(np.abs(start - 2 * one + end)[quad] / (4 * accuracy))
-    bend = np.maximum(np.abs(start - 2 * one + two)[cubic], np.abs(one - 2 * two + end)[cubic])
-    count[cubic] = np.sqrt(0.75 * bend / accuracy)
-    if len(arc):
-        radius, turn = paths.arc_radius_and_turn(arc)
-        count[arc] = np.abs(turn) / np.sqrt(8 * accuracy / np.maximum(radius, accuracy))
-    return np.asarray(np.ceil(np.clip(np.nan_to_num(count, nan=1.0), 1.0, CHORDS_MAX)), np.intp)
-
-
-def _points(paths: Paths, piece: Ints, t: Floats) -> Complexes:
-    """The points of pieces at parameters from 0 to 1."""
-    start, end = paths.start[piece], paths.end[piece]
-    one, two = paths.control[piece].T
-    kind = paths.kind[piece]
-    s = 1 - t
-    points = s * start + t * end
-    quad, cubic, arc = (kind == QUAD), (kind == CUBIC), (kind == ARC)
-    points[quad] = (s * s * start + 2 * s * t * one + t * t * end)[quad]
-    points[cubic] = (s**3 * start + 3 * s * s * t * one + 3 * s * t * t * two + t**3 * end)[cubic]
-    if arc.any():
-        centre, radius, begin, turn = paths.circles(piece[arc])
-        points[arc] = centre + radius * np.exp(1j * (begin + t[arc] * turn))
-    return points
+    piece = np.repeat(np.arange(len(counts)), counts)
+    return Chords(cut.start, cut.end, piece, path, before, first, total, ring)

@@ -12,7 +12,7 @@ import numpy as np
 from voronoi_tiles.base.arrays import Ints
 from voronoi_tiles.formats.reading import DrawingError, ReadDrawing, Shape
 from voronoi_tiles.paths.paths import Paths
-from voronoi_tiles.preflight.chords import Chords, chords_of
+from voronoi_tiles.preflight.chords import Chords, chords_of, counts_of
 from voronoi_tiles.preflight.findings import LayerUse, Limits
 
 NOT_CUT: Final = re.compile(
@@ -74,12 +74,13 @@ def subject_of(drawing: ReadDrawing, cut: Sequence[bool], limits: Limits) -> Cut
     chosen = [shape for shape, is_cut in zip(drawing.shapes, cut, strict=True) if is_cut]
     paths = Paths.concatenate([shape.paths for shape in chosen])
     owner = np.repeat(np.arange(len(chosen)), [len(shape.paths) for shape in chosen]).astype(np.intp)
-    chords = chords_of(paths, limits.tolerance / _SHARE, limits.tolerance)
-    if len(chords.start) > _CHORDS_MAX:
+    counts = counts_of(paths, limits.tolerance / _SHARE)
+    if counts.sum() > _CHORDS_MAX:
         raise DrawingError(
-            f"its curves take {len(chords.start):,} chords at a tolerance of {limits.tolerance:g} mm",
+            f"its curves take {counts.sum():,} chords at a tolerance of {limits.tolerance:g} mm",
             remedy="Allow a larger --tolerance, or check the size of the drawing.",
         )
+    chords = chords_of(paths, counts, limits.tolerance)
     return CutLines(paths, owner, chosen, chords, drawing.format == "svg", drawing.height or 0.0)
 
 

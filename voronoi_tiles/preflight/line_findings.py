@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from voronoi_tiles.preflight.chords import chords_of
+from voronoi_tiles.preflight.chords import chords_of, counts_of
 from voronoi_tiles.preflight.contacts import Meeting, crossings, find_contacts, overlaps
 from voronoi_tiles.preflight.cut_lines import CutLines
 from voronoi_tiles.preflight.ends import PathEnds, find_ends
@@ -155,7 +155,7 @@ def _necks(subject: CutLines, limits: Limits) -> Iterator[Finding]:
     if limits.neck <= 0.0:
         return
     accuracy = max(NECK_ACCURACY * limits.neck, limits.tolerance / 4)
-    chords = chords_of(subject.paths, accuracy, limits.tolerance)
+    chords = chords_of(subject.paths, counts_of(subject.paths, accuracy), limits.tolerance)
     for neck in find_necks(chords, 2 * accuracy + limits.tolerance, limits.neck):
         common = subject.place(neck.place), neck.width, subject.sources(*neck.paths)
         if neck.material:
