@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Final
 
-NUMBER: Final = r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-"""A decimal number, as a regular expression without groups."""
+NUMBER: Final = r"[+-]?+(?:[0-9]++(?:\.[0-9]*+)?+|\.[0-9]++)(?:[eE][+-]?+[0-9]++)?+"
+"""A decimal number, as a regular expression without groups; it takes all digits there are, and no second look."""
 
 
 def printable(text: str) -> str:

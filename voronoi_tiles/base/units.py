@@ -1,20 +1,50 @@
-"""Lengths as people write them: "600mm", "3cm", "1in", "0.15", and sizes such as "600x300mm"."""
+"""Units of length, and lengths as people write them: "600mm", "3cm", "1in", "0.15", and sizes such as "600x300mm"."""
 
 from __future__ import annotations
 
 import math
 import re
-from typing import Final, Literal
+from fractions import Fraction
+from typing import Final, Literal, get_args
 
 from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.base.text import NUMBER
 from voronoi_tiles.base.tolerance import COORDINATE_MAX
 
 Units = Literal["mm", "cm", "in"]
 
-UNIT_MM: Final[dict[Units, float]] = {"mm": 1.0, "cm": 10.0, "in": 25.4}
-"""Millimetres in each unit of length."""
+_METRE, _INCH = Fraction(1000), Fraction("25.4")
 
-_LENGTH = re.compile(r"([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?)\s*([^\W\d_]*)", re.IGNORECASE)
+MILLIMETRES: Final[dict[str, Fraction]] = {
+    "mm": _METRE / 1000,
+    "cm": _METRE / 100,
+    "in": _INCH,
+    # CSS
+    "px": _INCH / 96,
+    "pt": _INCH / 72,
+    "pc": _INCH / 6,
+    "q": _METRE / 4000,
+    # DXF
+    "ft": _INCH * 12,
+    "mi": _INCH * 63360,
+    "m": _METRE,
+    "km": _METRE * 1000,
+    "microinch": _INCH / 10**6,
+    "mil": _INCH / 1000,
+    "yd": _INCH * 36,
+    "angstrom": _METRE / 10**10,
+    "nm": _METRE / 10**9,
+    "um": _METRE / 10**6,
+    "dm": _METRE / 10,
+    "dam": _METRE * 10,
+    "hm": _METRE * 100,
+}
+"""Millimetres in each unit of length, exactly."""
+
+UNIT_MM: Final[dict[Units, float]] = {unit: float(MILLIMETRES[unit]) for unit in get_args(Units)}
+"""Millimetres in each unit that designs and options take."""
+
+_LENGTH = re.compile(rf"({NUMBER})\s*([^\W\d_]*)")
 _REMEDY = "Write a length as 600mm, 3cm, 1in or 0.15; a plain number is millimetres."
 _SIZE_REMEDY = "Write a size as 600x300mm, 60cmx30cm or 600x300; plain numbers are millimetres."
 

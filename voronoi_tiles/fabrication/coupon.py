@@ -18,6 +18,7 @@ from typing import Final
 import numpy as np
 
 from voronoi_tiles.base.arrays import Floats
+from voronoi_tiles.base.units import UNIT_MM
 from voronoi_tiles.base.version import __version__
 from voronoi_tiles.fabrication.lettering import fitting_height, lettering, place_labels, text_width
 from voronoi_tiles.fabrication.marks import BAR_MM, bar_height, reference_bar, rounded_square
@@ -44,8 +45,7 @@ _ENGRAVE_COLOUR: Final = "#ff0000"
 _INSIDE_COLOUR: Final = "#0000ff"
 _CUT_COLOUR: Final = "#000000"
 
-_MM: Final = {"mm": Decimal(1), "cm": Decimal(10), "in": Decimal("25.4")}
-_LENGTH: Final = re.compile(r"\s*([+-]?(?:\d+\.?\d*|\.\d+))\s*(mm|cm|in)?\s*", re.ASCII)
+_LENGTH: Final = re.compile(rf"\s*([+-]?(?:\d+\.?\d*|\.\d+))\s*({'|'.join(UNIT_MM)})?\s*", re.ASCII)
 
 
 def kerf_range(text: str) -> tuple[float, ...]:
@@ -63,7 +63,8 @@ def kerf_range(text: str) -> tuple[float, ...]:
             f'"{text[:60]}" is no range of kerfs. Write first:last:step, as in 0.05:0.4:0.05mm, or 0.1,0.15,0.2.'
         )
     default = matches[-1][2] or "mm"
-    values = [Decimal(match[1]) * _MM[match[2] or default] for match in matches]
+    sizes: dict[str, Decimal] = {unit: Decimal(str(size)) for unit, size in UNIT_MM.items()}
+    values = [Decimal(match[1]) * sizes[match[2] or default] for match in matches]
     if ranged:
         first, last, step = values
         if step <= 0 or last < first:

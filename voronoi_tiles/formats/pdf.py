@@ -14,12 +14,13 @@ from typing import BinaryIO, Final
 
 import numpy as np
 
+from voronoi_tiles.base.units import MILLIMETRES
 from voronoi_tiles.formats.cubics import cubic_blocks
 from voronoi_tiles.formats.decimals import PLACES, WIDTH, decimals
 from voronoi_tiles.formats.page import Drawing, Layer
 from voronoi_tiles.paths.paths import CUBIC, Paths
 
-POINTS_PER_MM: Final = 72 / 25.4
+POINTS_PER_MM: Final = float(1 / MILLIMETRES["pt"])
 
 _SPACE, _BREAK = ord(" "), ord("\n")
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 import numpy as np
 
 from voronoi_tiles.base.maps import Affine
+from voronoi_tiles.base.units import MILLIMETRES
 from voronoi_tiles.formats.dxf.entities import Tilted, draw_entity
 from voronoi_tiles.formats.pen import Pen
 from voronoi_tiles.formats.shapes import (
@@ -38,25 +39,10 @@ if TYPE_CHECKING:
 _DRAWN: Final = frozenset({"LINE", "ARC", "CIRCLE", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SPLINE"})
 _REMEDY: Final = "Save it again as DXF (R2000 or newer, text) in the program that made it."
 
-# $INSUNITS: the name of the unit, and its size in millimetres.
-_UNITS: Final = {
-    1: ("in", 25.4),
-    2: ("ft", 304.8),
-    3: ("mi", 1_609_344.0),
-    4: ("mm", 1.0),
-    5: ("cm", 10.0),
-    6: ("m", 1000.0),
-    7: ("km", 1e6),
-    8: ("microinch", 2.54e-5),
-    9: ("mil", 0.0254),
-    10: ("yd", 914.4),
-    11: ("angstrom", 1e-7),
-    12: ("nm", 1e-6),
-    13: ("um", 1e-3),
-    14: ("dm", 100.0),
-    15: ("dam", 1e4),
-    16: ("hm", 1e5),
-}
+# By $INSUNITS.
+_UNITS: Final = (
+    *("", "in", "ft", "mi", "mm", "cm", "m", "km", "microinch", "mil", "yd", "angstrom", "nm", "um", "dm", "dam", "hm"),
+)
 _BY_BLOCK, _BY_LAYER, _FOREGROUND = 0, 256, 7
 
 
@@ -149,11 +135,11 @@ class _DxfWalk:
         self._clones = 0
         self._copies = 0
         units = int(document.header.get("$INSUNITS", 0))
-        self._unit, self._scale = _UNITS.get(units, ("", 1.0))
+        self._unit = _UNITS[units] if 0 < units < len(_UNITS) else ""
 
     def drawing(self) -> ReadDrawing:
         """All that is drawn."""
-        to_page = Affine(complex(self._scale), 0j, 0j)
+        to_page = Affine(complex(MILLIMETRES[self._unit or "mm"]), 0j, 0j)
         for visit in self._entities():
             entity = visit.entity
             kind = entity.dxftype()

@@ -35,10 +35,7 @@ _FLAG: Final = re.compile(r"[01]")
 _COMMAND: Final = re.compile(rf"([{_LETTERS}])")
 # A comma that is not between two numbers.
 _STRAY_COMMA: Final = re.compile(rf"(?:\A|[{_LETTERS},])[ \t\n\r\f]*+,|,[ \t\n\r\f]*+(?:[{_LETTERS}]|\Z)")
-# Numbers are read to their ends, as elsewhere, even where a shorter one would leave a flag.
-_ARC: Final = re.compile(
-    r"[ \t\n\r\f]*".join({"n": f"((?>{NUMBER}))", "f": "([01])"}[kind] for kind in _ARGUMENTS["A"])
-)
+_ARC: Final = re.compile(r"[ \t\n\r\f]*".join({"n": f"({NUMBER})", "f": "([01])"}[kind] for kind in _ARGUMENTS["A"]))
 
 _LONG: Final = 1000
 """From so many characters on, data are drawn at once, where they can be."""

@@ -7,27 +7,18 @@ import re
 from typing import Final, NamedTuple
 
 from voronoi_tiles.base.maps import IDENTITY_MAP, Affine, from_matrix
+from voronoi_tiles.base.text import NUMBER
 from voronoi_tiles.base.tolerance import COORDINATE_MAX, NUMBER_MIN
+from voronoi_tiles.base.units import MILLIMETRES
 from voronoi_tiles.formats.shapes import DrawingError
 from voronoi_tiles.formats.svg.transforms import numbers
 
-PIXEL: Final = 25.4 / 96
+PIXEL: Final = float(MILLIMETRES["px"])
 """One CSS pixel; millimetres."""
 
-_PIXELS: Final = {
-    "": 1.0,
-    "px": 1.0,
-    "mm": 96 / 25.4,
-    "cm": 960 / 25.4,
-    "in": 96.0,
-    "pt": 96 / 72,
-    "pc": 16.0,
-    "q": 24 / 25.4,
-}
-_LENGTH: Final = re.compile(r"\s*([+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:e[+-]?[0-9]+)?)\s*([a-z]*|%)\s*", re.IGNORECASE)
-
-
-_LONGEST: Final = 200  # characters of a length; spaces are tried in many ways
+_UNITS: Final = ("px", "mm", "cm", "in", "pt", "pc", "q")
+_PIXELS: Final = {"": 1.0} | {unit: float(MILLIMETRES[unit] / MILLIMETRES["px"]) for unit in _UNITS}
+_LENGTH: Final = re.compile(rf"({NUMBER})\s*([a-z]*|%)", re.IGNORECASE)
 
 
 class Page(NamedTuple):
@@ -49,7 +40,7 @@ def length(text: str, whole: float) -> float:
 
     Raises DrawingError for what is no length or is beyond COORDINATE_MAX.
     """
-    match = _LENGTH.fullmatch(text) if len(text) <= _LONGEST else None
+    match = _LENGTH.fullmatch(text.strip())
     unit = match[2].lower() if match else ""
     if match is None or (unit not in _PIXELS and unit != "%"):
         raise DrawingError(
