@@ -24,7 +24,7 @@ class Frame:
     """A grid of `width` x `height` samples; sample (i, j) lies at origin + (i + phase[0]) u + (j + phase[1]) v.
 
     `origin`, `u` and `v` are Cartesian, in the design's units; i counts columns, j rows. `column` and `row` are the
-    first sample of a window of a larger grid (see `window`). `periodic`: width u and height v are lattice vectors.
+    first sample of a window of a larger grid (see `window`).
     """
 
     origin: complex
@@ -35,7 +35,6 @@ class Frame:
     phase: tuple[float, float] = PHASE
     column: int = 0
     row: int = 0
-    periodic: bool = False
 
     def __post_init__(self) -> None:
         if self.width < 1 or self.height < 1:
@@ -84,9 +83,7 @@ class Frame:
 
     def window(self, column: int, row: int, width: int, height: int) -> Frame:
         """A part of the grid, which may reach beyond it: its samples lie where they lay, up to rounding."""
-        return replace(
-            self, column=self.column + column, row=self.row + row, width=width, height=height, periodic=False
-        )
+        return replace(self, column=self.column + column, row=self.row + row, width=width, height=height)
 
 
 def cell_frame(lattice: Lattice, samples: int, *, centre: complex = 0j) -> Frame:
@@ -97,7 +94,7 @@ def cell_frame(lattice: Lattice, samples: int, *, centre: complex = 0j) -> Frame
     a, b = lattice.reduced_basis
     shape = (abs(a) / abs(b)) ** 0.5
     width, height = max(1, round(samples * shape)), max(1, round(samples / shape))
-    return Frame(centre - (a + b) / 2, a / width, b / height, width, height, periodic=True)
+    return Frame(centre - (a + b) / 2, a / width, b / height, width, height)
 
 
 def rectangle_frame(region: tuple[float, float, float, float], width: int, height: int) -> Frame:

@@ -7,15 +7,15 @@ from pathlib import Path
 import pytest
 
 from voronoi_tiles.base.errors import DesignError
-from voronoi_tiles.formats.presets import FORMATS, ROLES, load_preset, preset_names
+from voronoi_tiles.formats.presets import FORMATS, ROLES, _built_in, load_preset
 
 
 def test_the_presets_are_there() -> None:
     """By their names, the neutral one first."""
-    assert preset_names() == ("plain", "lightburn", "redcut", "ponoko", "boxes", "glowforge", "cnc")
+    assert tuple(_built_in()) == ("plain", "lightburn", "redcut", "ponoko", "boxes", "glowforge", "cnc")
 
 
-@pytest.mark.parametrize("name", preset_names())
+@pytest.mark.parametrize("name", _built_in())
 def test_every_preset_is_whole(name: str) -> None:
     """Colours and names for every role; what is read instead of an unread format is read."""
     preset = load_preset(name)
@@ -110,7 +110,7 @@ def test_an_unknown_name_is_refused(name: str) -> None:
         ('curves = { svg = "bezier" }', "curves.svg", "Write one of exact, arc, cubic, polyline"),
         ('curves = { dxf = "splines" }', "curves.dxf", 'Did you mean "spline"'),
         ('layers = { cut = "" }', "layers.cut", "must be a text"),
-        ("description = 3", "description", "must be a text"),
+        ("layers.cut = 3", "layers.cut", "must be a text"),
         ('unread = { dxf = "dxf" }', "unread.dxf", "must not be 'dxf'"),
         ('unread = { dwg = "dxf" }', "unread", "unknown key 'dwg'"),
         ('extends = "lightbrun"', "extends", 'Did you mean "lightburn"'),

@@ -241,7 +241,7 @@ def test_a_window_has_the_samples_of_the_whole() -> None:
     i, j = np.arange(0.0, 2048, 7), np.arange(0.0, 800, 7)[:, None]
     for column, row in ((0, 0), (2048, 0), (0, 2048), (2048, 4096)):
         window = frame.window(column, row, 2048, 800)
-        assert (window.width, window.height, window.periodic) == (2048, 800, False)
+        assert (window.width, window.height) == (2048, 800)
         assert (window.points(i, j) == frame.points(i + column, j + row)).all()
         inner = window.window(1024, 512, 64, 32)
         assert (inner.column, inner.row) == (column + 1024, row + 512)
@@ -275,7 +275,6 @@ def test_a_cell_frame_is_one_cell(group: str, samples: int) -> None:
     assert np.abs(np.array([x, y]) - np.round([x, y])).max() < 1e-9
     assert round(x[0]) * round(y[1]) - round(x[1]) * round(y[0]) == 1
     assert abs(sides[0] - sides[1]) >= max(map(abs, sides)) * (1 - 1e-9) <= abs(sides[0] + sides[1])
-    assert frame.periodic
     assert frame.phase == PHASE
     assert frame.area_per_sample * frame.width * frame.height == pytest.approx(lattice.det)
     assert frame.origin + sum(sides) / 2 == pytest.approx(100 - 20j)
@@ -290,7 +289,6 @@ def test_a_rectangle_frame_is_a_picture() -> None:
     assert complex(frame.points(0.0, 0.0)) == 11 + 2.5j
     assert complex(frame.points(3.0, 0.0)) == 17 + 2.5j
     assert complex(frame.points(3.0, 5.0)) == 17 - 2.5j
-    assert not frame.periodic
     assert frame.pixel == 2.0
 
 

@@ -27,8 +27,8 @@ class Starter(NamedTuple):
     sites: Mapping[str, tuple[StarterStroke, ...]]
 
 
-def _curve(points: str, comment: str = "a smooth curve through these points") -> StarterStroke:
-    return StarterStroke(f"{{ catmull_rom = [{points}] }}", comment)
+def _curve(points: str) -> StarterStroke:
+    return StarterStroke(f"{{ catmull_rom = [{points}] }}", "a smooth curve through these points")
 
 
 def _bezier(points: str) -> StarterStroke:

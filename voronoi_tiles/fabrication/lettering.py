@@ -1,6 +1,6 @@
 """Single-stroke lettering: texts as lines for a laser or a pen to follow, and where a label goes in a tile.
 
-The glyphs are A. V. Hershey's, from the package Hershey-Fonts. A font is one Paths of all its strokes with a table
+The glyphs are A. V. Hershey's, from the package Hershey-Fonts. The font is one Paths of all its strokes with a table
 of characters, so that ten thousand labels are a few operations on arrays.
 """
 
@@ -9,7 +9,7 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 from typing import Final, Literal
 
 import numpy as np
@@ -18,13 +18,14 @@ from numpy.typing import ArrayLike
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
 from voronoi_tiles.paths.paths import Paths
 
-Align = Literal["left", "centre", "right"]
+Align = Literal["left", "centre"]
 Vertical = Literal["baseline", "middle"]
 
-DEFAULT_FONT: Final = "futural"
+FONT: Final = "futural"
+"""The font of Hershey-Fonts that is used: the plain one of single strokes."""
 
 _CODES: Final = 0x7F
-"""The fonts have the printable characters of ASCII; what their files hold beyond is a sign here, a blot there."""
+"""The font has the printable characters of ASCII; what its file holds beyond is a sign here, a blot there."""
 
 _ALIKE: Final[Mapping[str, str]] = {
     **dict.fromkeys("\u2018\u2019\u201a\u2032", "'"),
@@ -50,14 +51,13 @@ _ALIKE: Final[Mapping[str, str]] = {
 
 @dataclass(frozen=True, eq=False)
 class Font:
-    """The strokes of a font, in its own units, which are whole numbers, so that sums of them are exact.
+    """The strokes of the font, in its own units, which are whole numbers, so that sums of them are exact.
 
     Capitals are `capital` high, y is up, the base line is y = 0, a glyph's advance begins at x = 0. By code (ASCII, 0
     to 126): `known` (bool); `first` and `count` (intp), the glyph's paths in `strokes`; `advance`
     (float64); `left` and `right` (float64), the ends of its ink along x, inf and -inf where it has none.
     """
 
-    name: str
     capital: float
     strokes: Paths
     known: Bools
@@ -75,30 +75,21 @@ class Font:
             character = text[int(np.argmax(missing))]
             name = unicodedata.name(character, "no printable character")
             raise ValueError(
-                f"the font {self.name} has no {character!r} (U+{ord(character):04X}, {name}). "
+                f"the font {FONT} has no {character!r} (U+{ord(character):04X}, {name}). "
                 "Write the text in ASCII, or pass it through printable()."
             )
         return codes
 
 
-@lru_cache(maxsize=32)
-def load_font(name: str = DEFAULT_FONT) -> Font:
-    """Load one of the fonts of Hershey-Fonts; measured by its letter H.
-
-    Raises ValueError for an unknown name, and for fonts of signs, where no H stands on the base line.
-    """
+@cache
+def load_font() -> Font:
+    """The font; its capitals are as high as its H."""
     from HersheyFonts import HersheyFonts
 
-    library = HersheyFonts()
-    if name not in library.default_font_names:
-        raise ValueError(f"there is no font {name!r}. Take one of {', '.join(sorted(library.default_font_names))}.")
-    library.load_default_font(name)
+    library = HersheyFonts(load_default_font=FONT)
     glyphs = library.all_glyphs
     base = float(library.render_options.base_line)
-    rows = [y for stroke in glyphs["H"].strokes for _, y in stroke]
-    if max(rows) != base:
-        raise ValueError(f"the font {name!r} has signs in the place of letters. Take {DEFAULT_FONT}.")
-    capital = base - min(rows)
+    capital = base - min(y for stroke in glyphs["H"].strokes for _, y in stroke)
 
     lines: list[Complexes] = []
     known = np.zeros(_CODES, np.bool_)
@@ -117,50 +108,43 @@ def load_font(name: str = DEFAULT_FONT) -> Font:
             ink = np.concatenate(strokes).real
             left[code], right[code] = ink.min(), ink.max()
         lines += strokes
-    return Font(name, capital, Paths.polylines(lines), known, first, count, advance, left, right)
+    return Font(capital, Paths.polylines(lines), known, first, count, advance, left, right)
 
 
-def lettering(
-    text: str,
-    *,
-    height: float,
-    font: str = DEFAULT_FONT,
-    align: Align = "left",
-    vertical: Vertical = "baseline",
-) -> Paths:
+def lettering(text: str, *, height: float, align: Align = "left", vertical: Vertical = "baseline") -> Paths:
     """A line of text as open paths of LINE pieces, y up, its capitals `height` millimetres high.
 
-    The ink begins, has its middle, or ends at x = 0 (`align`), and y = 0 is the base line or half the height of
+    The ink begins or has its middle at x = 0 (`align`), and y = 0 is the base line or half the height of
     the capitals (`vertical`). Raises ValueError for a character that the font lacks and a height that is not > 0.
     """
-    return _set([text], np.zeros(1, np.complex128), height, load_font(font), align, vertical)
+    return _set([text], np.zeros(1, np.complex128), height, align, vertical)
 
 
-def place_labels(texts: Sequence[str], positions: Complexes, *, height: ArrayLike, font: str = DEFAULT_FONT) -> Paths:
+def place_labels(texts: Sequence[str], positions: Complexes, *, height: ArrayLike) -> Paths:
     """A text about each of the positions (complex128, n): centred along x, and by half the height of capitals along y.
 
     `height` is the height of the capitals in millimetres, one for all or one for each (float64, n). The paths are in
     the order of the texts. Raises ValueError like `lettering`, and where texts, positions and heights differ in number.
     """
-    return _set(texts, np.asarray(positions, np.complex128), height, load_font(font), "centre", "middle")
+    return _set(texts, np.asarray(positions, np.complex128), height, "centre", "middle")
 
 
-def text_width(text: str, *, height: float, font: str = DEFAULT_FONT) -> float:
+def text_width(text: str, *, height: float) -> float:
     """The width of a text's ink in millimetres, from its leftmost to its rightmost point; 0 without ink."""
-    face = load_font(font)
+    font = load_font()
     _check_heights(np.array(height, np.float64))
-    codes = face.codes(text)
-    _, left, right = _extents(face, codes, np.array([len(codes)]))
-    return float(right[0] - left[0]) * (height / face.capital)
+    codes = font.codes(text)
+    _, left, right = _extents(font, codes, np.array([len(codes)]))
+    return float(right[0] - left[0]) * (height / font.capital)
 
 
-def printable(text: str, *, font: str = DEFAULT_FONT) -> str:
+def printable(text: str) -> str:
     """The text with what the font lacks replaced, so that `lettering` takes it.
 
     Blanks of all kinds become spaces, letters lose their accents ("é" is "e"), ligatures, dashes and quotation marks
     become their ASCII likenesses ("ß" is "ss"); each of the others becomes "?".
     """
-    known = load_font(font).known
+    known = load_font().known
     shown = []
     for character in unicodedata.normalize("NFC", text):
         dash = "-" if unicodedata.category(character) == "Pd" else None
@@ -193,7 +177,7 @@ def label_position(rings: Sequence[Complexes]) -> tuple[complex, float]:
     return complex(pole.x, pole.y), float(shapely.distance(pole, polygon.boundary))
 
 
-def fitting_height(text: str, radius: float, wanted: float, *, font: str = DEFAULT_FONT) -> float:
+def fitting_height(text: str, radius: float, wanted: float) -> float:
     """The height of capitals, `wanted` at most, with which a text by `place_labels` stays in a circle of that radius.
 
     The circle is about the label's position; 0 for a radius of 0. Raises ValueError for a character that the font
@@ -202,16 +186,14 @@ def fitting_height(text: str, radius: float, wanted: float, *, font: str = DEFAU
     _check_heights(np.array(wanted, np.float64))
     if not radius >= 0:
         raise ValueError(f"a radius of {radius} is not one")
-    strokes = lettering(text, height=1.0, font=font, align="centre", vertical="middle")
+    strokes = lettering(text, height=1.0, align="centre", vertical="middle")
     if not len(strokes):
         return wanted
     reach = float(np.abs(np.concatenate((strokes.start, strokes.end))).max())
     return min(wanted, radius / reach)
 
 
-def _set(
-    texts: Sequence[str], positions: Complexes, height: ArrayLike, font: Font, align: Align, vertical: Vertical
-) -> Paths:
+def _set(texts: Sequence[str], positions: Complexes, height: ArrayLike, align: Align, vertical: Vertical) -> Paths:
     """Each text at its position; see `lettering` and `place_labels`."""
     if positions.shape != (len(texts),):
         raise ValueError(f"{len(texts)} texts have {positions.size} positions")
@@ -219,10 +201,11 @@ def _set(
     _check_heights(heights)
     if heights.shape not in {(), positions.shape}:
         raise ValueError(f"{len(texts)} texts have {heights.size} heights")
+    font = load_font()
     codes = font.codes("".join(texts))
     lengths = np.array([len(text) for text in texts], np.intp)
     pens, left, right = _extents(font, codes, lengths)
-    origin = {"left": left, "centre": (left + right) / 2, "right": right}[align]
+    origin = {"left": left, "centre": (left + right) / 2}[align]
     rise = {"baseline": 0.0, "middle": -font.capital / 2}[vertical]
 
     # From texts to characters, from characters to their paths, from paths to their pieces.

@@ -32,9 +32,7 @@ DEFAULT: Final = "plain"
 
 _SVG_CURVES: Final = ("exact", "arc", "cubic", "polyline")
 _DXF_CURVES: Final = ("arc", "spline", "polyline")
-_KEYS: Final = (
-    *("description", "colours", "stroke", "stroke_kerf", "layers", "dxf_layers", "curves", "unread", "fill_engraving"),
-)
+_KEYS: Final = ("colours", "stroke", "stroke_kerf", "layers", "dxf_layers", "curves", "unread", "fill_engraving")
 _TABLES: Final = ("colours", "layers", "dxf_layers", "curves")
 _STROKE_MAX: Final = 10.0  # a line of more millimetres hides what it draws
 
@@ -51,7 +49,6 @@ class Preset:
     """
 
     name: str
-    description: str
     colours: Mapping[Role, str]
     palette: tuple[str, ...]
     stroke: float
@@ -79,11 +76,6 @@ class Preset:
                 key="preset",
                 remedy=f"Write {self.unread[form]}, or take another preset.",
             )
-
-
-def preset_names() -> tuple[str, ...]:
-    """The names of the presets that are built in."""
-    return tuple(_built_in())
 
 
 def load_preset(name_or_path: str) -> Preset:
@@ -190,7 +182,6 @@ def _read(name: str, values: Mapping[str, Any]) -> Preset:
         dxf = _at("dxf", lambda value: _choice(value, _DXF_CURVES), curves["dxf"])
     return Preset(
         name=name,
-        description=_at("description", _text, values["description"]),
         colours=chosen,
         palette=palette,
         stroke=_at("stroke", _width, values["stroke"]),

@@ -102,7 +102,6 @@ class _Joints:
     """The chords that leave each point where chords meet, whatever paths they are of."""
 
     def __init__(self, chords: Chords) -> None:
-        self._chords = chords
         points = np.concatenate((chords.start, chords.end))
         # Points that are equal to a nanometre are one; lines that are joined have the same bits, or a writer's digits.
         grid = np.round(np.stack((points.real, points.imag), axis=1) / 1e-6)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import io
 import logging
-import os
 from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
@@ -28,7 +27,6 @@ from voronoi_tiles.formats.shapes import (
     DrawingError,
     ReadDrawing,
     Shape,
-    load_bytes,
 )
 
 if TYPE_CHECKING:
@@ -46,19 +44,13 @@ _UNITS: Final = (
 _BY_BLOCK, _BY_LAYER, _FOREGROUND = 0, 256, 7
 
 
-def read_dxf(path: str | os.PathLike[str]) -> ReadDrawing:
-    """Read a DXF file; `-` is standard input.
+def dxf_drawing(data: bytes, file: str) -> ReadDrawing:
+    """Read the content of a DXF file; `file` is its name for messages.
 
     The coordinates stay where they are, in millimetres by $INSUNITS. Curves keep their kind: arcs are arcs, splines
     without weights of up to the third degree are exact, ellipses and other splines become cubics within CURVE_ACCURACY.
     Raises DrawingError for what is broken, hostile or beyond the limits.
     """
-    name = os.fspath(path)
-    return dxf_drawing(load_bytes(name), "standard input" if name == "-" else name)
-
-
-def dxf_drawing(data: bytes, file: str) -> ReadDrawing:
-    """Read the content of a DXF file; `file` is its name for messages."""
     if not data.strip():
         raise DrawingError("the file is empty", file=file, remedy=_REMEDY)
     if data.startswith(b"AutoCAD Binary DXF"):

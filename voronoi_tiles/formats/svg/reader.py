@@ -6,14 +6,13 @@ images, nested drawings and what lies outside the file are counted and left out;
 
 from __future__ import annotations
 
-import os
 from collections import Counter
 from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 from voronoi_tiles.base.maps import Affine
 from voronoi_tiles.formats.pen import Pen
-from voronoi_tiles.formats.shapes import DEPTH_MAX, VISITS_MAX, DrawingError, ReadDrawing, Shape, load_bytes
+from voronoi_tiles.formats.shapes import DEPTH_MAX, VISITS_MAX, DrawingError, ReadDrawing, Shape
 from voronoi_tiles.formats.svg.basic_shapes import DRAWN, draw_shape
 from voronoi_tiles.formats.svg.style import Style, StyleSheet, inherited, properties
 from voronoi_tiles.formats.svg.transforms import parse_transform
@@ -43,18 +42,12 @@ _EFFECTS: Final = (
 )
 
 
-def read_svg(path: str | os.PathLike[str]) -> ReadDrawing:
-    """Read an SVG file, plain or compressed; `-` is standard input.
+def svg_drawing(data: bytes, file: str) -> ReadDrawing:
+    """Read the content of an SVG file, plain or compressed; `file` is its name for messages.
 
     Curves keep their kind; arcs of ellipses, and of circles under a transform that makes ellipses of them, become
     cubics within CURVE_ACCURACY. Raises DrawingError for what is broken, hostile or beyond the limits.
     """
-    name = os.fspath(path)
-    return svg_drawing(load_bytes(name), "standard input" if name == "-" else name)
-
-
-def svg_drawing(data: bytes, file: str) -> ReadDrawing:
-    """Read the content of an SVG file; `file` is its name for messages."""
     root = parse_tree(data, file, frozenset({f"{SVG}style", "style"}))
     tag = _tag(root)
     if tag != "svg":
