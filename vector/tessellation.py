@@ -10,25 +10,25 @@ import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, Ints
 from voronoi_tiles.base.errors import ProofError
-from voronoi_tiles.base.maps import move
 from voronoi_tiles.base.operations import Operation
-from voronoi_tiles.base.tolerance import PROOF_LIMIT, SAME_POINT
+from voronoi_tiles.base.tolerance import SAME_POINT
 from voronoi_tiles.designs.site import Site
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
-from voronoi_tiles.vector.arcs import Neighbour, parabola_controls
+from voronoi_tiles.vector.arcs import Neighbour
 from voronoi_tiles.vector.cells.bisectors import TouchingElementsError
 from voronoi_tiles.vector.cells.candidates import build_hierarchy
-from voronoi_tiles.vector.cells.cells import Parts, UnboundedCellError, bound_cells
+from voronoi_tiles.vector.cells.cells import UnboundedCellError, bound_cells
 from voronoi_tiles.vector.cells.half_edges import Contour, enclosed, trace_contour
 from voronoi_tiles.vector.cells.images import surround
-from voronoi_tiles.vector.cells.pencils import Rows, make_rows
+from voronoi_tiles.vector.cells.pencils import make_rows
 from voronoi_tiles.vector.cells.touching import refuse_touching
-from voronoi_tiles.vector.cells.trace import Boundary, OpenBoundaryError, trace_boundary
+from voronoi_tiles.vector.cells.trace import OpenBoundaryError, trace_boundary
 from voronoi_tiles.vector.complex.boundary import TileBoundary
-from voronoi_tiles.vector.complex.edges import Edge, Traced, UnpairedEdgeError, long_edges, pair_edges
+from voronoi_tiles.vector.complex.edges import UnpairedEdgeError, find_edges
 from voronoi_tiles.vector.complex.period import Period, make_period
 from voronoi_tiles.vector.complex.quotient import Quotient, build_quotient
-from voronoi_tiles.vector.copies import Copies, Placed, copies_near, place, translation
+from voronoi_tiles.vector.complex.traced import Traced, clearance, with_curves
+from voronoi_tiles.vector.copies import Placed, copies_near, place, translation
 from voronoi_tiles.vector.motions import (
     IDENTITY,
     Action,
@@ -42,8 +42,6 @@ from voronoi_tiles.vector.outline import Outline
 
 # A gap this small between copies, relative to the cell's size, makes the engine look whether they touch.
 _SUSPICIOUS = 1e-9
-# An edge this short, relative to the cell's size, may have come out on one side only.
-_ONE_SIDED = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -178,7 +176,7 @@ def tessellate(
     try:
         contours = [trace_contour(p.nodes, p.segments) for p in placed]
         found = [_trace(action, placed, contours, tile) for tile in range(len(sites))]
-        traced, edges = _pair(action, placed, [boundary for boundary, _ in found], without_short=without_short)
+        traced, edges = find_edges(action, placed, [boundary for boundary, _ in found], without_short=without_short)
     except (TouchingElementsError, UnboundedCellError, OpenBoundaryError, UnpairedEdgeError) as error:
         refuse_touching(action, names, placed)
         raise ProofError(
@@ -217,104 +215,4 @@ def _trace(action: Action, placed: list[Placed], contours: list[Contour], tile: 
     inner = (parts.target == tile) & (parts.copy == 0)
     # Beside the shorter side of the cell: an edge as long as the longer side may turn about what is left out.
     boundary = trace_boundary(rows, contour, parts, inner, SAME_POINT * abs(action.lattice.reduced_basis[0]))
-    return _curves(rows, contours, tile, parts, boundary, copies)
-
-
-def _curves(
-    rows: Rows, contours: list[Contour], tile: int, parts: Parts, boundary: Boundary, copies: list[Copies]
-) -> tuple[Traced, float]:
-    """A boundary with the curve that each arc lies on, and its least distance from the site."""
-    contour = contours[tile]
-    part = boundary.part
-    row, target, copy, item = parts.row[part], parts.target[part], parts.copy[part], parts.item[part]
-    round_here = rows.corner[row] >= 0
-    # What an arc's curve depends on: the segment or node on either side.
-    node = np.where(round_here, contour.corner_node[rows.corner[row]], 0)
-    here = np.where(round_here, len(contour.source) + node, rows.half_edge[row] >> 1)
-    nodes = np.full((len(part), 2), np.nan, complex)
-    nodes[:, 0] = rows.origin[row]
-    point = np.zeros(len(part), complex)
-    line = np.zeros((len(part), 2), complex)
-    there = np.zeros(len(part), np.intp)
-    round_there = np.zeros(len(part), bool)
-    edge_here = np.where(round_here, 0, rows.half_edge[row])
-    if len(contour.source):
-        line[:, 0], line[:, 1] = contour.nodes[contour.source[edge_here]], contour.nodes[contour.target[edge_here]]
-    point[round_here] = rows.origin[row[round_here]]
-    for t, other in enumerate(contours):
-        chosen = np.flatnonzero(target == t)
-        count = len(other.source)
-        i, c = item[chosen], copy[chosen]
-        is_corner = i >= count
-        corner_node = other.corner_node[np.where(is_corner, i - count, 0)]
-        edge = np.where(is_corner, 0, i)
-        round_there[chosen] = is_corner
-        there[chosen] = np.where(is_corner, len(other.source) + corner_node, i >> 1)
-        unit, shift, conj = copies[t].unit[c], copies[t].shift[c], copies[t].conj[c]
-        corners, lines = chosen[is_corner], chosen[~is_corner]
-        images = move(other.nodes[corner_node], unit, shift, conj)
-        only = ~round_here[corners]
-        point[corners[only]] = images[is_corner][only]
-        nodes[corners[~only], 1] = images[is_corner][~only]
-        if len(other.source):
-            first = move(other.nodes[other.source[edge]], unit, shift, conj)[~is_corner]
-            second = move(other.nodes[other.target[edge]], unit, shift, conj)[~is_corner]
-            only = round_here[lines]
-            line[lines[only], 0], line[lines[only], 1] = first[only], second[only]
-    curved = round_here != round_there
-    away = boundary.vertex - rows.origin[row]
-    normal = rows.ray0[row]
-    straight_distance = np.abs(away.real * normal.real + away.imag * normal.imag)
-    clearance = float(np.where(round_here, np.abs(away), straight_distance).min())
-    point[~curved], line[~curved] = 0, 0
-    traced = Traced(boundary.vertex, boundary.ring, target, copy, curved, point, line, nodes, copies)
-    return _tidy(traced, np.stack((here, target, copy, there))), clearance
-
-
-def _tidy(traced: Traced, curve: Ints) -> Traced:
-    """The boundary with neighbouring arcs of one curve joined, and outer rings before holes.
-
-    Args:
-        curve: (k, n) what determines each arc's curve.
-    """
-    kept, areas = [], []
-    for ring in traced.rings():
-        fresh = (curve[:, ring] != np.roll(curve[:, ring], 1, axis=1)).any(axis=0)
-        kept.append(ring[fresh] if fresh.any() else ring)
-        vertex = traced.vertex[ring]
-        after = np.roll(vertex, -1)
-        area = (vertex.real * after.imag - vertex.imag * after.real).sum() / 2
-        bent = np.flatnonzero(traced.curved[ring])
-        start, end = vertex[bent], after[bent]
-        control = parabola_controls(start, end, traced.focus[ring[bent]], traced.directrix[ring[bent]])
-        chord, tangent = end - start, control - start
-        areas.append(area + (tangent.real * chord.imag - tangent.imag * chord.real).sum() / 3)
-    order = np.argsort(-np.sign(areas), kind="stable")
-    ring_number = np.repeat(np.arange(len(order)), [len(kept[k]) for k in order])
-    tidy = traced.take(np.concatenate([kept[k] for k in order]))
-    return replace(tidy, ring=ring_number)
-
-
-def _pair(
-    action: Action, placed: list[Placed], traced: list[Traced], *, without_short: bool
-) -> tuple[list[Traced], list[Edge]]:
-    """The boundaries and their edges, paired; edges that rounding has made, where many tiles meet, are left out."""
-    limit = (_ONE_SIDED if without_short else PROOF_LIMIT) * action.size
-    traced = [boundary.take(long_edges(boundary, limit)) for boundary in traced]
-    pinched = True
-    while True:
-        try:
-            return traced, pair_edges(action, placed, traced, pinched=pinched)
-        except UnpairedEdgeError as error:
-            edge = error.edge
-            extent = float(np.abs(edge.vertex - edge.vertex[0]).max())
-            boundary = traced[edge.tile]
-            rest = np.delete(np.arange(len(boundary.vertex)), edge.arcs)
-            if extent <= _ONE_SIDED * action.size and len(rest):
-                traced = [boundary.take(rest) if t == edge.tile else other for t, other in enumerate(traced)]
-            elif pinched:
-                pinched = False
-            elif not without_short:
-                return _pair(action, placed, traced, without_short=True)
-            else:
-                raise
+    return with_curves(boundary, rows, contours, tile, parts, copies), clearance(boundary, rows, parts)

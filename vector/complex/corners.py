@@ -7,8 +7,9 @@ from collections import defaultdict
 import numpy as np
 
 from voronoi_tiles.vector.arcs import parabola_controls
-from voronoi_tiles.vector.complex.edges import Corner, Edge, Traced
+from voronoi_tiles.vector.complex.edges import Corner, Edge
 from voronoi_tiles.vector.complex.representatives import Builder
+from voronoi_tiles.vector.complex.traced import Traced
 from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, inverse
 
 Corners = dict[Corner, tuple[int, Motion]]

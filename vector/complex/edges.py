@@ -1,7 +1,7 @@
-"""Edges of the tiling: maximal runs of arcs between two tiles, and the orbits that they form.
+"""Edges of the tiling: maximal runs of arcs between two tiles, each paired with all its images.
 
-Seen from the tile beyond, an edge is the image of an edge of some base tile. One edge of each orbit is computed, and
-the others are its images.
+Seen from the tile beyond, and wherever a site's own symmetry maps it, an edge is an edge of some base tile again. All
+of these are found, and which motion takes which to which: so they form orbits, of which one edge each is needed.
 """
 
 from __future__ import annotations
@@ -12,91 +12,42 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Ints
-from voronoi_tiles.vector.arcs import parabola_controls
-from voronoi_tiles.vector.copies import Copies, Placed
+from voronoi_tiles.base.arrays import Complexes, Ints
+from voronoi_tiles.base.tolerance import PROOF_LIMIT
+from voronoi_tiles.vector.complex.traced import Traced
+from voronoi_tiles.vector.copies import Placed
 from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, inverse, reverses_orientation
-
-
-@dataclass(frozen=True, slots=True)
-class Traced:
-    """The traced boundary of a tile.
-
-    Attributes:
-        vertex: (n,) where each arc starts, ring after ring.
-        ring: (n,) index of the ring.
-        target, copy: (n,) the site beyond each arc, and the index of its copy.
-        curved: (n,) whether the arc lies on a parabola; else on a line.
-        focus: (n,) of the parabola.
-        directrix: (n, 2) two points of its directrix.
-        nodes: (n, 2) the nodes between which an arc is the bisector, NaN where they are not two.
-        copies: for each site, its copies around this tile.
-    """
-
-    vertex: Complexes
-    ring: Ints
-    target: Ints
-    copy: Ints
-    curved: Bools
-    focus: Complexes
-    directrix: Complexes
-    nodes: Complexes
-    copies: list[Copies]
-
-    def take(self, index: Ints) -> Traced:
-        """The boundary of these arcs only, each ending where the next one starts."""
-        arrays = {name: getattr(self, name)[index] for name in self.__slots__ if name != "copies"}
-        return Traced(**arrays, copies=self.copies)
-
-    def rings(self) -> list[Ints]:
-        """The indices of each ring's arcs."""
-        opening = np.flatnonzero(np.append(True, self.ring[1:] != self.ring[:-1]))
-        return np.split(np.arange(len(self.ring)), opening[1:])
-
-    def middles(self) -> Complexes:
-        """The point of each arc halfway between its ends, by its parameter."""
-        following = np.arange(1, len(self.vertex) + 1)
-        for ring in self.rings():
-            following[ring[-1]] = ring[0]
-        start, end = self.vertex, self.vertex[following]
-        middle = (start + end) / 2
-        bent = np.flatnonzero(self.curved)
-        control = parabola_controls(start[bent], end[bent], self.focus[bent], self.directrix[bent])
-        middle[bent] = (middle[bent] + control) / 2
-        return middle
-
 
 # How near vertices must be to count as one, relative to the cell's size: far above rounding.
 _SAME = 1e-6
 # How far an edge may be from the image of its counterpart, on the same scale. Where copies nearly touch, vertices are
 # known to far fewer digits along their edges; the proof judges what comes of it.
 PAIRING = 1e-3
+# An edge this short, on the same scale, may have come out in one tile only.
+_ONE_SIDED = 1e-6
 # Turns the plane so that no mirror and no row of copies is upright.
 _SLANT = np.exp(1j)
 
 Corner = tuple[int, int]
-"""Tile and index of the arc that starts there."""
+"""Where an arc starts: its tile, and its index in the traced boundary of that."""
 
 
 @dataclass(eq=False, slots=True)
 class Edge:
     """A maximal run of arcs that face one copy; where it is a whole ring, it is cut at one vertex or several.
 
-    Attributes:
-        tile: whose boundary it is part of.
-        arcs: (k,) indices into the traced boundary, in order.
-        target, motion: the copy on the other side.
-        start, end: its corners.
-        vertex: (k + 1,) the points between and at the ends of its arcs.
-        course: (2k + 1,) the same with a point of each arc between its ends, halfway by its parameter.
-        images: all edges of base tiles that it is mapped to, each with the motion and whether that reverses its
-            direction; itself under the identity comes first.
+    It is part of the boundary of the base tile `tile`: its k arcs are `arcs` (intp, k), in order, and `beyond` are the
+    site and the motion of the copy on their other side. It runs from the corner `start` to the corner `end`, over the
+    points `vertex` (complex128, k + 1) at the ends of its arcs; `course` (complex128, 2 k + 1) has a point between the
+    ends of each arc besides, halfway by its parameter.
+
+    `images` are all edges of base tiles that motions map it to, each with the motion and whether its image runs
+    backwards along that edge; itself under the identity comes first.
     """
 
     tile: int
     arcs: Ints
-    target: int
-    motion: Motion
+    beyond: tuple[int, Motion]
     start: Corner
     end: Corner
     vertex: Complexes
@@ -105,41 +56,63 @@ class Edge:
 
 
 class UnpairedEdgeError(ArithmeticError):
-    """An edge has no counterpart on the other side.
-
-    Attributes:
-        edge: the edge.
-    """
+    """An edge, `edge`, has no counterpart in the tile beyond, or no image there."""
 
     def __init__(self, edge: Edge) -> None:
-        super().__init__("an edge has no counterpart on the other side")
+        super().__init__("an edge has no counterpart in the tile beyond")
         self.edge = edge
 
 
-def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pinched: bool = False) -> list[Edge]:
-    """The edges of all tiles, ring after ring, each with its images.
+def find_edges(
+    action: Action, placed: list[Placed], traced: list[Traced], *, without_short: bool
+) -> tuple[list[Traced], list[Edge]]:
+    """The boundaries of all base tiles and their edges, ring after ring, each with its images.
 
-    Args:
-        pinched: look for vertices at which a boundary touches itself, and end edges there. Such a tile may have the
-            same neighbour on both sides of the vertex, while an edge on the other side ends.
+    Edges that rounding has made, where many tiles meet, are left out of the boundaries. `without_short` leaves out all
+    that may be such; this is tried as well where the edges cannot be paired otherwise. Raises UnpairedEdgeError where
+    they cannot be paired at all.
+    """
+    limit = (_ONE_SIDED if without_short else PROOF_LIMIT) * action.size
+    traced = [boundary.take(_long_edges(boundary, limit)) for boundary in traced]
+    pinched = True
+    while True:
+        try:
+            return traced, _paired(action, placed, traced, pinched=pinched)
+        except UnpairedEdgeError as error:
+            edge = error.edge
+            extent = float(np.abs(edge.vertex - edge.vertex[0]).max())
+            boundary = traced[edge.tile]
+            rest = np.delete(np.arange(len(boundary)), edge.arcs)
+            if extent <= _ONE_SIDED * action.size and len(rest):
+                traced = [boundary.take(rest) if t == edge.tile else other for t, other in enumerate(traced)]
+            elif pinched:
+                pinched = False
+            elif not without_short:
+                return find_edges(action, placed, traced, without_short=True)
+            else:
+                raise
 
-    Raises:
-        UnpairedEdgeError: as it says.
+
+def _paired(action: Action, placed: list[Placed], traced: list[Traced], *, pinched: bool) -> list[Edge]:
+    """The edges of boundaries, ring after ring, each with its images.
+
+    `pinched` looks for vertices at which a boundary touches itself, and ends edges there: such a tile may have the same
+    neighbour before and after the vertex, while an edge of that neighbour ends. Raises UnpairedEdgeError.
     """
     cuts = [_cuts(boundary) for boundary in traced]
     _cut_further(action, placed, traced, cuts, pinched)
     edges = [edge for tile, boundary in enumerate(traced) for edge in _edges(tile, boundary, cuts[tile])]
-    faces: defaultdict[tuple[int, int, Motion], list[Edge]] = defaultdict(list)
+    between: defaultdict[tuple[int, tuple[int, Motion]], list[Edge]] = defaultdict(list)
     for edge in edges:
-        faces[edge.tile, edge.target, edge.motion].append(edge)
+        between[edge.tile, edge.beyond].append(edge)
     limit = PAIRING * action.size
     for edge in edges:
-        for motion, tile, target, beyond, flips in _images(placed, edge.tile, edge.target, edge.motion):
+        for motion, tile, beyond, flips in _images(placed, edge.tile, *edge.beyond):
             if motion == IDENTITY and not flips:
                 edge.images.append((motion, edge, False))
                 continue
             image = action.apply(motion, edge.course)
-            candidates = faces.get((tile, target, beyond), [])
+            candidates = between.get((tile, beyond), [])
             if flips:
                 image = image[::-1]
             gaps = [_gap(image, other.course, limit) for other in candidates]
@@ -150,7 +123,7 @@ def pair_edges(action: Action, placed: list[Placed], traced: list[Traced], *, pi
     return edges
 
 
-def long_edges(boundary: Traced, limit: float) -> Ints:
+def _long_edges(boundary: Traced, limit: float) -> Ints:
     """The arcs of the edges that extend farther than a limit; all, where no other would be left of a ring."""
     kept = []
     for ring, cut in zip(boundary.rings(), _cuts(boundary), strict=True):
@@ -167,7 +140,7 @@ def _gap(one: Complexes, other: Complexes, limit: float) -> float:
     """How far the courses of two edges are from being the same.
 
     Where they do not agree one by one, points at equal shares of their lengths are compared: rounding may split a
-    vertex, on one side only, into several.
+    vertex, in one of the two, into several.
     """
     if len(one) == len(other):
         gap = float(np.abs(one - other).max())
@@ -193,23 +166,20 @@ def _cuts(boundary: Traced) -> list[list[int]]:
     return result
 
 
-def _motion(boundary: Traced, arc: int) -> Motion:
-    """The copy beyond an arc."""
-    a, b, c, d, s, t = boundary.copies[boundary.target[arc]].motions[boundary.copy[arc]].tolist()
-    return (a, b, c, d, s, t)
-
-
 def _images(
-    placed: list[Placed], tile: int, target: int, beyond: Motion
-) -> Iterator[tuple[Motion, int, int, Motion, bool]]:
-    """Every way to move an edge onto a base tile: (motion, tile, target, copy beyond, whether it reverses)."""
-    for element in placed[tile].stabilizer:
-        motion = compose(element, beyond)
-        yield element, tile, target, placed[target].canonical(motion), reverses_orientation(element)
-    back = inverse(beyond)
+    placed: list[Placed], tile: int, target: int, there: Motion
+) -> Iterator[tuple[Motion, int, tuple[int, Motion], bool]]:
+    """Every way to move an edge between a base tile and the copy of `target` under `there` onto a base tile.
+
+    That is the motion, the tile, site and motion of the copy then beyond, and whether the image runs backwards.
+    """
+    for motion in placed[tile].stabilizer:
+        beyond = placed[target].canonical(compose(motion, there))
+        yield motion, tile, (target, beyond), reverses_orientation(motion)
+    back = inverse(there)
     for element in placed[target].stabilizer:
         motion = compose(element, back)
-        yield motion, target, tile, placed[tile].canonical(motion), not reverses_orientation(motion)
+        yield motion, target, (tile, placed[tile].canonical(motion)), not reverses_orientation(motion)
 
 
 def _cut_further(
@@ -220,13 +190,13 @@ def _cut_further(
     They are one vertex of each ring that faces one copy only and, where `pinched`, those where a boundary touches
     itself.
     """
-    # A vertex is where its arc starts; what it is mapped to depends on the copies beyond the arcs on either side.
-    waiting: list[tuple[int, int]] = []
+    # A vertex is where its arc starts; what it is mapped to depends on the copies beyond this arc and the one before.
+    waiting: list[Corner] = []
     for tile, boundary in enumerate(traced):
         if pinched:
             waiting += [(tile, arc) for arc in _pinches(boundary, _SAME * action.size)]
         waiting += [(tile, int(r[0])) for r, cut in zip(boundary.rings(), cuts[tile], strict=True) if not cut]
-    done: set[tuple[int, int]] = set()
+    done: set[Corner] = set()
     while waiting:
         tile, arc = waiting.pop()
         if (tile, arc) in done:
@@ -239,13 +209,12 @@ def _cut_further(
         if place not in cuts[tile][number]:
             cuts[tile][number] = sorted([*cuts[tile][number], place])
         here = boundary.vertex[arc : arc + 1]
-        for side in {arc, before}:
-            target, beyond = int(boundary.target[side]), _motion(boundary, side)
-            for motion, other, facing, copy, _ in _images(placed, tile, target, beyond):
+        for faced in {boundary.beyond(arc), boundary.beyond(before)}:
+            for motion, other, beyond, _ in _images(placed, tile, *faced):
                 waiting += [
                     (other, k)
                     for k in _at(traced[other], action.apply(motion, here), _SAME * action.size)
-                    if facing == traced[other].target[k] and copy == _motion(traced[other], k)
+                    if traced[other].beyond(k) == beyond
                 ]
 
 
@@ -269,7 +238,7 @@ def _pinches(boundary: Traced, limit: float) -> list[int]:
         pairs.append(np.stack((order[same], order[same + step]), axis=1))
     one, two = np.concatenate(pairs).T
     # Neighbours on the boundary may be as close without touching: a short arc lies between them.
-    following = np.concatenate([np.roll(ring, -1) for ring in boundary.rings()])
+    following = boundary.following()
     apart = (following[one] != two) & (following[two] != one)
     return [int(vertex) for vertex in np.unique(np.concatenate((one[apart], two[apart])))]
 
@@ -292,8 +261,7 @@ def _edges(tile: int, boundary: Traced, cuts: list[list[int]]) -> Iterator[Edge]
             yield Edge(
                 tile=tile,
                 arcs=arcs,
-                target=int(boundary.target[start]),
-                motion=_motion(boundary, start),
+                beyond=boundary.beyond(start),
                 start=(tile, start),
                 end=(tile, end),
                 vertex=vertex,

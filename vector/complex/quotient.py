@@ -16,8 +16,9 @@ from voronoi_tiles.base.arrays import Complexes, Ints
 from voronoi_tiles.paths.paths import LINE, QUAD, Paths
 from voronoi_tiles.vector.arcs import parabola_controls
 from voronoi_tiles.vector.complex.corners import Corners, find_corners
-from voronoi_tiles.vector.complex.edges import PAIRING, Edge, Traced
+from voronoi_tiles.vector.complex.edges import PAIRING, Edge
 from voronoi_tiles.vector.complex.representatives import Builder, Points, Representatives
+from voronoi_tiles.vector.complex.traced import Traced
 from voronoi_tiles.vector.motions import IDENTITY, Action, Motion
 
 # How near to a vertex the image of its counterpart must be, relative to the cell's size, where some have none.
@@ -125,7 +126,7 @@ def build_quotient(action: Action, traced: list[Traced], edges: list[Edge]) -> Q
     rings: list[dict[int, list[EdgeUse]]] = [{} for _ in traced]
     for edge in edges:
         ring = rings[edge.tile].setdefault(int(traced[edge.tile].ring[edge.arcs[0]]), [])
-        ring.append(EdgeUse(*source[edge], (edge.target, edge.motion)))
+        ring.append(EdgeUse(*source[edge], edge.beyond))
     boundaries = tuple(tuple(map(tuple, boundary.values())) for boundary in rings)
     return Quotient(builder.snapshot(), tuple(kept), boundaries)
 
