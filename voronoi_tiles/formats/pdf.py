@@ -2,6 +2,9 @@
 
 PDF 1.5 (Adobe, PDF Reference, fourth edition), the first with optional content; readers of 1.4 skip that. The content
 is in millimetres: one matrix scales it to points, so that a coordinate in the file is the coordinate in the drawing.
+
+Why by hand: a library would take the content, nearly all of the file, as bytes as well; what it would write around them
+are the few objects below.
 """
 
 from __future__ import annotations

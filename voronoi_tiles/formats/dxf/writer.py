@@ -1,7 +1,8 @@
 """DXF: closed polylines with bulges, splines in Bezier form, or chords for the oldest readers; always millimetres.
 
 ezdxf makes the frame of the document (header, tables, blocks, objects). The entities, which are nearly all of the file,
-are written here as text: an object for each of 500,000 vertices would take minutes and gigabytes.
+are written here as text. For a sheet of 7,814 tiles ezdxf's own take 13 seconds instead of 1.4 as polylines with
+bulges, 15 instead of 2.4 as splines, and 90 instead of 2, with 700 MB, as R12's, which have an object for each vertex.
 """
 
 from __future__ import annotations
