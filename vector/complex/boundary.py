@@ -16,15 +16,13 @@ from voronoi_tiles.vector.outline import Outline
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TileBoundary:
-    """The boundary of a tile, n arcs in r rings.
+    """The boundary of a tile, n arcs in r rings, as images of representatives.
 
-    Attributes:
-        representatives: of all tiles.
-        start: (n,) where each arc starts; it ends where the next of its ring starts.
-        control: (n,) of the quadratic Bezier; its index is -1 for a line.
-        focus: (n,) and directrix: (n, 2), of the representative arc, to be moved as the control point.
-        ring_offsets: (r + 1,) the arcs of ring k are ring_offsets[k] to ring_offsets[k + 1].
-        beyond: (n,) into `neighbours`: site and motion of the copy beyond each arc.
+    An arc starts at one of the n points `start` and ends where the next of its ring starts; `control` are the control
+    points of the arcs as quadratic Bezier curves, none for a line. `focus` (complex128, n) and `directrix` (complex128,
+    n x 2) are those of the parabolas before the motions that take the control points to their places. The arcs of ring
+    k are those from `ring_offsets[k]` up to, not including, `ring_offsets[k + 1]` (intp, r + 1). Beyond an arc lies the
+    copy of the site and under the motion `neighbours[beyond[k]]` (`beyond`: intp, n).
     """
 
     representatives: Representatives
@@ -39,20 +37,19 @@ class TileBoundary:
     @classmethod
     def of(cls, quotient: Quotient, tile: int) -> TileBoundary:
         """The boundary of the base tile of a site."""
-        start, control, focus, directrix = [], [], [], []
-        beyond, counts = [], []
-        faces: dict[tuple[int, Motion], int] = {}
-        for ring in quotient.boundaries[tile]:
-            for use in ring:
-                edge = quotient.edges[use.edge]
-                count = len(edge.focus)
-                order = np.arange(count)[:: -1 if use.backwards else 1]
-                start.append(edge.vertex.moved(use.motion).take(order + use.backwards))
-                control.append(edge.control.moved(use.motion).take(order))
-                focus.append(edge.focus[order])
-                directrix.append(edge.directrix[order])
-                beyond.append(np.full(count, faces.setdefault(use.beyond, len(faces))))
-            counts.append(sum(len(quotient.edges[use.edge].focus) for use in ring))
+        rings = quotient.boundaries[tile]
+        start, control, focus, directrix, beyond = [], [], [], [], []
+        number: dict[tuple[int, Motion], int] = {}
+        for use in (use for ring in rings for use in ring):
+            edge = quotient.edges[use.edge]
+            order = np.arange(len(edge))[:: -1 if use.backwards else 1]
+            # Run through backwards, arc k starts where it ends else: at vertex k + 1.
+            start.append(edge.vertex.moved(use.motion).take(order + use.backwards))
+            control.append(edge.control.moved(use.motion).take(order))
+            focus.append(edge.focus[order])
+            directrix.append(edge.directrix[order])
+            beyond.append(np.full(len(edge), number.setdefault(use.beyond, len(number))))
+        counts = [sum(len(quotient.edges[use.edge]) for use in ring) for ring in rings]
         return cls(
             representatives=quotient.representatives,
             start=Points.concatenate(start),
@@ -61,7 +58,7 @@ class TileBoundary:
             directrix=np.concatenate(directrix),
             ring_offsets=np.append(0, np.cumsum(counts)),
             beyond=np.concatenate(beyond),
-            neighbours=tuple(faces),
+            neighbours=tuple(number),
         )
 
     def outline(self, motion: Motion, neighbours: tuple[Neighbour, ...]) -> Outline:
@@ -70,13 +67,12 @@ class TileBoundary:
         start = self.representatives.locate(self.start.moved(motion))
         offsets = self.ring_offsets
         end = start[next_in_ring(offsets)]
-        curved = self.control.index >= 0
-        control = (start + end) / 2
+        points = self.control.moved(motion)
+        curved = points.index >= 0
+        control = np.where(curved, self.representatives.locate(points), (start + end) / 2)
         focus, directrix = np.zeros(len(start), complex), np.zeros((len(start), 2), complex)
-        points = self.control.moved(motion).take(np.flatnonzero(curved))
-        control[curved] = self.representatives.locate(points)
         for number, by in enumerate(points.motions):
-            chosen = np.flatnonzero(curved)[points.motion == number]
+            chosen = np.flatnonzero(curved & (points.motion == number))
             focus[chosen] = action.apply(by, self.focus[chosen])
             directrix[chosen] = action.apply(by, self.directrix[chosen])
         # A motion that turns the plane over turns the rings round: run through each backwards.

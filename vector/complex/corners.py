@@ -13,12 +13,18 @@ from voronoi_tiles.vector.complex.traced import Traced
 from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, inverse
 
 Corners = dict[Corner, tuple[int, Motion]]
-"""For each corner its representative and the motion from there."""
+"""For each corner the number of its representative, and the motion from there."""
+
+# For each corner, corners that edges' motions take it to, and those motions.
+_Related = defaultdict[Corner, list[tuple[Corner, Motion]]]
 
 
 def find_corners(builder: Builder, traced: list[Traced], edges: list[Edge]) -> Corners:
-    """All corners as images of representatives; those on rotation centres and mirrors are put exactly there."""
-    related: defaultdict[Corner, list[tuple[Corner, Motion]]] = defaultdict(list)
+    """All corners of edges as images of representatives; those on rotation centres and mirrors are put exactly there.
+
+    The edges come with their images; what takes an edge to an image takes its ends to those of the image.
+    """
+    related: _Related = defaultdict(list)
     ends: defaultdict[Corner, list[tuple[Edge, int]]] = defaultdict(list)
     images: set[Edge] = set()
     for edge in edges:
@@ -36,26 +42,34 @@ def find_corners(builder: Builder, traced: list[Traced], edges: list[Edge]) -> C
         first = edge.start
         if first in found:
             continue
-        reached = {first: IDENTITY}
-        stack = [first]
-        fixing: set[Motion] = set()
-        while stack:
-            corner = stack.pop()
-            for other, motion in related[corner]:
-                there_by = compose(motion, reached[corner])
-                if other not in reached:
-                    reached[other] = there_by
-                    stack.append(other)
-                elif reached[other] != there_by:
-                    fixing.add(compose(inverse(reached[other]), there_by))
+        reached, fixing = _orbit(first, related)
         where = complex(edge.vertex[0])
         for corner, motion in reached.items():
             sources = [(e, place) for e, place in ends[corner] if e not in images]
             where = _sharpened(builder.action, traced[corner[0]], where, motion, sources, ends[corner])
-        stabilizer = _generated(fixing)
-        number = builder.add_fixed(where, stabilizer, _across(traced, ends[first]))
+        number = builder.add_fixed(where, _generated(fixing), _across(traced, ends[first]))
         found.update({corner: (number, motion) for corner, motion in reached.items()})
     return found
+
+
+def _orbit(first: Corner, related: _Related) -> tuple[dict[Corner, Motion], set[Motion]]:
+    """The corners that a corner is taken to, each with a motion that does it; and motions that generate its stabilizer.
+
+    Where two ways lead to one corner, to go there and back is a motion that fixes the first.
+    """
+    reached = {first: IDENTITY}
+    stack = [first]
+    fixing: set[Motion] = set()
+    while stack:
+        corner = stack.pop()
+        for other, motion in related[corner]:
+            there_by = compose(motion, reached[corner])
+            if other not in reached:
+                reached[other] = there_by
+                stack.append(other)
+            elif reached[other] != there_by:
+                fixing.add(compose(inverse(reached[other]), there_by))
+    return reached, fixing
 
 
 # Nodes this near to each other, relative to a vertex's distance, determine it badly across their bisector.
@@ -71,6 +85,9 @@ def _sharpened(
     ends: list[tuple[Edge, int]],
 ) -> complex:
     """A corner's representative, moved onto the bisector of two nodes that are near to each other.
+
+    The corner is the image of `where` under `motion`. `ends` are the edges that end there, each with the place of its
+    arc there, 0 or -1; `sources` those of them that stand for their orbit.
 
     Copies that nearly touch leave a corner uncertain across the bisector between them: by eps R^2 / d at a distance R
     from nodes a distance d apart. Where the edge passes between these nodes this matters; along the other edge that

@@ -148,11 +148,7 @@ class Period:
 
 
 def make_period(action: Action, placed: Sequence[Placed], quotient: Quotient) -> Period:
-    """One period of a tessellation.
-
-    Args:
-        placed: the sites, of which `quotient` is the complex.
-    """
+    """One period of the tessellation by the placed sites, of which `quotient` is the complex."""
     collector = _Collector(quotient)
     motions = [(site, motion) for site, base in enumerate(placed) for motion in base.representatives]
     rings = collector.rings(motions)

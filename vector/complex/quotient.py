@@ -29,12 +29,10 @@ _COUNTERPART = 1e-6
 class QuotientEdge:
     """The edge that stands for an orbit of edges: k arcs between two tiles.
 
-    Attributes:
-        vertex: (k + 1,) its ends and the points between its arcs.
-        control: (k,) of the quadratic Bezier of each arc; the index is -1 for a line.
-        focus, directrix: (k,) and (k, 2), of the representative arc, to be moved as the control point.
-        stabilizer: the motions that map it onto itself, each with whether it comes out running backwards; the identity
-            first.
+    `vertex` are its ends and the points between its arcs, k + 1 of them. `control` are the control points of the arcs
+    as quadratic Bezier curves, none for a line; `focus` (complex128, k) and `directrix` (complex128, k x 2) are those
+    of the parabolas before the motions that take the control points to their places. `stabilizer` are the motions that
+    map the edge onto itself, the identity first, each with whether it comes out running backwards.
     """
 
     vertex: Points
@@ -43,6 +41,10 @@ class QuotientEdge:
     directrix: Complexes
     stabilizer: tuple[tuple[Motion, bool], ...]
 
+    def __len__(self) -> int:
+        """The number of arcs."""
+        return len(self.focus)
+
     @property
     def reversal(self) -> Motion | None:
         """The motion that maps the edge onto itself backwards, None where there is none."""
@@ -50,13 +52,10 @@ class QuotientEdge:
 
 
 class EdgeUse(NamedTuple):
-    """An edge as part of the boundary of a base tile.
+    """An edge as part of the boundary of a base tile: the image under `motion` of the edge that stands for its orbit.
 
-    Attributes:
-        edge: the one that stands for its orbit.
-        motion: what takes that one here.
-        backwards: whether the boundary runs against it.
-        beyond: site and motion of the copy on the other side.
+    `edge` is the number of that one; `backwards` says whether the boundary runs against the image, and `beyond` are the
+    site and the motion of the copy on the other side.
     """
 
     edge: int
@@ -67,12 +66,10 @@ class EdgeUse(NamedTuple):
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Quotient:
-    """The quotient complex.
+    """The quotient complex: one edge of each orbit, and the boundary of the base tile of each site.
 
-    Attributes:
-        representatives: the points that all points of edges are images of.
-        edges: one of each orbit.
-        boundaries: for the base tile of each site its rings, outer ones counter-clockwise and first, holes clockwise.
+    All points of edges are images of `representatives`. Of a boundary's rings the outer ones run counter-clockwise and
+    come first, holes run clockwise.
     """
 
     representatives: Representatives
@@ -81,38 +78,21 @@ class Quotient:
 
     def paths(self) -> Paths:
         """The edges as paths of lines and quadratic curves, in the places in which they stand for their orbits."""
-        start, end, control = ([np.zeros(0, np.complex128)] for _ in range(3))
-        for edge in self.edges:
-            vertex = self.representatives.locate(edge.vertex)
-            start.append(vertex[:-1])
-            end.append(vertex[1:])
-            control.append(self.controls(edge))
+        vertices = [self.representatives.locate(edge.vertex) for edge in self.edges]
+        controls = [self.representatives.locate(edge.control) for edge in self.edges]
         curved = np.concatenate([edge.control.index >= 0 for edge in self.edges])
-        counts = [len(edge.focus) for edge in self.edges]
         return Paths(
-            start=np.concatenate(start),
-            end=np.concatenate(end),
-            control=np.column_stack((np.concatenate(control), np.zeros(len(curved)))),
+            start=np.concatenate([vertex[:-1] for vertex in vertices]),
+            end=np.concatenate([vertex[1:] for vertex in vertices]),
+            control=np.column_stack((np.concatenate(controls), np.zeros(len(curved)))),
             kind=np.where(curved, QUAD, LINE).astype(np.uint8),
-            offsets=np.append(0, np.cumsum(counts)).astype(np.intp),
-            closed=np.zeros(len(counts), np.bool_),
+            offsets=np.append(0, np.cumsum([len(edge) for edge in self.edges])).astype(np.intp),
+            closed=np.zeros(len(self.edges), np.bool_),
         )
-
-    def controls(self, edge: QuotientEdge) -> Complexes:
-        """The control points of an edge's arcs, 0 for lines."""
-        result = np.zeros(len(edge.focus), np.complex128)
-        curved = np.flatnonzero(edge.control.index >= 0)
-        result[curved] = self.representatives.locate(edge.control.take(curved))
-        return result
 
 
 def build_quotient(action: Action, traced: list[Traced], edges: list[Edge]) -> Quotient:
-    """The quotient complex of a tessellation.
-
-    Args:
-        traced: for each site its tile's boundary.
-        edges: of these boundaries, paired, ring after ring.
-    """
+    """The quotient complex of a tessellation: of each site's traced boundary, and their edges, ring after ring."""
     builder = Builder(action)
     corners = find_corners(builder, traced, edges)
     positions = builder.snapshot()
@@ -135,92 +115,68 @@ def _represent(
     builder: Builder, positions: Representatives, boundary: Traced, edge: Edge, corners: Corners
 ) -> QuotientEdge:
     """The edge that stands for its orbit, symmetric under the motions that map it onto itself."""
-    action = builder.action
     stabilizer = tuple((motion, flips) for motion, image, flips in edge.images if image is edge)
-    start, end = corners[edge.start], corners[edge.end]
-    selfmaps = [(motion, flips) for motion, flips in stabilizer if motion != IDENTITY]
-    none = np.zeros(0, np.intp)
-    if any(not flips for _, flips in selfmaps):
-        # It lies on a mirror: one straight line, whatever elements take turns beside it.
-        line = _Arcs(none, none, np.array([-1]), np.zeros(1, np.intp), np.zeros(1, complex), np.zeros((1, 2), complex))
-        return line.between(start, end, IDENTITY, stabilizer)
-    vertex, arcs = edge.vertex.copy(), edge.arcs
-    ends = Points(np.array([start[0], end[0]]), np.array([0, 1]), (start[1], end[1]))
-    vertex[[0, -1]] = positions.locate(ends)
-    if not selfmaps:
-        inner = builder.add(vertex[1:-1])
-        control = _controls(builder, boundary, arcs, vertex)
-        plain = _Arcs(inner, 0 * inner, control, 0 * control, boundary.focus[arcs], boundary.directrix[arcs])
-        return plain.between(start, end, IDENTITY, stabilizer)
-    mirror = selfmaps[0][0]
-    vertex, arcs = _symmetric(action, mirror, vertex, arcs)
-    half, odd = divmod(len(arcs), 2)
-    pair = tuple(sorted((IDENTITY, mirror)))
-    inner = builder.add(vertex[1 : half + odd])
-    if odd:
-        vertex[half + 1 : -1] = action.apply(mirror, vertex[1 : half + 1][::-1])
-        core = arcs[: half + 1]
-        control = _controls(builder, boundary, core, vertex[: half + 2])
-        if control[half] >= 0:
-            control[half] = builder.add_fixed(builder.last(), pair)
-        order = np.concatenate((inner, inner[::-1]))
-    else:
-        centre = builder.add_fixed(complex(vertex[half]), pair)
-        vertex[half] = builder.last()
-        core = arcs[:half]
-        control = _controls(builder, boundary, core, vertex[: half + 1])
-        order = np.concatenate((inner, [centre], inner[::-1]))
-    places = np.concatenate((np.arange(len(core)), np.arange(half)[::-1]))
-    symmetric = _Arcs(
-        inner=order,
-        inner_by=(np.arange(len(order)) >= half).astype(np.intp),
-        control=control[places],
-        control_by=(np.arange(len(places)) >= len(core)).astype(np.intp),
-        focus=boundary.focus[core][places],
-        directrix=boundary.directrix[core][places],
+    others = [(motion, flips) for motion, flips in stabilizer if motion != IDENTITY]
+    start, end = (
+        Points.under(motion, np.array([number])) for number, motion in (corners[edge.start], corners[edge.end])
     )
-    return symmetric.between(start, end, mirror, stabilizer)
+    if any(not flips for _, flips in others):
+        # It lies on a mirror: one straight line, whatever elements take turns beside it.
+        inner, control = Points.under(IDENTITY, np.zeros(0, np.intp)), Points.under(IDENTITY, np.array([-1]))
+        focus, directrix = np.zeros(1, complex), np.zeros((1, 2), complex)
+    else:
+        vertex = edge.vertex.copy()
+        vertex[[0, -1]] = positions.locate(Points.concatenate([start, end]))
+        if others:
+            inner, control, arcs = _add_symmetric(builder, boundary, edge.arcs, vertex, others[0][0])
+        else:
+            inner, control, arcs = *_add(builder, boundary, edge.arcs, vertex), edge.arcs
+        focus, directrix = boundary.focus[arcs], boundary.directrix[arcs]
+    return QuotientEdge(Points.concatenate([start, inner, end]), control, focus, directrix, stabilizer)
 
 
-@dataclass(frozen=True, slots=True)
-class _Arcs:
-    """The arcs of an edge between its corners, as indices of representatives.
+def _add(builder: Builder, boundary: Traced, arcs: Ints, vertex: Complexes) -> tuple[Points, Points]:
+    """Add the points of arcs between consecutive vertices: those within, and the control points, none for lines."""
+    inner = builder.add(vertex[1:-1])
+    control = np.full(len(arcs), -1)
+    curved = np.flatnonzero(boundary.curved[arcs])
+    bent = arcs[curved]
+    control[curved] = builder.add(
+        parabola_controls(vertex[curved], vertex[curved + 1], boundary.focus[bent], boundary.directrix[bent])
+    )
+    return Points.under(IDENTITY, inner), Points.under(IDENTITY, control)
 
-    Attributes:
-        inner: (k - 1,) the vertices between the arcs; control: (k,) the control points, -1 for lines.
-        inner_by, control_by: 0 where they stand for themselves, 1 where the motion that reverses the edge moves them.
-        focus, directrix: (k,) and (k, 2), to be moved as the control points.
+
+def _add_symmetric(
+    builder: Builder, boundary: Traced, arcs: Ints, vertex: Complexes, reversal: Motion
+) -> tuple[Points, Points, Ints]:
+    """Add the points of an edge that a motion maps onto itself backwards: those within, the control points, the arcs.
+
+    Some of the arcs may go. The points of the second half are the images of those of the first half; what lies in the
+    middle, a vertex or the control point of an arc, is fixed by the motion.
     """
-
-    inner: Ints
-    inner_by: Ints
-    control: Ints
-    control_by: Ints
-    focus: Complexes
-    directrix: Complexes
-
-    def between(
-        self,
-        start: tuple[int, Motion],
-        end: tuple[int, Motion],
-        reversal: Motion,
-        stabilizer: tuple[tuple[Motion, bool], ...],
-    ) -> QuotientEdge:
-        """The edge between two corners."""
-        motions = (IDENTITY, reversal)
-        corners = [Points(np.array([index]), np.zeros(1, np.intp), (motion,)) for index, motion in (start, end)]
-        return QuotientEdge(
-            vertex=Points.concatenate([corners[0], Points(self.inner, self.inner_by, motions), corners[1]]),
-            control=Points(self.control, self.control_by, motions),
-            focus=self.focus,
-            directrix=self.directrix,
-            stabilizer=stabilizer,
-        )
+    vertex, arcs = _with_counterparts(builder.action, reversal, vertex, arcs)
+    fixing = tuple(sorted((IDENTITY, reversal)))
+    half, odd = divmod(len(arcs), 2)
+    first, back = arcs[: half + odd], np.arange(half)[::-1]
+    centre = []
+    if not odd:
+        centre = [Points.under(IDENTITY, np.array([builder.add_fixed(complex(vertex[half]), fixing)]))]
+        vertex[half] = builder.last()
+    elif half:
+        vertex[half + 1] = builder.action.apply_to_point(reversal, complex(vertex[half]))
+    inner, control = _add(builder, boundary, first, vertex[: len(first) + 1])
+    if odd and control.index[half] >= 0:
+        control.index[half] = builder.add_fixed(builder.last(), fixing)
+    other = inner.take(np.arange(len(inner))[::-1]).moved(reversal)
+    inner = Points.concatenate([inner, *centre, other])
+    control = Points.concatenate([control, control.take(back).moved(reversal)])
+    return inner, control, np.concatenate((first, first[back]))
 
 
-def _symmetric(action: Action, mirror: Motion, vertex: Complexes, arcs: Ints) -> tuple[Complexes, Ints]:
+def _with_counterparts(action: Action, reversal: Motion, vertex: Complexes, arcs: Ints) -> tuple[Complexes, Ints]:
     """The vertices of a symmetric edge that have a counterpart, and its arcs: rounding splits some on one side only."""
-    image = action.apply(mirror, vertex)[::-1]
+    image = action.apply(reversal, vertex)[::-1]
     if len(arcs) == 1 or np.abs(image - vertex).max() <= PAIRING * action.size:
         return vertex, arcs
     gaps = np.abs(image[:, None] - vertex)
@@ -233,14 +189,3 @@ def _symmetric(action: Action, mirror: Motion, vertex: Complexes, arcs: Ints) ->
     bounds = [*kept, len(arcs)]
     longest = [a + int(length[a:b].argmax()) for a, b in zip(kept, bounds[1:], strict=True)]
     return vertex[bounds], arcs[longest]
-
-
-def _controls(builder: Builder, boundary: Traced, arcs: Ints, vertex: Complexes) -> Ints:
-    """The indices of the control points, which are added, of arcs between consecutive vertices; -1 for lines."""
-    control = np.full(len(arcs), -1)
-    curved = np.flatnonzero(boundary.curved[arcs])
-    bent = arcs[curved]
-    control[curved] = builder.add(
-        parabola_controls(vertex[curved], vertex[curved + 1], boundary.focus[bent], boundary.directrix[bent])
-    )
-    return control

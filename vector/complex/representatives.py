@@ -14,17 +14,23 @@ from voronoi_tiles.vector.motions import Action, Motion, compose, reverses_orien
 
 @dataclass(frozen=True, slots=True)
 class Points:
-    """Images of representatives.
+    """Images of representatives: of number `index[k]` (intp, n) under the motion `motions[motion[k]]` (intp, n).
 
-    Attributes:
-        index: (n,) into the representatives.
-        motion: (n,) into `motions`.
-        motions: the motions that occur.
+    The index is -1 where there is no point.
     """
 
     index: Ints
     motion: Ints
     motions: tuple[Motion, ...]
+
+    @classmethod
+    def under(cls, motion: Motion, index: Ints) -> Points:
+        """The images of some representatives under one motion."""
+        return cls(index, np.zeros(len(index), np.intp), (motion,))
+
+    def __len__(self) -> int:
+        """The number of points."""
+        return len(self.index)
 
     def moved(self, outer: Motion) -> Points:
         """The images under one more motion."""
@@ -48,12 +54,9 @@ class Points:
 
 @dataclass(frozen=True)
 class Representatives:
-    """The points that all others are images of.
+    """The points that all others are images of: their positions, complex128 (m,), in the plane on which a group acts.
 
-    Attributes:
-        action: the group.
-        position: (m,).
-        stabilizer: for those that motions of the group fix, these motions.
+    `stabilizer` has for those that motions of the group fix, by their number, these motions.
     """
 
     action: Action
@@ -62,16 +65,16 @@ class Representatives:
 
     @cached_property
     def _special(self) -> Bools:
-        """(m,) whether a representative has a stabilizer."""
+        """Whether a representative has a stabilizer, bool (m,)."""
         special = np.zeros(len(self.position), bool)
         special[list(self.stabilizer)] = True
         return special
 
     def locate(self, points: Points) -> Complexes:
-        """The positions of images of representatives."""
-        result = np.empty(len(points.index), complex)
+        """The positions of points, complex128 (n,); 0 where there is none."""
+        result = np.zeros(len(points), complex)
         for number, motion in enumerate(points.motions):
-            chosen = points.motion == number
+            chosen = (points.motion == number) & (points.index >= 0)
             result[chosen] = self.action.apply(motion, self.position[points.index[chosen]])
         for k, motion in self.canonical(points):
             result[k] = self.action.apply_to_point(motion, complex(self.position[points.index[k]]))
@@ -79,13 +82,13 @@ class Representatives:
 
     def canonical(self, points: Points) -> Iterator[tuple[int, Motion]]:
         """Those points to which several motions lead, with the one of these that stands for all."""
-        for k in np.flatnonzero(self._special[points.index] & (points.index >= 0)).tolist():
+        for k in np.flatnonzero((points.index >= 0) & self._special[points.index]).tolist():
             point = int(points.index[k])
             yield k, min(compose(points.motions[points.motion[k]], s) for s in self.stabilizer[point])
 
 
 class Builder:
-    """Collects representatives."""
+    """Representatives that are being collected."""
 
     def __init__(self, action: Action) -> None:
         self.action = action

@@ -34,8 +34,7 @@ def counting(counts: Ints) -> tuple[Ints, Ints]:
 def next_in_ring(offsets: Ints) -> Ints:
     """The index of what follows each entry in its ring, the last one by the first.
 
-    Args:
-        offsets: (r + 1,) the entries of ring k are offsets[k] to offsets[k + 1]; no ring is empty.
+    The entries of ring k are those from offsets[k] up to, not including, offsets[k + 1] (intp, r + 1); none is empty.
     """
     following = np.arange(1, int(offsets[-1]) + 1)
     following[offsets[1:] - 1] = offsets[:-1]
