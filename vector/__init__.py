@@ -1,4 +1,4 @@
-"""The vector stage: exact cells, their outlines, and the files that carry them.
+"""The vector stage: exact cells, the complex of the edges that they share, outlines, and the proof.
 
-Installed as `voronoi_tiles.vector`. It imports the vocabulary modules of `voronoi_tiles`, never the raster stage.
+Installed as `voronoi_tiles.vector`. It imports packages of lower ranks only, never the raster stage.
 """

@@ -17,14 +17,12 @@ from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, modu
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """A base site in its place, with what its copies depend on.
+    """A base site moved by a lattice vector to near the origin, with what its copies depend on.
 
-    Attributes:
-        nodes, segments: as in a site, translated by a lattice vector to near the origin.
-        shift: that vector's integer coordinates: the given site is the placed one moved by it.
-        centre, radius: a circle around all nodes.
-        stabilizer: the motions that map the site onto itself, the identity first.
-        representatives: one motion of the group modulo translations for each copy in a cell.
+    `nodes` (complex128, m) and `segments` (intp, n x 2) are as in a site; `shift` are the integer coordinates of the
+    vector that leads back to the site as it was drawn. A circle about `centre` with this `radius` holds all nodes.
+    `stabilizer` are the motions that map the site onto itself, the identity first; `representatives` has one motion for
+    each copy in a cell, modulo translations.
     """
 
     nodes: Complexes
@@ -113,7 +111,10 @@ def _maps_onto_itself(images: Complexes, nodes: Complexes, segments: Ints, close
 
 @dataclass(frozen=True, slots=True)
 class Copies:
-    """Copies of a site, as arrays: copy k is unit * z + shift, or unit * conj(z) + shift."""
+    """Copies of a site: copy k is unit[k] z + shift[k], or where `conj[k]` (bool) unit[k] conj(z) + shift[k].
+
+    `unit` and `shift` are complex128 (n,); `motions` (int64, n x 6) are the same as exact motions.
+    """
 
     motions: npt.NDArray[np.int64]
     unit: Complexes

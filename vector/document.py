@@ -20,7 +20,7 @@ from voronoi_tiles.vector.outline import Outline
 
 SCHEMA = 1
 
-_BROKEN_LEVELS = 5  # containers above the level of an edge are written one item per line
+_BROKEN_LEVELS = 5  # containers above the level of an arc are written one item per line
 
 
 def outline_document(units: str, group: str, lattice: Lattice, tiles: Iterable[dict[str, Any]]) -> dict[str, Any]:
@@ -48,17 +48,17 @@ def tile_record(
         "copies_per_cell": copies_per_cell,
         "symmetry": [str(operation) for operation in symmetry],
         "elements": elements.tolist(),
-        "rings": [[_edge(arc) for arc in ring] for ring in outline.rings],
+        "rings": [[_arc(arc) for arc in ring] for ring in outline.rings],
     }
 
 
 def document_text(document: dict[str, Any]) -> str:
-    """A document as JSON text: floats with 17 significant digits, one edge or element per line."""
+    """A document as JSON text: floats with 17 significant digits, one arc or element per line."""
     return _text(document, 0) + "\n"
 
 
-def _edge(arc: Arc) -> dict[str, Any]:
-    """One edge: its kind, points, focus and directrix, and the copy on its other side."""
+def _arc(arc: Arc) -> dict[str, Any]:
+    """One arc: its kind, points, focus and directrix, and the copy on its other side."""
     match arc:
         case LineArc(start, end, neighbour):
             return {
@@ -79,7 +79,7 @@ def _edge(arc: Arc) -> dict[str, Any]:
 
 
 def _neighbour(neighbour: Neighbour) -> dict[str, str]:
-    """The copy on the other side of an edge: its site's name and its operation."""
+    """The copy on the other side of an arc: its site's name and its operation."""
     return {"site": neighbour.site, "operation": str(neighbour.operation)}
 
 

@@ -104,7 +104,7 @@ class Action:
 
     @cached_property
     def size(self) -> float:
-        """The longer side of the cell: the scale that accuracies are relative to."""
+        """The length of the longer vector of the cell: the scale that accuracies are relative to."""
         return max(abs(self.lattice.a), abs(self.lattice.b))
 
     def isometry(self, motion: Motion) -> Isometry:

@@ -36,11 +36,11 @@ def _from_parabolas(control: Complexes, end: Complexes, away: Complexes) -> Floa
     bend = end - 2 * control
     size = np.abs(bend)
     axis = bend / np.where(size > 0.0, size, 1.0)
-    side, rise = control * axis.conj(), away * axis.conj()
+    leg, rise = control * axis.conj(), away * axis.conj()
     with np.errstate(divide="ignore", invalid="ignore"):
-        beside = rise.imag / (2 * side.imag)
-        root = np.sqrt(np.maximum(side.real**2 + size * rise.real, 0.0))
-        above, below = (root - side.real) / size, (-root - side.real) / size
+        beside = rise.imag / (2 * leg.imag)
+        root = np.sqrt(np.maximum(leg.real**2 + size * rise.real, 0.0))
+        above, below = (root - leg.real) / size, (-root - leg.real) / size
     first = np.clip(np.nan_to_num(np.stack((beside, above, below))), 0.0, 1.0)
     t = np.concatenate((np.broadcast_to(_SAMPLES[:, None], (len(_SAMPLES), len(bend))), first))
     best = np.abs(t * (2 * control + t * bend) - away).argmin(axis=0)

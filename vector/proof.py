@@ -16,7 +16,7 @@ from math import fsum
 import numpy as np
 import numpy.typing as npt
 
-from voronoi_tiles.base.arrays import Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints, counting, next_in_ring
 from voronoi_tiles.base.components import components
 from voronoi_tiles.base.errors import ProofError
 from voronoi_tiles.base.operations import Operation
@@ -28,7 +28,7 @@ from voronoi_tiles.vector.tessellation import LocalTile, TileRecord, tessellate
 
 # Where on an arc its points are tested; its end is the next one's start.
 _PARAMETERS = (0.0, 0.25, 0.5, 0.75)
-# Twice the root of the rounding unit, times a few for constants; relative to the cell's longer side.
+# Twice the root of the rounding unit, times a few for constants; relative to the longer of the cell's vectors.
 _UNDECIDED = 1e-7
 # Up to this many nodes, asking for each is quicker than finding out which hang together.
 _FEW = 256
@@ -56,15 +56,15 @@ def proved_tiles(
 class ProofReport:
     """The figures of a proof.
 
-    Attributes:
-        area: relative error of the tiles' areas, which must add up to the cell's.
-        equidistance: largest difference of the distances from an edge's points to the site and to the copy beyond,
-            relative to the cell's longer side.
-        emptiness: by how much any other copy is nearer to such a point, on the same scale; 0 where none is.
-        open_joints: arcs whose end is not, bit for bit, the start of the next.
-        crossings: places where an outline crosses itself.
-        strayed: connected parts of sites (of one with few nodes, the nodes) that are not inside their tiles' outlines.
-        unshared: arcs that the tile beyond does not have, bit for bit, as its own.
+    `area` is the relative error of the tiles' areas, which must add up to the cell's. `equidistance` is the largest
+    difference of the distances from an edge's points to the site and to the copy beyond, relative to the longer of the
+    cell's vectors; `emptiness` is by how much any other copy is nearer to such a point, on the same scale, 0 where none
+    is.
+
+    The others are counts: of arcs whose end is not, bit for bit, the start of the next (`open_joints`), of places where
+    an outline crosses itself (`crossings`), of connected parts of sites (of one with few nodes, the nodes) that are not
+    inside their tiles' outlines (`strayed`), of arcs that the tile beyond does not have, bit for bit, as its own
+    (`unshared`).
     """
 
     area: float
@@ -201,9 +201,7 @@ def _sample(outline: Outline) -> tuple[Complexes, Ints]:
 
 def _open_joints(outline: Outline) -> int:
     """The number of arcs whose end is not the start of the next of their ring."""
-    following = np.arange(1, len(outline) + 1)
-    following[outline.ring_offsets[1:] - 1] = outline.ring_offsets[:-1]
-    return int((outline.end != outline.start[following]).sum())
+    return int((outline.end != outline.start[next_in_ring(outline.ring_offsets)]).sum())
 
 
 def _crossings(outline: Outline, size: float) -> int:
@@ -214,10 +212,9 @@ def _crossings(outline: Outline, size: float) -> int:
     """
     import shapely
 
-    # Pieces of arcs: the arc and its range of the curve's parameter.
-    arc = np.repeat(np.arange(len(outline)), np.where(outline.curved, 8, 1))
-    count = np.bincount(arc, minlength=len(outline))
-    part = np.arange(len(arc)) - (np.cumsum(count) - count)[arc]
+    # Sub-arcs: the arc and the range of the curve's parameter.
+    count = np.where(outline.curved, 8, 1)
+    part, arc = counting(count)
     low, high = part / count[arc], (part + 1) / count[arc]
     start, end = _at(outline, arc, low), _at(outline, arc, high)
     i, j = shapely.STRtree(_lines(start, end)).query(_lines(start, end), predicate="intersects")
@@ -231,29 +228,29 @@ def _crossings(outline: Outline, size: float) -> int:
         if straight or not len(bent):
             return straight + len(bent)
         first, second = _divide(first, second)
-    # Many pairs of tiny pieces may be left of one crossing.
+    # Many pairs of tiny sub-arcs may be left of one crossing.
     return int(np.unique(np.stack((first[0], second[0])), axis=1).shape[1])
 
 
-# Halvings of crossing pieces: after so many a piece's sagitta is below its end points' rounding.
+# Halvings of crossing sub-arcs: after so many a sub-arc's sagitta is below its end points' rounding.
 _DIVISIONS = 24
 
-_Piece = tuple[Ints, Floats, Floats]
+_SubArcs = tuple[Ints, Floats, Floats]
 
 
-def _divide(first: _Piece, second: _Piece) -> tuple[_Piece, _Piece]:
-    """The four pairs of halves of each pair of pieces."""
+def _divide(first: _SubArcs, second: _SubArcs) -> tuple[_SubArcs, _SubArcs]:
+    """The four pairs of halves of each pair of sub-arcs."""
     halves = []
     for arc, low, high in (first, second):
         middle = (low + high) / 2
         halves.append(((arc, low, middle), (arc, middle, high)))
     pairs = [(one, two) for one in halves[0] for two in halves[1]]
-    left, right = ([np.concatenate(x) for x in zip(*side, strict=True)] for side in zip(*pairs, strict=True))
-    return (left[0], left[1], left[2]), (right[0], right[1], right[2])
+    ones, twos = ([np.concatenate(x) for x in zip(*half, strict=True)] for half in zip(*pairs, strict=True))
+    return (ones[0], ones[1], ones[2]), (twos[0], twos[1], twos[2])
 
 
-def _crossing(outline: Outline, first: _Piece, second: _Piece, limit: float) -> Ints:
-    """The pairs of pieces whose chords cross farther than `limit` from their ends."""
+def _crossing(outline: Outline, first: _SubArcs, second: _SubArcs, limit: float) -> Ints:
+    """The pairs of sub-arcs whose chords cross farther than `limit` from their ends."""
     import shapely
 
     a, b = _at(outline, first[0], first[1]), _at(outline, first[0], first[2])
@@ -290,7 +287,7 @@ def _strayed(tile: LocalTile, size: float) -> int:
 
     A part meets no edge, so one of its nodes stands for all. Where copies are a distance d apart, the edge between
     them is known to eps R^2 / d at a distance R: a node nearer to an outline than the root of eps times the cell
-    cannot be told to be on either side, and is passed over.
+    cannot be told to be inside or outside, and is passed over.
     """
     import shapely
 

@@ -15,7 +15,7 @@ from typing import Final, Literal, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from voronoi_tiles.base.arrays import Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints, counting
 from voronoi_tiles.base.maps import Isometry
 from voronoi_tiles.vector.outline import Outline
 
@@ -67,13 +67,11 @@ class Grid:
 
 
 class ScanCrossings(NamedTuple):
-    """Where an outline crosses the rows or columns of a grid.
+    """Where an outline crosses the rows (or columns) of a grid, k times altogether.
 
-    Attributes:
-        arc: (k,) index of the arc.
-        line: (k,) number of the row (or column), not wrapped.
-        position: (k,) the coordinate x (or y) in sample steps, a multiple of `QUANTUM`.
-        direction: (k,) 1 where a walk to greater x (or y) enters the tile, -1 where it leaves it.
+    The arc with the index `arc` (intp, k) crosses the row (or column) with the number `line` (intp, k), not wrapped, at
+    the coordinate x (or y) `position` (float64, k), in sample steps and a multiple of QUANTUM. `direction` (intp, k) is
+    1 where a walk to greater x (or y) enters the tile, -1 where it leaves it.
     """
 
     arc: Ints
@@ -86,11 +84,9 @@ class ScanCrossings(NamedTuple):
 class Spans:
     """Runs of samples of one row that lie in one copy; none is empty, and those of one copy do not overlap.
 
-    Attributes:
-        copy: (k,) number of the copy.
-        row: (k,) j, not wrapped.
-        first, stop: (k,) i of the first sample and of the one after the last, not wrapped.
-        winding: (k,) how often the outline runs around them counter-clockwise, not 0: 1 for a sound outline.
+    All are intp (k,): `copy` is the number of the copy, `row` is j, `first` and `stop` are i of the first sample and of
+    the one after the last, none of them wrapped. `winding` is how often the outline runs around them counter-clockwise,
+    not 0, and 1 for a sound outline.
     """
 
     copy: Ints
@@ -104,11 +100,10 @@ class Spans:
 class OwnerImage:
     """What each sample of one cell lies in; row j, column i of the images is sample (i, j).
 
-    Attributes:
-        label: (ny, nx) int32 row of `labels` of the one copy that holds the sample; -1 where none does, or
-            several do, or one whose outline does not run around it just once.
-        labels: (l, 3) rows of k, m, n: copy k, translated by m a + n b.
-        count: (ny, nx) int32 the outlines' winding numbers, summed over all copies: 1 where they fill the plane.
+    `label` (int32, ny x nx) is the row of `labels` of the one copy that holds the sample; -1 where none does, or
+    several do, or one whose outline does not run around it just once. A row k, m, n of `labels` (intp, l x 3) is copy k
+    translated by m a + n b. `count` (int32, ny x nx) are the outlines' winding numbers, summed over all copies: 1 where
+    they fill the plane.
     """
 
     label: npt.NDArray[np.int32]
@@ -119,12 +114,12 @@ class OwnerImage:
 def crossings(outline: Outline, isometry: Isometry, grid: Grid, axis: Literal[0, 1] = 0) -> ScanCrossings:
     """Where the image of an outline crosses the lines of samples: rows along a (axis 0), columns along b (1).
 
-    An arc's pieces between its ends and its turning point meet the rows j with ceil(low) <= j < ceil(high), where low
-    and high are the y of the piece's ends: a ring enters every line as often as it leaves it, whatever it touches. The
+    An arc's parts between its ends and its turning point meet the rows j with ceil(low) <= j < ceil(high), where low
+    and high are the y of the part's ends: a ring enters every line as often as it leaves it, whatever it touches. The
     crossings are in no order.
 
-    Source: y(t) = j on a piece is A t^2 + 2 B t + C = 0, and half the slope there, B + A t = s, is the root of
-    B^2 - A C whose sign is the piece's. Of (s - B) / A and -C / (s + B), which are equal, one does not cancel.
+    Source: y(t) = j on a part is A t^2 + 2 B t + C = 0, and half the slope there, B + A t = s, is the root of
+    B^2 - A C whose sign is the part's. Of (s - B) / A and -C / (s + B), which are equal, one does not cancel.
     """
     x, y = grid.to_grid(isometry(np.stack((outline.start, outline.control, outline.end))))
     if axis:
@@ -142,21 +137,21 @@ def crossings(outline: Outline, isometry: Isometry, grid: Grid, axis: Literal[0,
     turn, peak = np.ones(len(A)), y[2].copy()
     turn[bent] = -B[bent] / A[bent]
     peak[bent] = y[0, bent] + turn[bent] * B[bent]
-    # Pieces: up to the turning point, or all of an arc that has none; and from there.
+    # Parts: up to the turning point, or all of an arc that has none; and from there.
     arc = np.concatenate((np.arange(len(A)), bent))
     start, end = np.concatenate((y[0], peak[bent])), np.concatenate((peak, y[2, bent]))
     since, until = np.concatenate((np.zeros(len(A)), turn[bent])), np.concatenate((turn, np.ones(len(bent))))
     first = np.ceil(np.minimum(start, end)).astype(np.intp)
-    piece, step = _runs(np.ceil(np.maximum(start, end)).astype(np.intp) - first)
-    rising = (end > start)[piece]
-    j, arc = first[piece] + step, arc[piece]
+    step, part = counting(np.ceil(np.maximum(start, end)).astype(np.intp) - first)
+    rising = (end > start)[part]
+    j, arc = first[part] + step, arc[part]
     A, B, C = A[arc], B[arc], y[0, arc] - j
     s = np.sqrt(np.maximum(B * B - A * C, 0.0)) * np.where(rising, 1.0, -1.0)
     # An arc that does not bend has s = B.
     cancels = s * B >= 0.0
     below = np.where(cancels, s + B, A)
     t = np.divide(np.where(cancels, -C, s - B), below, out=np.zeros_like(below), where=below != 0.0)
-    t = np.clip(t, since[piece], until[piece])
+    t = np.clip(t, since[part], until[part])
     position = base_x[arc] + _snapped(x[0, arc] + t * (2.0 * U[arc] + t * V[arc]))
     # To the right of what rises lies what is outside, unless the plane is turned over.
     flips = isometry.conj ^ (grid.det < 0.0) ^ (axis == 1)
@@ -197,7 +192,7 @@ def owners(copies: Sequence[tuple[Outline, Isometry]], grid: Grid) -> OwnerImage
     spans = scan_spans(copies, grid)
     # A span's parts in each cell, and which translate of the copy has them in the cell at the origin.
     cell = spans.first // grid.nx
-    k, step = _runs((spans.stop - 1) // grid.nx - cell + 1)
+    step, k = counting((spans.stop - 1) // grid.nx - cell + 1)
     m, n = cell[k] + step, spans.row[k] // grid.ny
     first = np.maximum(spans.first[k] - m * grid.nx, 0)
     stop = np.minimum(spans.stop[k] - m * grid.nx, grid.nx)
@@ -221,18 +216,11 @@ def _snapped(x: Floats) -> Floats:
 
 
 def _polynomial(x: Floats, curved: npt.NDArray[np.bool_]) -> tuple[Floats, Floats]:
-    """The coefficients of 2 t and of t^2 of one coordinate of arcs; the control points of lines are not read.
+    """The coefficients of 2 t and of t^2 of one coordinate of arcs, float64 (n,) each.
 
-    Args:
-        x: (3, n) start, control, end.
+    `x` (float64, 3 x n) is that of their starts, control points and ends; the control points of lines are not read.
     """
     return np.where(curved, x[1] - x[0], (x[2] - x[0]) / 2.0), np.where(curved, x[0] - 2.0 * x[1] + x[2], 0.0)
-
-
-def _runs(lengths: Ints) -> tuple[Ints, Ints]:
-    """For each place in runs of given lengths, one after another, the number of its run and its place in it."""
-    run = np.repeat(np.arange(len(lengths)), lengths)
-    return run, np.arange(len(run)) - (np.cumsum(lengths) - lengths)[run]
 
 
 def _accumulated(ends: Ints, height: Ints, grid: Grid) -> npt.NDArray[np.int32]:

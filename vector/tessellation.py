@@ -1,4 +1,9 @@
-"""The engine's entry: from sites and a group to the outlines of one tile of each site."""
+"""The engine's entry: from sites and a group to their tessellation, and to the outline of one tile of each site.
+
+A `Tessellation` is what the engine computes: all tiles in terms of exact motions, not proved yet. A `TileRecord` is the
+tile of one of its sites where the design has it, a `LocalTile` the same tile where it was computed, near the origin:
+that one is proved. What users hold is a `voronoi_tiles.tiling.Tiling`, the tiles of a design with their proof.
+"""
 
 from __future__ import annotations
 
@@ -46,13 +51,10 @@ _SUSPICIOUS = 1e-9
 
 @dataclass(frozen=True, eq=False)
 class TileRecord:
-    """A tile as the engine returns it.
+    """The tile of the base site of a name, where the design has it.
 
-    Attributes:
-        name: of its site.
-        outline: of the tile of the base site.
-        symmetry: the operations that map the site onto itself, the identity first.
-        tessellation: that it belongs to.
+    `symmetry` are the operations that map the site onto itself, the identity first; `tessellation` is what the tile
+    belongs to.
     """
 
     name: str
@@ -79,15 +81,15 @@ class TileRecord:
         refuse_touching(tessellation.action, tessellation.names, tessellation.placed)
 
     def local(self) -> LocalTile:
-        """The tile of the site moved by the lattice to near the origin, where rounding is least."""
+        """The same tile where it was computed."""
         return LocalTile(self.name, self.tessellation, self._index)
 
 
 @dataclass(frozen=True, eq=False)
 class LocalTile:
-    """A tile and its site as they were computed: however far from the origin the site was drawn, near to it.
+    """A tile and its site where they were computed: moved by the lattice to near the origin, where rounding is least.
 
-    Operations are those on sites in these places.
+    Operations, those of neighbours as well, are on sites in these places.
     """
 
     name: str
@@ -96,12 +98,12 @@ class LocalTile:
 
     @property
     def nodes(self) -> Complexes:
-        """(m,) the site's nodes."""
+        """The site's nodes, complex128 (m,)."""
         return self._tessellation.placed[self._index].nodes
 
     @property
     def segments(self) -> Ints:
-        """(n, 2) the site's segments, as indices of nodes."""
+        """The site's segments, as indices of nodes, intp (n, 2)."""
         return self._tessellation.placed[self._index].segments
 
     @cached_property
@@ -116,7 +118,10 @@ class LocalTile:
 
 @dataclass(frozen=True, eq=False)
 class Tessellation:
-    """All tiles of a tessellation, in terms of representatives."""
+    """What the engine computes: all tiles of the plane, as images of the quotient complex of their edges.
+
+    The sites have `names` and are `placed` near the origin. The proof is not part of it.
+    """
 
     action: Action
     names: tuple[str, ...]
@@ -159,16 +164,11 @@ class Tessellation:
 def tessellate(
     sites: Sequence[Site], group: WallpaperGroup, lattice: Lattice, *, without_short: bool = False
 ) -> list[TileRecord]:
-    """The tile of each site: all that is nearer to it than to any other copy of any site.
+    """The tile of each site of a design: all that is nearer to it than to any other copy of any site.
 
-    Args:
-        sites, group, lattice: of a design.
-        without_short: leave out edges that are so short that rounding may have made them. Beside copies that nearly
-            touch, two neighbours may take turns along an edge by rounding alone; a proof tells.
-
-    Raises:
-        TouchingCopiesError: where two copies touch or cross.
-        ProofError: where no boundary was found; no design is known to which this happens.
+    `without_short` leaves out edges that are so short that rounding may have made them: beside copies that nearly
+    touch, two neighbours may take turns along an edge by rounding alone; a proof tells. Raises TouchingCopiesError
+    where two copies touch or cross, ProofError where no boundary was found, which is not known to happen to any design.
     """
     action = Action(group, lattice)
     placed = [place(action, site.nodes, site.segments) for site in sites]
@@ -213,6 +213,6 @@ def _trace(action: Action, placed: list[Placed], contours: list[Contour], tile: 
     rows = make_rows(contour, action.covering_radius, inside)
     parts = bound_cells(rows, contour, targets, action.covering_radius)
     inner = (parts.target == tile) & (parts.copy == 0)
-    # Beside the shorter side of the cell: an edge as long as the longer side may turn about what is left out.
+    # Beside the shorter vector of the cell: an edge as long as the longer one may turn about what is left out.
     boundary = trace_boundary(rows, contour, parts, inner, SAME_POINT * abs(action.lattice.reduced_basis[0]))
     return with_curves(boundary, rows, contours, tile, parts, copies), clearance(boundary, rows, parts)

@@ -82,7 +82,10 @@ class Tile:
 
 @dataclass(frozen=True, eq=False)
 class Tiling:
-    """The tiles of a design, one for each site in the design's order, with the proof that they are right."""
+    """The proved result of a design: its tiles, one for each site in the design's order, and their proof.
+
+    `tessellation` is the engine's result that they are taken from, without the proof.
+    """
 
     design: Design
     tiles: tuple[Tile, ...]

@@ -33,7 +33,7 @@ from typing import TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
 from voronoi_tiles.vector.cells.candidates import Bounds, Candidates
 from voronoi_tiles.vector.cells.half_edges import Contour
 from voronoi_tiles.vector.cells.images import Surroundings
@@ -95,8 +95,7 @@ def _items(candidates: Candidates, segments: int) -> tuple[Ints, Ints, Ints]:
         return np.repeat(row, 2), np.repeat(copy, 2), items
     count = np.where(element < segments, 2, 4)
     first = np.where(element < segments, 2 * element, 4 * element - 2 * segments)
-    items = np.repeat(first - (np.cumsum(count) - count), count) + np.arange(count.sum())
-    return np.repeat(row, count), np.repeat(copy, count), items
+    return np.repeat(row, count), np.repeat(copy, count), ranges(first, count)
 
 
 @dataclass(frozen=True, slots=True)

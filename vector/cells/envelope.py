@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Floats, Ints
+from voronoi_tiles.base.arrays import Floats, Ints, counting
 from voronoi_tiles.vector.cells.partial_quadratics import PartialQuadratics
 
 NOTHING: Final = -1
@@ -29,7 +29,7 @@ def lower_envelope(functions: PartialQuadratics, low: Floats, high: Floats) -> t
     """
     rows = len(low)
     count = np.bincount(functions.row, minlength=rows)
-    index = np.arange(len(functions.row)) - (np.cumsum(count) - count)[functions.row]
+    index, _ = counting(count)
     stride = int(count.max(initial=0)) or 1
     group = functions.row * stride + index
     # Every envelope starts at its row's low, with nothing where its function is not defined.

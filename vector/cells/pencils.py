@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, counting
 from voronoi_tiles.vector.cells.half_edges import Contour
 
 # A corner's rows span at most this angle, and a half-edge's rows at most this part of the covering radius: within
@@ -104,9 +104,8 @@ def make_rows(contour: Contour, covering_radius: float, without: Bools) -> Rows:
 def _divide(size: Floats) -> tuple[Ints, Ints, Floats]:
     """The parts, of size at most 1, of things of these sizes: the thing, the part's number, the count of its parts."""
     parts = np.maximum(np.ceil(size), 1.0)
-    thing = np.repeat(np.arange(len(size)), parts.astype(np.intp))
-    part = np.arange(len(thing)) - (np.cumsum(parts) - parts)[thing]
-    return thing, part.astype(np.intp), parts[thing]
+    part, thing = counting(parts.astype(np.intp))
+    return thing, part, parts[thing]
 
 
 def _ray(axis: Complexes, x: Floats) -> Complexes:
