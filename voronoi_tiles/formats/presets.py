@@ -15,8 +15,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any, Final, Literal, TypeVar, cast
 
+from voronoi_tiles.base.documents import parse_document, read_document
 from voronoi_tiles.base.errors import DesignError
-from voronoi_tiles.base.tolerance import FILE_BYTES_MAX
 from voronoi_tiles.base.values import closest, number, shown, table, within
 
 Role = Literal["cut", "inner", "score", "engrave"]
@@ -114,46 +114,13 @@ def _known(name: str, key: str) -> Mapping[str, Any]:
 def _load_file(path: str) -> Preset:
     """Read a user's preset."""
     try:
-        own = table(_parse(_bytes(path)), ("extends", *_KEYS), 'Write extends = "lightburn" and what is different.')
+        remedy = 'Write extends = "lightburn" and what is different.'
+        text = read_document(path, "preset", missing=f"Check the path, or take one of {', '.join(_built_in())}.")
+        own = table(parse_document(text, "toml", remedy=remedy), ("extends", *_KEYS), remedy)
         base = _at("extends", _text, own.get("extends", DEFAULT))
         return _read(Path(path).stem, _merged(_known(base, "extends"), own))
     except DesignError as error:
         raise error.with_file(path) from None
-
-
-def _bytes(path: str) -> bytes:
-    """The content of a file of bounded size."""
-    try:
-        with Path(path).open("rb") as file:
-            data = file.read(FILE_BYTES_MAX + 1)
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise DesignError(
-            f"cannot read the preset: {reason}", remedy=f"Check the path, or take one of {', '.join(_built_in())}."
-        ) from None
-    if len(data) > FILE_BYTES_MAX:
-        raise DesignError(f"larger than {FILE_BYTES_MAX // 2**20} MiB", remedy="Is it a preset?")
-    return data
-
-
-def _parse(data: bytes) -> Mapping[str, Any]:
-    """Read TOML."""
-    try:
-        return tomllib.loads(data.decode("utf-8-sig"))
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise DesignError("not a text in UTF-8", line=line, remedy="Save it as UTF-8 text.") from None
-    except tomllib.TOMLDecodeError as error:
-        place = re.search(r" \(at line (\d+), column \d+\)$", str(error))
-        what = str(error)[: place.start()] if place else str(error)
-        raise DesignError(
-            f"not TOML: {what[:1].lower()}{what[1:]}",
-            line=int(place[1]) if place else None,
-            remedy="Correct the line.",
-        ) from None
-    except (ValueError, RecursionError) as error:
-        why = "nested too deeply" if isinstance(error, RecursionError) else str(error).partition(";")[0]
-        raise DesignError(f"not TOML: {why}", remedy='Write extends = "lightburn" and what is different.') from None
 
 
 def _merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
