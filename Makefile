@@ -1,5 +1,6 @@
 # Everything sets itself up: python3, python3-venv and make are all it needs.
-#   make demo    export and draw the examples        make test    run the tests
+#   make demo    export and draw the examples        make test    run the tests, but for the slow ones
+#   make test-slow  run those                        make test-pythons  the tests on every other Python that is here
 #   make lint    lint and format check               make types   mypy --strict
 #   make bench   speed and accuracy, beside peers    make fuzz N=10000
 #   make format  rewrite the sources' layout         make clean   remove all that was made here
@@ -7,7 +8,7 @@
 #   make gallery the pictures of docs/gallery.md     make diagrams  the drawings of the other pages
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test lint format types bench fuzz docs paper gallery diagrams clean
+.PHONY: help demo test test-slow lint format types bench fuzz docs paper gallery diagrams clean
 .DELETE_ON_ERROR:
 
 PYTHON ?= python3
@@ -56,6 +57,9 @@ demo: $(INSTALLED)
 
 test: $(INSTALLED_DEV)
 	$(VENV)/bin/python -m pytest -n auto --dist loadfile $(PYTEST)
+
+test-slow: $(INSTALLED_DEV)
+	$(VENV)/bin/python -m pytest -m slow -n auto --dist worksteal $(PYTEST)
 
 lint: $(INSTALLED_DEV)
 	$(VENV)/bin/ruff check .

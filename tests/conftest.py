@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
-import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
+from helpers.forking import ForkServer
 from helpers.outlines import ABOVE, RIGHT, CommandLine, polygon
 from hypothesis import settings
 
@@ -19,6 +20,35 @@ from voronoi_tiles.vector.outline import Outline
 # How long an example takes says how busy the machine is; timings live in bench/.
 settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
+
+
+_LEFT_OUT = pytest.StashKey[int]()
+
+
+def pytest_deselected(items: Sequence[pytest.Item]) -> None:
+    """Count the slow tests that are not run."""
+    for item in items:
+        if item.get_closest_marker("slow"):
+            item.config.stash[_LEFT_OUT] = item.config.stash.get(_LEFT_OUT, 0) + 1
+
+
+def pytest_sessionfinish(session: pytest.Session) -> None:
+    """Tell the process that prints, where this is one of several that run tests."""
+    if hasattr(session.config, "workeroutput"):
+        session.config.workeroutput["left out"] = session.config.stash.get(_LEFT_OUT, 0)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_testnodedown(node: Any) -> None:
+    """Hear it; every such process has looked at all tests."""
+    node.config.stash[_LEFT_OUT] = getattr(node, "workeroutput", {}).get("left out", 0)
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
+    """Say how many slow tests were left out, and how they are run."""
+    count = config.stash.get(_LEFT_OUT, 0)
+    if count:
+        terminalreporter.write_line(f"{count} slow tests were left out: `make test-slow` runs them, or pytest -m slow.")
 
 
 @pytest.fixture
@@ -80,18 +110,7 @@ def command() -> str:
 
 
 @pytest.fixture(scope="session")
-def voronoi_tiles(command: str) -> CommandLine:
-    """Run `voronoi-tiles` with the given arguments as a process of its own."""
-
-    def call(*arguments: object, stdin: str = "", cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
-        return subprocess.run(
-            [command, *map(str, arguments)],
-            input=stdin,
-            capture_output=True,
-            text=True,
-            check=False,
-            timeout=120,
-            cwd=cwd,
-        )
-
-    return call
+def voronoi_tiles() -> Iterator[CommandLine]:
+    """Run `voronoi-tiles` with the given arguments in a process of its own, forked from one that has all imports."""
+    with ForkServer() as server:
+        yield server.call

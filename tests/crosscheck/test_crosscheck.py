@@ -6,13 +6,14 @@ import json
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import cache, partial
-from pathlib import Path
 from typing import Any, assert_never
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 from helpers import strategies
+from helpers.examples import each_example
+from helpers.examples import tiling as example
 from hypothesis import HealthCheck, assume, given, settings
 
 from voronoi_tiles.base.errors import TouchingCopiesError
@@ -36,8 +37,6 @@ Complexes = npt.NDArray[np.complex128]
 Change = Callable[[Outline, float], Outline]
 """Break an outline, given the step between samples."""
 
-FOLDER = Path(__file__).parents[2] / "examples"
-EXAMPLES = sorted(path.stem for path in FOLDER.glob("*.toml"))
 FIGURES = ["labels", "coverage", "area", "crossings", "neighbours", "edges", "equidistance"]
 SAMPLES = 256
 KEY = "p4-key"  # 15 edges, all longer than ten steps, eight of them curved
@@ -57,12 +56,6 @@ CROSS = {
     "cell": {"a": 60.0},
     "site": [{"strokes": [{"segment": [[-10, 0], [10, 0]]}, {"segment": [[0, -10], [0, 10]]}]}],
 }
-
-
-@cache
-def example(name: str) -> Tiling:
-    """Tessellate an example, once."""
-    return Design.load(FOLDER / f"{name}.toml").tessellate()
 
 
 @cache
@@ -104,7 +97,7 @@ def assert_sound(report: CheckReport) -> None:
 # --- what is sound -------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
+@each_example
 def test_examples_agree(name: str) -> None:
     """No sample, no crossing and no edge is wrong, and all samples are looked at."""
     report = check(example(name), samples=512)

@@ -20,7 +20,7 @@ def whole(name: str, region: Region, shift: complex) -> int:
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("size", [(290.0, 190.0), (150.0, 260.0)])
+@pytest.mark.parametrize("size", [(290.0, 190.0), pytest.param((150.0, 260.0), marks=pytest.mark.slow)])
 def test_no_other_place_has_more(name: str, size: tuple[float, float]) -> None:
     """Of thirty random ones, and of that where nothing is shifted."""
     region = Region.rectangle(5.0, 5.0, *size)

@@ -29,7 +29,7 @@ from helpers.cutting import (
     whole,
     work,
 )
-from helpers.sheets import tiling
+from helpers.examples import tiling
 from svgelements import SVG
 from svgelements import Path as SvgPath
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import shapely
 from helpers.cutting import contour_shapes, cuts, dense, exact_shape, farthest, made, rings, squares, true_lengths
-from helpers.sheets import EXAMPLES, tiling
+from helpers.examples import each_example, tiling
 
 from voronoi_tiles.fabrication import Job, JobError
 from voronoi_tiles.fabrication.arc_fitting import curve_fit
@@ -20,7 +20,6 @@ from voronoi_tiles.paths.segments import tangent_at
 from voronoi_tiles.tiling import Tiling
 from voronoi_tiles.vector.outline import Outline
 
-KERFS = (0.05, 0.2, 1.0)
 ACCURACY = 0.005
 
 
@@ -76,19 +75,20 @@ def steiner(outline: Outline, unit: float, distance: float) -> float:
     return outline.area * unit**2 + outline.perimeter * unit * distance + square * distance**2
 
 
-@pytest.mark.parametrize("name", EXAMPLES)
-def test_kerf_is_kept_on_every_example(name: str) -> None:
+@each_example
+@pytest.mark.parametrize(
+    "kerf", [pytest.param(0.05, marks=pytest.mark.slow), 0.2, pytest.param(1.0, marks=pytest.mark.slow)]
+)
+def test_kerf_is_kept_on_every_example(name: str, kerf: float) -> None:
     """Every point of every contour is half a kerf off the exact outline, none is missing, and pieces are the tiles."""
     tiles = tiling(name)
     unit = tiles.design.unit_mm
-    for kerf in KERFS:
-        for site, piece in contours(tiles, Job(kerf=kerf)):
-            outline = tiles.tiles[site].outline
-            (contour,) = contour_shapes(piece)
-            check_kerf(exact_shape(outline, unit), contour, kerf, ACCURACY)
-            if kerf == KERFS[0]:
-                wanted = steiner(outline, unit, kerf / 2)
-                assert abs(contour.area - wanted) <= 0.2 * ACCURACY * outline.perimeter * unit
+    for site, piece in contours(tiles, Job(kerf=kerf)):
+        outline = tiles.tiles[site].outline
+        (contour,) = contour_shapes(piece)
+        check_kerf(exact_shape(outline, unit), contour, kerf, ACCURACY)
+        wanted = steiner(outline, unit, kerf / 2)
+        assert abs(contour.area - wanted) <= 0.2 * ACCURACY * outline.perimeter * unit
 
 
 @pytest.mark.parametrize("accuracy", [0.001, 0.02, 0.1])

@@ -23,7 +23,8 @@ from helpers.cutting import (
     true_lengths,
     whole,
 )
-from helpers.sheets import check_apart, shape, tiling
+from helpers.examples import tiling
+from helpers.sheets import check_apart, shape
 
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication import Job, JobError, Product

@@ -8,9 +8,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import shapely
+from helpers.examples import EXAMPLES, NAMES, each_design
 from helpers.sheets import (
-    EXAMPLES,
-    NAMES,
     Sheet,
     candidates,
     check_apart,
@@ -57,7 +56,7 @@ def a_hole_or_two(centre: complex, radius: float) -> Region:
     return Region(Paths.concatenate([circle(centre, radius, parts=3, turn=0.3), *holes]))
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each_design
 def test_everything_that_is_promised_holds_on_a_turned_sheet(name: str) -> None:
     """Placement, areas, lengths, pieces, the frame: half of the designs on a rectangle, half on a round region."""
     turned = period(name).placed(np.exp(0.4j), 3.0 + 2.0j)

@@ -279,9 +279,9 @@ def test_dxf_entities_are_where_ezdxf_sees_them() -> None:
     for entity in document.modelspace():
         parts = entity.virtual_entities() if entity.dxftype() == "INSERT" else [entity]
         for part in parts:
-            points = [(p.x, p.y) for p in ezdxf.path.make_path(part, level=8).flattening(1e-4, segments=16)]
+            points = [(p.x, p.y) for p in ezdxf.path.make_path(part, level=8).flattening(1e-3, segments=16)]
             lines.append(shapely.LineString(points))
-    ours = [sampled(shape.paths, 400) for shape in dxf(all_kinds).shapes]
+    ours = [sampled(shape.paths, 100) for shape in dxf(all_kinds).shapes]
     assert len(ours) == len(lines)
     for mine, theirs in zip(ours, lines, strict=True):
         assert shapely.hausdorff_distance(mine, theirs) < 0.02
@@ -416,7 +416,8 @@ def test_arcs_with_radii_of_next_to_nothing_are_arcs_or_lines() -> None:
         assert svg(f"<path d='M0 0A{radius} {radius} 0 0 1 3 3'/>").shapes[0].paths.kind.tolist() == [kind]
 
 
-def test_broken_dxf_gives_one_message() -> None:
+@pytest.mark.parametrize("count", [40, pytest.param(400, marks=pytest.mark.slow)])
+def test_broken_dxf_gives_one_message(count: int) -> None:
     """Whatever is broken in a file, only DrawingError comes out; most of what is broken is seen."""
     document = ezdxf.new("R2000")
     all_kinds(document, document.modelspace())
@@ -425,7 +426,7 @@ def test_broken_dxf_gives_one_message() -> None:
     good = text.getvalue().encode()
     generator = random.Random(7)  # noqa: S311 - random input, not secrets
     refused = 0
-    for _ in range(150):
+    for _ in range(count):
         bad = bytearray(good)
         for _ in range(generator.randint(1, 5)):
             place = generator.randrange(len(bad))
@@ -438,7 +439,7 @@ def test_broken_dxf_gives_one_message() -> None:
         except DrawingError as error:
             assert str(error).startswith("bad.dxf")  # noqa: PT017 - what is not raised is no failure here
             refused += 1
-    assert refused > 20
+    assert refused > count / 7
     for data in (b"", good[: len(good) // 2], b"AutoCAD Binary DXF\r\n\x1a\x00", b"AC1015", b"0\n\x00\x00"):
         with pytest.raises(DrawingError):
             dxf_drawing(data, "bad.dxf")

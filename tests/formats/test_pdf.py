@@ -183,13 +183,13 @@ def test_title_and_recipe_are_in_the_information() -> None:
 def test_many_paths_are_all_there() -> None:
     """Blocks lose nothing; a layer without paths and paths without pieces do no harm."""
     ring = Paths.concatenate([cad.ring(QUAD, count=40), cad.ring(LINE, closed=False)])
-    paths = Paths.concatenate([ring] * 2500)
+    paths = Paths.concatenate([ring] * 1700)
     layers = (
-        Layer("cut", "cut", "#000000", 1, paths, np.arange(0, 5001, 2)),
+        Layer("cut", "cut", "#000000", 1, paths, np.arange(0, 3401, 2)),
         Layer.of_paths("none", "score", "#000000", 1, Paths.empty()),
     )
     found = painted(written(Drawing(9, 9, layers)))
-    assert [len(curves) for curves, _ in found["L0"][2]] == [2] * 2500
+    assert [len(curves) for curves, _ in found["L0"][2]] == [2] * 1700
     assert found["L1"][2] == []
 
 

@@ -32,9 +32,9 @@ LIBRECAD_SCALE = 2.2e-4  # and by so much too large, whatever it prints: 110.024
 
 JOBS = {
     "once": Job(sheet=(120.0, 90.0), margin=5.0, fit="clip"),
-    "frame": Job(sheet=(240.0, 180.0), margin=5.0, fit="frame", rotate=12.0),
-    "kerf": Job(sheet=(300.0, 240.0), margin=5.0, kerf=0.2, fillet=0.3),
-    "tabs": Job(sheet=(240.0, 180.0), margin=5.0, tabs=0.4),
+    "frame": Job(sheet=(160.0, 120.0), margin=5.0, fit="frame", rotate=12.0),
+    "kerf": Job(sheet=(200.0, 160.0), margin=5.0, kerf=0.2, fillet=0.3),
+    "tabs": Job(sheet=(160.0, 120.0), margin=5.0, tabs=0.4),
 }
 NAMES = ("p4-key", "pg-swallow")
 
@@ -129,6 +129,7 @@ def test_ezdxf_finds_nothing_to_mend(case: tuple[str, Job], tmp_path: Path) -> N
     assert np.allclose((low[0], low[1], high[0], high[1]), paths.bounds, atol=1e-6)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("job", JOBS)
 def test_inkscape_keeps_the_svg(job: str, tmp_path: Path) -> None:
     """Opened and saved by Inkscape, headless: the same page and curves, exact ones as well."""
@@ -144,6 +145,7 @@ def test_inkscape_keeps_the_svg(job: str, tmp_path: Path) -> None:
     compare(svg_curves(text, drawing.height), sheet, 1e-5 + sheet.resolution)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("curves", ["arc", "spline"])
 @pytest.mark.parametrize("job", JOBS)
 def test_inkscape_imports_the_dxf(job: str, curves: str, tmp_path: Path) -> None:
@@ -160,6 +162,7 @@ def test_inkscape_imports_the_dxf(job: str, curves: str, tmp_path: Path) -> None
     compare(read, sheet, 1e-4, shift)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("job", ["once", "kerf"])
 def test_librecad_draws_the_dxf(job: str, tmp_path: Path) -> None:
     """Printed in full size: within two dots of its raster and what its prints are too large, and nothing is missing."""

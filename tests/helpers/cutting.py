@@ -11,7 +11,8 @@ from typing import Any
 import numpy as np
 import shapely
 
-from helpers.sheets import flattened, points_on, tiling, xy
+from helpers.examples import tiling
+from helpers.sheets import flattened, points_on, xy
 from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.designs.design import Design

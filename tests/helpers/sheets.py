@@ -5,40 +5,24 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import pairwise
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from helpers.examples import tiling
 from voronoi_tiles.base.arrays import Complexes, Floats, Ints
-from voronoi_tiles.designs.design import Design
-from voronoi_tiles.designs.starters import starter_text
 from voronoi_tiles.fabrication.clipping import Strands, clipped_strands, whole_strands
 from voronoi_tiles.fabrication.contours import ClosedPieces, clipped_pieces, frame_pieces
 from voronoi_tiles.fabrication.region import Region
 from voronoi_tiles.fabrication.tile_placement import TilePlacement, place_tiles
-from voronoi_tiles.groups.wallpaper import GROUPS
 from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
-from voronoi_tiles.tiling import Tiling
 from voronoi_tiles.vector.complex.period import Period
-
-EXAMPLES = sorted(path.stem for path in (Path(__file__).parents[2] / "examples").glob("*.toml"))
-NAMES = [*EXAMPLES, *GROUPS]
-"""All designs that there are: the examples by name, the starters by group."""
 
 FLAT = 1e-5
 """How far the oracles' chords may be from the curves, in millimetres."""
-
-
-@cache
-def tiling(name: str) -> Tiling:
-    """An example by its name, or the starter of a group."""
-    if name in GROUPS:
-        return Design.loads(starter_text(name)).tessellate()
-    return Design.load(Path(__file__).parents[2] / "examples" / f"{name}.toml").tessellate()
 
 
 @cache
@@ -133,14 +117,21 @@ def chords(paths: Paths, k: int, accuracy: float) -> int:
     return max(2, int(np.ceil(np.sqrt(bend / accuracy))))
 
 
+@cache
+def _steps(count: int) -> Floats:
+    """So many equal steps from 0 to 1."""
+    t = np.linspace(0.0, 1.0, count + 1)
+    t.flags.writeable = False
+    return t
+
+
 def flattened(paths: Paths, accuracy: float = FLAT) -> list[Complexes]:
     """Each path as points, its ends among them with their own bits."""
     lines = []
     for first, stop in pairwise(paths.offsets.tolist()):
         parts = []
         for k in range(first, stop):
-            t = np.linspace(0.0, 1.0, chords(paths, k, accuracy) + 1)
-            points = points_on(paths, k, t)
+            points = points_on(paths, k, _steps(chords(paths, k, accuracy)))
             points[0], points[-1] = paths.start[k], paths.end[k]
             parts.append(points if k == stop - 1 else points[:-1])
         lines.append(np.concatenate(parts))

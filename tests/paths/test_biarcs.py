@@ -9,10 +9,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from helpers.sheets import xy
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
+from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.paths.biarc_segmentation import longest_stretches
 from voronoi_tiles.paths.biarcs import to_arcs
 from voronoi_tiles.paths.conversion import COUNT_MAX, to_cubics, to_lines
@@ -57,12 +59,12 @@ def smooth_side(seed: int, count: int, size: float) -> Paths:
     return chain(*pieces)
 
 
-def sampled(paths: Paths, step: float) -> np.ndarray:
-    """Points of all pieces, (m, 2), at most about `step` apart; straight from the definitions of the kinds."""
+def sampled(paths: Paths, step: float) -> Complexes:
+    """Points of all pieces, at most about `step` apart; straight from the definitions of the kinds."""
     found = []
     for a, b, (c, d), kind in zip(paths.start, paths.end, paths.control, paths.kind, strict=True):
         legs = {LINE: [a, b], QUAD: [a, c, b], CUBIC: [a, c, d, b], ARC: [a, c, b]}[int(kind)]
-        count = 8 + math.ceil(4 * sum(abs(q - p) for p, q in pairwise(legs)) / step)
+        count = 8 + math.ceil(sum(abs(q - p) for p, q in pairwise(legs)) / step)
         t = np.linspace(0.0, 1.0, count)
         if kind == ARC:
             found.append(circular(a, c, b, t))
@@ -71,8 +73,7 @@ def sampled(paths: Paths, step: float) -> np.ndarray:
         while len(points) > 1:
             points = [p * (1 - t) + q * t for p, q in pairwise(points)]
         found.append(points[0])
-    z = np.concatenate(found)
-    return np.column_stack((z.real, z.imag))
+    return np.concatenate(found)
 
 
 def circular(a: complex, c: complex, b: complex, t: np.ndarray) -> np.ndarray:
@@ -89,9 +90,20 @@ def circular(a: complex, c: complex, b: complex, t: np.ndarray) -> np.ndarray:
 
 
 def distance(one: Paths, other: Paths, step: float) -> float:
-    """The Hausdorff distance both ways, by dense samples; at most step^2 / (8 distance) too large."""
+    """The Hausdorff distance of two paths both ways, by dense samples; at most curvature * step^2 / 8 wrong."""
+    assert len(one) == len(other) == 1
     p, q = sampled(one, step), sampled(other, step)
-    return float(max(cKDTree(p).query(q)[0].max(), cKDTree(q).query(p)[0].max()))
+    return max(farthest(p, q), farthest(q, p))
+
+
+def farthest(points: Complexes, line: Complexes) -> float:
+    """The largest distance of points from a line: from the segments at the two corners that are nearest."""
+    _, corners = cKDTree(xy(line)).query(xy(points), k=2)
+    first = np.clip(np.hstack((corners - 1, corners)), 0, len(line) - 2)
+    start, along = line[first], line[first + 1] - line[first]
+    length = np.where(along == 0, 1, np.abs(along) ** 2)
+    share = np.clip((along.conj() * (points[:, None] - start)).real / length, 0.0, 1.0)
+    return float(np.abs(points[:, None] - start - share * along).min(axis=1).max())
 
 
 def same(one: Paths, other: Paths) -> bool:

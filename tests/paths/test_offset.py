@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
-from pathlib import Path
+from itertools import pairwise
 from typing import Any, Literal
 
 import numpy as np
 import numpy.typing as npt
 import pytest
 import shapely
+from helpers.examples import each_example, tiling
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-import voronoi_tiles
 from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.paths import offset as offset_module
 from voronoi_tiles.paths.areas import ring_areas as areas
@@ -25,7 +25,6 @@ from voronoi_tiles.paths.paths import ARC, LINE, QUAD, Paths
 from voronoi_tiles.paths.segments import tangent_at
 from voronoi_tiles.vector.outline import Outline
 
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 DISTANCES = (0.025, 0.15, 0.5, -0.025, -0.15, -0.5)
 SEEDS = st.integers(0, 2**32 - 1)
 
@@ -159,17 +158,19 @@ def test_random_regions_against_dense_buffers(seed: int, size: float, sign: int)
     assert areas(result.paths).sum() == pytest.approx(true.area, abs=2e-3 * max(1, true.length))
 
 
-@pytest.mark.parametrize("file", EXAMPLES, ids=lambda file: file.stem)
-def test_tiles_against_dense_buffers(file: Path) -> None:
+@each_example
+def test_tiles_against_dense_buffers(name: str) -> None:
     """The tiles of all examples, grown and shrunk by usual kerfs and more."""
-    for tile in voronoi_tiles.Design.load(file).tessellate().tiles:
+    for tile in tiling(name).tiles:
         region = to_arcs(paths_of(tile.outline), accuracy=0.002)
         whole = solid(region, 16)
+        sides = shapely.STRtree([shapely.LineString(pair) for pair in pairwise(whole.exterior.coords)])
+        assert not whole.interiors
         for distance in DISTANCES:
             result = offset(region, distance)
             true = whole.buffer(distance, quad_segs=16)
             assert areas(result.paths).sum() == pytest.approx(true.area, abs=1e-3 * true.length)
-            apart = shapely.distance(whole.boundary, points_of(result.paths, 3))
+            _, apart = sides.query_nearest(points_of(result.paths, 3), return_distance=True, all_matches=False)
             assert np.abs(apart - abs(distance)).max() < 3e-3
             back = offset(result.paths, -distance)
             assert (areas(back.paths).sum() - areas(region).sum()) * distance > -1e-9

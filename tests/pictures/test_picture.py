@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+from helpers.examples import each_example, tiling
 from helpers.png import chunks_of, decoded
 from helpers.strategies import Dice, make_design
 from numpy.typing import NDArray
@@ -28,7 +29,6 @@ from voronoi_tiles.raster.picture import INK, Picture, PictureStyle, default_reg
 from voronoi_tiles.raster.renderer import LabelImage, Renderer
 from voronoi_tiles.raster.scene import Pattern
 
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 PLAIN = PictureStyle(border=1.0, site=0.0, supersampling=1)
 
 
@@ -48,16 +48,16 @@ def segment_design(group: str = "p4") -> vt.Design:
     return vt.Design.from_dict({"schema": 1, "group": group, "cell": {"a": 60.0}, "site": [site]})
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-def test_neighbours_have_different_colours(path: Path) -> None:
+@each_example
+def test_neighbours_have_different_colours(name: str) -> None:
     """Every edge of the exact outlines parts two colours: the vector stage's neighbours are the judge."""
-    tiling = vt.Design.load(path).tessellate()
-    pattern = pattern_of(tiling.design)
+    tiles = tiling(name)
+    pattern = pattern_of(tiles.design)
     colouring = colour(pattern)
     found = {tuple(row) for row in neighbours(pattern)[0].tolist()}
     for number, (placement, site) in enumerate((row, row.site) for row in pattern.placements):
-        for name, operation in tiling.tiles[site].outline.neighbours:
-            there = next(k for k, other in enumerate(pattern.sites) if other.name == name)
+        for beyond, operation in tiles.tiles[site].outline.neighbours:
+            there = next(k for k, other in enumerate(pattern.sites) if other.name == beyond)
             k, i, j = pattern.locate(there, placement.operation @ operation)
             own = np.array([[number, 0, 0]])
             assert colouring.of(own) != colouring.of(np.array([[k, i, j]]))

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 import shapely
 from click.testing import CliRunner
+from helpers.examples import each_example, tiling
 
-import voronoi_tiles as vt
 from voronoi_tiles import Design, Job
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.cli.preflight import preflight as command
@@ -30,7 +30,6 @@ from voronoi_tiles.preflight.chords import CHORDS_MAX, chords_of, counts_of
 
 NS = 'xmlns="http://www.w3.org/2000/svg" xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"'
 PAGE = 'width="200mm" height="100mm" viewBox="0 0 200 100"'
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 
 SERIOUS = {"error", "warning"}
 
@@ -183,18 +182,18 @@ def test_findings_do_not_depend_on_the_position() -> None:
         assert sorted(f.kind for f in moved.findings if f.kind != "outside") == kinds
 
 
-@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
-def test_our_own_files_pass(example: Path, tmp_path: Path) -> None:
+@each_example
+def test_our_own_files_pass(name: str, tmp_path: Path) -> None:
     """Every example's tiles are closed contours with nothing to say against them but that they are fine."""
     path = tmp_path / "tile.svg"
-    tiling = vt.Design.load(example).tessellate()
-    tiling.export(path)
+    tiles = tiling(name)
+    tiles.export(path)
     report = preflight(path)
-    if len(tiling.tiles) > 1:  # tiles of several sites are drawn where they are, side by side
-        names = [tile.site.name for tile in tiling.tiles]
+    if len(tiles.tiles) > 1:  # tiles of several sites are drawn where they are, side by side
+        names = [tile.site.name for tile in tiles.tiles]
         shared = sorted(
             other["length"]
-            for number, tile in enumerate(tiling.figures()["tiles"])
+            for number, tile in enumerate(tiles.figures()["tiles"])
             for other in tile["neighbours"]
             if other["operation"] == "x,y" and other["site"] in names[number + 1 :]
         )

@@ -168,6 +168,7 @@ def test_wrong_area_stops_the_comparison(monkeypatch: pytest.MonkeyPatch) -> Non
         engine.compare("p4", (1,), 1, 3)
 
 
+@pytest.mark.slow
 def test_cgal_gives_the_same_tile(monkeypatch: pytest.MonkeyPatch) -> None:
     """CGAL's area is the engine's, where it is installed; VORONOI_TILES_REQUIRE_CGAL=1 makes its absence an error."""
     try:

@@ -56,6 +56,9 @@ RUN_BY_MAKE = {
 }
 """Pages of so many commands that here they are only read, as the command line reads them."""
 
+LONG = {"README.md", "laser.md", "start.md"}
+"""Pages with so many commands that they take a quarter of a minute and more; the others are quickly run."""
+
 FIXTURES = {
     "README.md": {
         "outline.svg": '<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="200mm" viewBox="0 0 200 200">'
@@ -188,7 +191,14 @@ def _even(text: str) -> str:
     return re.sub(r" +$", "", text, flags=re.MULTILINE)
 
 
-@pytest.mark.parametrize("page", [page for page in PAGES if page.name not in RUN_BY_MAKE], ids=lambda page: page.name)
+@pytest.mark.parametrize(
+    "page",
+    [
+        pytest.param(page, id=page.name, marks=[pytest.mark.slow] if page.name in LONG else [])
+        for page in PAGES
+        if page.name not in RUN_BY_MAKE
+    ],
+)
 def test_the_commands_run_and_print_what_the_page_shows(page: Path, tmp_path: Path) -> None:
     """All of a page's shell and Python blocks, in order."""
     shutil.copytree(ROOT / "examples", tmp_path / "examples")

@@ -13,13 +13,11 @@ from xml.etree import ElementTree as ET
 
 import pytest
 import shapely
+from helpers.examples import EXAMPLES, path_of, tiling
 from helpers.outlines import CommandLine
 
 from voronoi_tiles import Design
-from voronoi_tiles.tiling import Tiling
 
-FOLDER = Path(__file__).parents[2] / "examples"
-NAMES = sorted(path.stem for path in FOLDER.glob("*.toml"))
 KINDS = {"point", "segment", "polyline", "bezier", "hermite", "catmull_rom", "bspline", "circle", "path"}
 MIRRORED = {"pm", "cm", "pmm", "pmg", "cmm", "p4m", "p4g", "p3m1", "p31m", "p6m"}
 # Seconds of processor time for one tessellation with its proof: they take 0.02 to 0.1.
@@ -27,12 +25,13 @@ TIME_LIMIT = 3.0
 # In millimetres: what is narrower than this breaks when it is cut from plywood.
 NARROWEST = 2.0
 
-each_example = pytest.mark.parametrize("name", NAMES)
+# All of them in the quick run too: what is asked here is quickly answered.
+each_example = pytest.mark.parametrize("name", EXAMPLES)
 
 
 def source(name: str) -> dict[str, Any]:
     """Read an example as the table that it is."""
-    return tomllib.loads((FOLDER / f"{name}.toml").read_text(encoding="utf-8"))
+    return tomllib.loads(path_of(name).read_text(encoding="utf-8"))
 
 
 def strokes(name: str) -> list[list[str]]:
@@ -41,15 +40,9 @@ def strokes(name: str) -> list[list[str]]:
 
 
 @cache
-def tiling(name: str) -> Tiling:
-    """Tessellate an example, once for all tests."""
-    return Design.load(FOLDER / f"{name}.toml").tessellate()
-
-
-@cache
 def designs_by_kind() -> set[tuple[str, tuple[str, ...]]]:
     """Give the group and the strokes of every design of one site."""
-    return {(source(name)["group"], tuple(sites[0])) for name in NAMES if len(sites := strokes(name)) == 1}
+    return {(source(name)["group"], tuple(sites[0])) for name in EXAMPLES if len(sites := strokes(name)) == 1}
 
 
 @pytest.mark.parametrize("group", ["p1", "p2", "pg", "p4", "p3", "p6"])
@@ -73,20 +66,20 @@ def test_there_are_cubic_curves(group: str, count: int) -> None:
 
 def test_there_are_the_special_ones() -> None:
     """Path data, two tile shapes, a circle about a centre of rotation, a mirror group, and most kinds of stroke."""
-    by_name = {name: strokes(name) for name in NAMES}
+    by_name = {name: strokes(name) for name in EXAMPLES}
     kinds = {kind for sites in by_name.values() for site in sites for kind in site}
     assert kinds >= KINDS - {"polyline"}
     assert any(len(sites) == 2 for sites in by_name.values())
-    assert {source(name)["group"] for name in NAMES} & MIRRORED
+    assert {source(name)["group"] for name in EXAMPLES} & MIRRORED
     circles = [name for name, sites in by_name.items() if ["circle"] in sites]
     assert any(len(tile.symmetry) > 1 for name in circles for tile in tiling(name).tiles)
-    assert len(NAMES) >= 16
+    assert len(EXAMPLES) >= 16
 
 
 @each_example
 def test_it_is_proved_in_time(name: str) -> None:
     """Every figure of the proof holds, and nobody waits for it."""
-    design = Design.load(FOLDER / f"{name}.toml")
+    design = Design.loadpath_of(name)
     begin = time.process_time()
     result = design.tessellate()
     assert time.process_time() - begin < TIME_LIMIT
@@ -137,7 +130,7 @@ def test_its_tiles_can_be_cut(name: str) -> None:
 @each_example
 def test_it_says_what_it_is(name: str) -> None:
     """A comment comes first, with the command that exports it, and the file's name begins with the group's."""
-    text = (FOLDER / f"{name}.toml").read_text(encoding="utf-8")
+    text = path_of(name).read_text(encoding="utf-8")
     assert text.startswith("# ")
     assert f"\n# Export it:  voronoi-tiles export examples/{name}.toml -o {name}.svg\n" in text
     assert name.partition("-")[0] == source(name)["group"]
@@ -146,9 +139,9 @@ def test_it_says_what_it_is(name: str) -> None:
 @pytest.mark.parametrize("file_format", ["svg", "json"])
 def test_all_export_with_one_command(voronoi_tiles: CommandLine, tmp_path: Path, file_format: str) -> None:
     """As `make demo` does it; the files are those that Python gives."""
-    files = [FOLDER / f"{name}.toml" for name in NAMES]
+    files = [path_of(name) for name in EXAMPLES]
     result = voronoi_tiles("export", *files, "-o", tmp_path, "--format", file_format)
     assert result.returncode == 0, result.stderr
-    assert sorted(path.stem for path in tmp_path.iterdir()) == NAMES
-    for name in NAMES:
+    assert sorted(path.stem for path in tmp_path.iterdir()) == EXAMPLES
+    for name in EXAMPLES:
         assert (tmp_path / f"{name}.{file_format}").read_text(encoding="utf-8") == tiling(name).text(file_format)

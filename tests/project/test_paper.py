@@ -7,9 +7,11 @@ import sys
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from helpers.outlines import CommandLine
 from shapely import Polygon
 from test_gallery import OTHER_PIXELS, anew
 
@@ -303,10 +305,16 @@ def test_the_page_is_written_from_the_measurements() -> None:
         paper.page([row for row in rows if row.group != "pgg"], even, [True])
 
 
-@pytest.mark.parametrize("command", paper.commands(), ids=lambda command: Path(command.output).name)
-def test_pictures_made_anew_are_the_same(command: Command, tmp_path: Path) -> None:
+def case(command: Command) -> Any:
+    """A command as a parameter; a picture in perspective takes seconds."""
+    slow = command.program[0] != "voronoi-tiles"
+    return pytest.param(command, id=Path(command.output).name, marks=[pytest.mark.slow] if slow else [])
+
+
+@pytest.mark.parametrize("command", [case(command) for command in paper.commands()])
+def test_pictures_made_anew_are_the_same(command: Command, tmp_path: Path, voronoi_tiles: CommandLine) -> None:
     """The committed file is what its command writes; versions of matplotlib differ a little."""
-    assert anew(command, tmp_path) <= OTHER_PIXELS
+    assert anew(command, tmp_path, voronoi_tiles) <= OTHER_PIXELS
 
 
 def test_the_page_is_there() -> None:

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from helpers.sheets import NAMES, check_joints, engine, flattened, period, points_on, tiling
+from helpers.examples import each_design, tiling
+from helpers.sheets import check_joints, engine, flattened, period, points_on
 
 from voronoi_tiles.base.arrays import Complexes, Ints
 from voronoi_tiles.paths.areas import ring_areas
@@ -52,7 +53,7 @@ def assert_neighbours_share(paths: Paths, inner: Paths) -> None:
     assert not lonely, f"{lonely} arcs of inner tiles have no other side"
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each_design
 def test_every_side_lies_between_two_tiles(name: str) -> None:
     """It is run through once forwards and once backwards; where many tiles meet, all have the same bits."""
     here = period(name)
@@ -65,7 +66,7 @@ def test_every_side_lies_between_two_tiles(name: str) -> None:
     assert_neighbours_share(paths, here.outlines(*block(here, 0))[0])
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each_design
 def test_outlines_are_those_of_the_copies(name: str) -> None:
     """To rounding, arc for arc; the outer ring comes first, and the areas add up to the cell's."""
     here, tiles = period(name), tiling(name).tiles
@@ -87,7 +88,7 @@ def test_outlines_are_those_of_the_copies(name: str) -> None:
         assert np.abs(ours - theirs[partner]).max() <= CLOSE * unit
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each_design
 def test_ends_of_sides_are_the_same_bits_exactly_where_they_meet(name: str) -> None:
     """Among all sides of a block: ends are one vertex, or far apart."""
     here = period(name).placed(np.exp(0.7j), 1.1 - 2.3j)
@@ -168,7 +169,7 @@ def assert_tiles_congruent(here: Period, exact: Period, name: str) -> None:
             assert gap <= 1e-11 * extent(name), f"tile {k} differs by {gap:.1e} from its own image"
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each_design
 def test_approximated_tiles_stay_congruent_and_share_their_sides(name: str) -> None:
     """Whatever the fit: copies are images under the exact motions, neighbours share bits, the areas make the cell's."""
     exact = period(name)
@@ -211,7 +212,7 @@ def test_sides_that_cross_a_mirror_keep_it() -> None:
     assert mirrored > 0
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each_design
 def test_edges_are_images_of_those_of_the_quotient_complex(name: str) -> None:
     """Every edge is where its motion takes the one of its orbit; a fit that changes nothing changes nothing."""
     here, quotient = period(name), engine(name).quotient
@@ -224,7 +225,7 @@ def test_edges_are_images_of_those_of_the_quotient_complex(name: str) -> None:
     assert sorted(set(here.orbit.tolist())) == list(range(len(originals)))
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each_design
 def test_edges_of_one_orbit_are_those_that_symmetry_maps_onto_each_other(name: str) -> None:
     """Told by brute force, from the places of the edges alone: every operation of the group, every pair of edges."""
     here, action = period(name), engine(name).action

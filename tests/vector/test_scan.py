@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pytest
 from helpers import brute
+from helpers.examples import each_example, tiling
 from helpers.outlines import ABOVE, RIGHT, polygon
 
-import voronoi_tiles as vt
 from voronoi_tiles.base.maps import UNITS, Isometry
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.tiling import Tiling
@@ -20,18 +18,11 @@ from voronoi_tiles.vector.outline import Outline
 from voronoi_tiles.vector.proof import winding_number
 from voronoi_tiles.vector.scan import Grid, crossings, owners, scan_spans
 
-EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 IDENTITY = Isometry(1 + 0j, 0j, conj=False)
 MIRROR = Isometry(-1 + 0j, 10 + 0j, conj=True)
 UNIT_GRID = Grid(0j, 20 + 0j, 20j, 20, 20, (0.0, 0.0))
 
 Copies = list[tuple[Outline, Isometry]]
-
-
-@cache
-def tiling(path: Path) -> Tiling:
-    """Tessellate an example, once."""
-    return vt.Design.load(path).tessellate()
 
 
 def copies_of(tiles: Tiling) -> tuple[Copies, list[tuple[int, Operation]]]:
@@ -77,10 +68,10 @@ def painted(copies: Copies, grid: Grid, low: int, high: int) -> np.ndarray:
     return image
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-def test_owners_contain_their_samples(path: Path) -> None:
+@each_example
+def test_owners_contain_their_samples(name: str) -> None:
     """The owner of a random sample contains it by counting crossings of a ray: the oracle, with its own groups."""
-    tiles = tiling(path)
+    tiles = tiling(name)
     copies, names = copies_of(tiles)
     grid = grid_of(tiles, 211, 173, (0.37, 0.61))
     image = owners(copies, grid)
@@ -99,20 +90,20 @@ def test_owners_contain_their_samples(path: Path) -> None:
         assert shapes[site].contains(plane.pull(motion, grid.at(i[chosen], j[chosen]))).all()
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+@each_example
 @pytest.mark.parametrize("phase", [(0.0, 0.0), (0.5, 0.5), (0.25, 0.75)])
-def test_every_sample_has_one_owner(path: Path, phase: tuple[float, float]) -> None:
+def test_every_sample_has_one_owner(name: str, phase: tuple[float, float]) -> None:
     """Also where samples lie on rotation centres, on corners and along straight edges, in whatever cell."""
-    tiles = tiling(path)
+    tiles = tiling(name)
     image = owners(copies_of(tiles)[0], grid_of(tiles, 240, 240, phase))
     assert (image.count == 1).all()
     assert (image.label >= 0).all()
 
 
-@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-def test_copies_own_as_many_samples_as_their_area(path: Path) -> None:
+@each_example
+def test_copies_own_as_many_samples_as_their_area(name: str) -> None:
     """Each copy has its share, but for at most half a sample where its outline passes one."""
-    tiles = tiling(path)
+    tiles = tiling(name)
     copies, _ = copies_of(tiles)
     grid = grid_of(tiles, 1021, 1013, (0.37, 0.61))
     image = owners(copies, grid)
@@ -124,7 +115,7 @@ def test_copies_own_as_many_samples_as_their_area(path: Path) -> None:
 
 def test_a_finer_grid_and_another_origin_show_the_same() -> None:
     """Every second sample of a grid is one of a coarser grid; one that begins cells further on has other labels."""
-    tiles = tiling(EXAMPLES[0])
+    tiles = tiling("cm-moth")
     copies, _ = copies_of(tiles)
     fine, coarse = (grid_of(tiles, n, n, (0.3 * n / 100, 0.7 * n / 100)) for n in (200, 100))
     far = replace(coarse, origin=3 * coarse.a - 2 * coarse.b)
@@ -235,7 +226,7 @@ def test_an_arc_and_its_reverse_cross_at_the_same_places() -> None:
 
 def test_gaps_and_overlaps_show(ring: Outline) -> None:
     """The image sees a dropped hole, a moved vertex, a copy too many, and two that make up for a third."""
-    tiles = tiling(EXAMPLES[0])
+    tiles = tiling("cm-moth")
     copies, _ = copies_of(tiles)
     grid = grid_of(tiles, 240, 240, (0.37, 0.61))
     outline, isometry = copies[0]

@@ -590,6 +590,7 @@ def test_found_touching_by_the_fuzz(name: str) -> None:
     assert fuzz.try_design(TOUCHING[name], np.random.default_rng(1)) == "refused"
 
 
+@pytest.mark.slow
 def test_500_random_designs() -> None:
     """`make fuzz`, as everyone runs it."""
     call = [sys.executable, "-m", "helpers.fuzz", "500", "--seed", "20240229"]
