@@ -40,7 +40,7 @@ def tiling(name: str) -> Tiling:
 def is_first(name: str) -> bool:
     """Whether an example is the first of its group; starters are."""
     group = name.partition("-")[0]
-    return name in GROUPS or name == next(other for other in EXAMPLES if other.partition("-")[0] == group)
+    return name in GROUPS or name == next((other for other in EXAMPLES if other.partition("-")[0] == group), name)
 
 
 each_example = pytest.mark.parametrize(
