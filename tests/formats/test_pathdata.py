@@ -21,7 +21,7 @@ from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import Affine
 from voronoi_tiles.designs.strokes import ARC_SHARE, path_pieces
 from voronoi_tiles.formats.pen import PathPen, Pen
-from voronoi_tiles.formats.shapes import CURVE_ACCURACY, PIECES_MAX, DrawingError
+from voronoi_tiles.formats.shapes import CURVE_ACCURACY, SEGMENTS_MAX, DrawingError
 from voronoi_tiles.formats.svg import pathdata
 from voronoi_tiles.formats.svg.pathdata import draw_path
 from voronoi_tiles.paths.ellipses import EllipticalArc
@@ -406,7 +406,7 @@ def test_a_line_there_and_back_is_kept() -> None:
 def test_too_many_curves_are_refused() -> None:
     """One more than there may be, whichever way they are drawn; moves are none."""
     pen = PathPen(0.1)
-    line = "L1 0 0 0 " * (PIECES_MAX // 8)
+    line = "L1 0 0 0 " * (SEGMENTS_MAX // 8)
     draw_path(pen, "M0 0 M0 0 M0 0" + line * 4)
     for data in ("M0 0L1 1", "m0 0l1 1"):
         with pytest.raises(DrawingError, match="more than 2,000,000 lines and curves"):

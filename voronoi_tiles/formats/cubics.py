@@ -1,4 +1,4 @@
-"""Every piece of a path as a line or a cubic Bezier curve, for file formats that know no other curve."""
+"""Every segment of a path as a line or a cubic Bezier curve, for file formats that know no other curve."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, Paths
 CUBIC_ACCURACY_MM: Final = 1e-6
 """How far a cubic curve may be from a circular arc that it stands for; millimetres: what files hold anyway."""
 
-_BLOCK: Final = 1 << 16  # pieces that a writer holds as text at a time
+_BLOCK: Final = 1 << 16  # segments that a writer holds as text at a time
 
 
 def cubic_blocks(layer: Layer) -> Iterator[tuple[Paths, Ints]]:
@@ -25,10 +25,10 @@ def cubic_blocks(layer: Layer) -> Iterator[tuple[Paths, Ints]]:
     Gives the paths of a block, and where its items begin and end among them (intp, items + 1). Circular arcs are
     replaced within CUBIC_ACCURACY_MM.
     """
-    pieces, count = layer.paths.offsets[layer.items], len(layer.items) - 1
+    segments, count = layer.paths.offsets[layer.items], len(layer.items) - 1
     first = 0
     while first < count:
-        fitting = int(np.searchsorted(pieces, pieces[first] + _BLOCK, side="right")) - 1
+        fitting = int(np.searchsorted(segments, segments[first] + _BLOCK, side="right")) - 1
         stop = max(min(fitting, count), first + 1)
         chosen = np.arange(layer.items[first], layer.items[stop])
         yield (

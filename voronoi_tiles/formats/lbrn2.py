@@ -2,7 +2,7 @@
 
 The format has no public description; what is written here is what LightBurn 1.x writes itself: a CutSetting for each
 layer, whose index is its colour, and a Shape for each path with a list of vertices, each with the control points before
-and after it, and a list of the pieces between them.
+and after it, and a list of the segments between them.
 """
 
 from __future__ import annotations
@@ -119,8 +119,8 @@ def _grouped(texts: list[str], items: list[int], index: int) -> Iterator[str]:
 
 
 def _shapes(cubics: Paths, index: int, number: int) -> list[str]:
-    """A Shape for each path, "" for one without pieces; the lists of each have a number of their own."""
-    # One vertex more than pieces: the end of the last one is left out again where the path is closed.
+    """A Shape for each path, "" for one without segments; the lists of each have a number of their own."""
+    # One vertex more than segments: the end of the last one is left out again where the path is closed.
     count = len(cubics.start) + len(cubics)
     place = np.arange(len(cubics.start)) + cubics.owner
     last = cubics.offsets[1:] + np.arange(len(cubics))
@@ -154,10 +154,10 @@ def _shapes(cubics: Paths, index: int, number: int) -> list[str]:
 def _shape(vertices: list[str], letters: list[str], index: int, number: int) -> str:
     """One path."""
     count = len(vertices)
-    pieces = "".join(f"{letter}{k} {(k + 1) % count}" for k, letter in enumerate(letters))
+    segments = "".join(f"{letter}{k} {(k + 1) % count}" for k, letter in enumerate(letters))
     return (
         f'    <Shape Type="Path" CutIndex="{index}" VertID="{number}" PrimID="{number}">\n        {_XFORM}\n'
-        f"        <VertList>{''.join(vertices)}</VertList>\n        <PrimList>{pieces}</PrimList>\n    </Shape>\n"
+        f"        <VertList>{''.join(vertices)}</VertList>\n        <PrimList>{segments}</PrimList>\n    </Shape>\n"
     )
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
 from voronoi_tiles.base.maps import Affine
 from voronoi_tiles.base.tolerance import COORDINATE_MAX
-from voronoi_tiles.formats.shapes import CURVE_ACCURACY, PIECES_MAX, DrawingError
+from voronoi_tiles.formats.shapes import CURVE_ACCURACY, SEGMENTS_MAX, DrawingError
 from voronoi_tiles.paths.ellipses import EllipticalArc
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Kinds, Paths
 
@@ -57,7 +57,7 @@ class DrawnCurves(NamedTuple):
 class PathPen:
     """Draws paths in coordinates of their own, the first one from 0 on; arcs of ellipses as cubics within `accuracy`.
 
-    After a path is closed, the next one begins where it did. Raises DrawingError when there are more than PIECES_MAX
+    After a path is closed, the next one begins where it did. Raises DrawingError when there are more than SEGMENTS_MAX
     lines and curves.
     """
 
@@ -65,7 +65,7 @@ class PathPen:
         self._accuracy = accuracy
         self._kinds = bytearray((MOVE,))
         self._numbers = array("d", (0.0, 0.0))
-        self._left = PIECES_MAX
+        self._left = SEGMENTS_MAX
         self.here = self.origin = 0j
 
     def move(self, point: complex) -> None:
@@ -138,7 +138,7 @@ class PathPen:
         self._left -= count
         if self._left < 0:
             raise DrawingError(
-                f"more than {PIECES_MAX:,} lines and curves", remedy="Split the drawing, or simplify its curves."
+                f"more than {SEGMENTS_MAX:,} lines and curves", remedy="Split the drawing, or simplify its curves."
             )
 
 

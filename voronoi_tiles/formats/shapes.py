@@ -37,7 +37,7 @@ DXF_COPIES_MAX: Final = 200_000
 DXF_INSERTS_MAX: Final = 30_000
 """Most INSERTs that are followed, those in blocks counted wherever these are inserted; a count. Five seconds' work."""
 
-PIECES_MAX: Final = 2_000_000
+SEGMENTS_MAX: Final = 2_000_000
 """Most lines and curves of a drawing; a count. A sheet of 10,000 tiles has half a million."""
 
 CURVE_ACCURACY: Final = 1e-4

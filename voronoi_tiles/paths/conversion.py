@@ -20,7 +20,7 @@ _ROUNDING_ULPS = 16.0
 """What rounding moves points by, at most; ulps of the largest coordinate."""
 
 COUNT_MAX: Final = 20_000_000
-"""Most pieces that a conversion makes; a count. More means a slip of the accuracy's unit, and fills the memory."""
+"""Most segments that a conversion makes; a count. More means a slip of the accuracy's unit, and fills the memory."""
 
 
 def usable(paths: Paths, accuracy: float) -> float:
@@ -48,7 +48,7 @@ def to_lines(paths: Paths, *, accuracy: float) -> Paths:
 
 
 def chord_counts(paths: Paths, accuracy: float) -> Floats:
-    """The least numbers of chords, not rounded, that keep each piece within `accuracy` both ways; float64 (n,).
+    """The least numbers of chords, not rounded, that keep each segment within `accuracy` both ways; float64 (n,).
 
     Source: a curve whose second derivative is at most m differs from its k chords by at most m / (8 k^2) at equal
     parameters. For a quadratic with second difference e, m is 2 |e|; for a cubic at most 6 times the larger of
@@ -70,23 +70,23 @@ def chord_counts(paths: Paths, accuracy: float) -> Floats:
 def chords(paths: Paths, counts: Ints) -> Paths:
     """Replace every curve by so many chords; those of LINEs are 1.
 
-    The chords of a piece span equal steps of its parameter, or of its angle for an ARC. End points of pieces stay. A
-    piece that is run through backwards has the same points bit for bit.
+    The chords of a segment span equal steps of its parameter, or of its angle for an ARC. Its ends stay. A segment that
+    is run through backwards has the same points bit for bit.
     """
     split = _Split.into(counts)
     start, end, (c0, c1) = paths.start, paths.end, paths.control.T
-    points = start[split.piece]
+    points = start[split.segment]
     t, s = split.number / split.counts, (split.counts - split.number) / split.counts
-    # Sums whose terms swap when a piece is reversed, and products whose order stays: the same bits both ways.
-    inner = (split.number > 0) & (paths.kind[split.piece] != LINE)
-    rows = np.flatnonzero(inner & (paths.kind[split.piece] == QUAD))
-    k, u, v = split.piece[rows], s[rows], t[rows]
+    # Sums whose terms swap when a segment is reversed, and products whose order stays: the same bits both ways.
+    inner = (split.number > 0) & (paths.kind[split.segment] != LINE)
+    rows = np.flatnonzero(inner & (paths.kind[split.segment] == QUAD))
+    k, u, v = split.segment[rows], s[rows], t[rows]
     points[rows] = (start[k] * (u * u) + end[k] * (v * v)) + c0[k] * (2.0 * (u * v))
-    rows = np.flatnonzero(inner & (paths.kind[split.piece] == CUBIC))
-    k, u, v = split.piece[rows], s[rows], t[rows]
+    rows = np.flatnonzero(inner & (paths.kind[split.segment] == CUBIC))
+    k, u, v = split.segment[rows], s[rows], t[rows]
     middle = c0[k] * (3.0 * (u * u) * v) + c1[k] * (3.0 * (v * v) * u)
     points[rows] = (start[k] * (u * u * u) + end[k] * (v * v * v)) + middle
-    rows = np.flatnonzero(inner & (paths.kind[split.piece] == ARC))
+    rows = np.flatnonzero(inner & (paths.kind[split.segment] == ARC))
     frame, low, _ = _steps_of_arcs(paths, split, rows)
     points[rows] = frame.place(np.sin(low), 2 * np.sin(low / 2) ** 2)
     none = np.zeros((len(points), 2), np.complex128)
@@ -110,7 +110,7 @@ def to_cubics(paths: Paths, *, accuracy: float) -> Paths:
     counts = np.ones(len(paths.kind))
     counts[arcs] = _fewest(2 * frame.half, bound / frame.radius)
     split = _Split.into(_whole(counts))
-    start, control, kinds = paths.start[split.piece], paths.control[split.piece], paths.kind[split.piece]
+    start, control, kinds = paths.start[split.segment], paths.control[split.segment], paths.kind[split.segment]
     rows = np.flatnonzero(kinds == ARC)
     frame, low, high = _steps_of_arcs(paths, split, rows)
     begins = split.number[rows] == 0
@@ -139,24 +139,24 @@ def _whole(counts: Floats) -> Ints:
 
 
 class _Split(NamedTuple):
-    """Pieces cut into equal steps: the piece of each step, its number from 0 on, and the piece's count of steps."""
+    """Segments cut into equal steps: of each step its segment, its number from 0 on, and the segment's count."""
 
-    piece: Ints
+    segment: Ints
     number: Ints
     counts: Ints
 
     @classmethod
     def into(cls, counts: Ints) -> Self:
-        """Cut each piece into so many steps."""
-        piece = np.repeat(np.arange(len(counts)), counts)
-        return cls(piece, ranges(np.zeros(len(counts), np.intp), counts), counts[piece])
+        """Cut each segment into so many steps."""
+        segment = np.repeat(np.arange(len(counts)), counts)
+        return cls(segment, ranges(np.zeros(len(counts), np.intp), counts), counts[segment])
 
     def joined(self, paths: Paths, start: Complexes, control: Complexes, kind: Kinds) -> Paths:
         """The paths of these steps, each of which ends where the next begins."""
         end = np.roll(start, -1)
         last = self.number == self.counts - 1
         end[last] = paths.end
-        counts = np.bincount(paths.owner[self.piece], minlength=len(paths))
+        counts = np.bincount(paths.owner[self.segment], minlength=len(paths))
         offsets = np.append(0, np.cumsum(counts)).astype(np.intp)
         return replace(paths, start=start, end=end, control=control, kind=kind, offsets=offsets)
 
@@ -190,7 +190,7 @@ class _Frames(NamedTuple):
 
 def _steps_of_arcs(paths: Paths, split: _Split, rows: Ints) -> tuple[_Frames, Floats, Floats]:
     """The frames of steps of ARCs, and the angles from the middle where each step begins and ends."""
-    frame = _Frames.of_arcs(paths, split.piece[rows])
+    frame = _Frames.of_arcs(paths, split.segment[rows])
     number, count = split.number[rows], split.counts[rows]
     low, high = (frame.half * ((2 * n - count) / count) for n in (number, number + 1))
     return frame, low, high

@@ -1,4 +1,4 @@
-"""Where pieces of paths meet, in closed form: lines, arcs and quadratic Bezier curves against lines and arcs.
+"""Where segments of paths meet, in closed form: lines, arcs and quadratic Bezier curves against lines and arcs.
 
 A line is an arc without curvature. In the frame of its chord, from 0 to 1, an arc of the turn 2 phi is the image of
 0 <= x <= 1 under v = x / (x + (1 - x) e^(i phi)); points z of the circle through p with the unit normal n (to the left)
@@ -28,8 +28,8 @@ from voronoi_tiles.paths.segments import (
 )
 
 CONTACT_ULPS: Final = 16.0
-"""How far apart, in ulps of the largest coordinate, two pieces may pass and still touch, how far beyond its end a
-piece still meets another, and how near they must run to coincide. It is what rounding leaves of a point that lies on
+"""How far apart, in ulps of the largest coordinate, two segments may pass and still touch, how far beyond its end a
+segment still meets another, and how near they must run to coincide. It is what rounding leaves of a point that lies on
 both."""
 
 _POLES: Final = (np.inf, 2.0, -2.0, 4.0, -4.0)
@@ -43,9 +43,9 @@ _NEWTON_STEPS: Final = 4
 
 @dataclass(frozen=True, eq=False)
 class Intersections:
-    """The points where pairs of pieces meet.
+    """The points where pairs of segments meet.
 
-    Point k lies on both pieces of the pair `pair[k]` (intp), at `t[k]` of the first and `u[k]` of the second, both in
+    Point k lies on both segments of the pair `pair[k]` (intp), at `t[k]` of the first and `u[k]` of the second, both in
     [0, 1]: a Bezier parameter on LINE and QUAD, the share of the angle on ARC. `point` is complex128. `overlaps` (intp)
     are the pairs that run along each other for some length: they have no points here.
     """
@@ -58,12 +58,12 @@ class Intersections:
 
 
 def crossings(first: Paths, i: Ints, second: Paths, j: Ints) -> Intersections:
-    """All points where the piece i[k] of `first` and the piece j[k] of `second` meet, in the order of k, then of t.
+    """All points where the segment i[k] of `first` and the segment j[k] of `second` meet, in the order of k, then of t.
 
     The first may be LINE, QUAD or ARC, the second LINE or ARC; raises ValueError for others. A point up to CONTACT_ULPS
-    from an end, within the piece or beyond it, is taken as the end. A tangential contact is given once or twice. Lines
-    or arcs that lie on one line or circle give no points but are listed in `overlaps`; where they only touch, end to
-    end, that end is a point. A straight QUAD on a second piece's whole line, be it beyond its ends, counts as overlap.
+    from an end, within the segment or beyond it, is taken as the end. A tangential contact is given once or twice.
+    Lines or arcs that lie on one line or circle give no points but are listed in `overlaps`; where they only touch, end
+    to end, that end is a point. A straight QUAD on a second one's whole line, be it beyond its ends, counts as overlap.
     """
     if np.isin(first.kind[i], CUBIC).any() or np.isin(second.kind[j], (QUAD, CUBIC)).any():
         raise ValueError("only lines, arcs and, on the first side, quadratic curves can be intersected")
@@ -88,7 +88,7 @@ def crossings(first: Paths, i: Ints, second: Paths, j: Ints) -> Intersections:
 
 @dataclass(frozen=True, eq=False)
 class _Pairs:
-    """Pairs of pieces, each piece also as a part of a circle; `touching` is the distance at which they touch."""
+    """Pairs of segments, each segment also as a part of a circle; `touching` is the distance at which they touch."""
 
     first: Paths
     i: Ints
@@ -98,13 +98,13 @@ class _Pairs:
 
     @classmethod
     def of(cls, first: Paths, i: Ints, second: Paths, j: Ints) -> _Pairs:
-        """The pairs of the pieces i of `first` and j of `second`."""
+        """The pairs of the segments i of `first` and j of `second`."""
         corners = (first.start[i], first.end[i], second.start[j], second.end[j])
         touching = CONTACT_ULPS * EPSILON * np.max(np.abs(corners), axis=0)
         return cls(first, i, Circles.of(first, i), Circles.of(second, j), touching)
 
     def collect(self, pair: Ints, x: Floats, overlaps: Ints) -> Intersections:
-        """The points at x on the first pieces, where they lie on the second ones too; x as `bezier_at` takes it.
+        """The points at x on the first segments, where they lie on the second ones too; x as `bezier_at` takes it.
 
         For ARCs x is the share in the chord's frame, see the module.
         """
@@ -130,11 +130,11 @@ def _at_ends(x: Floats, slack: Floats) -> Floats:
     return np.where(x <= slack, 0.0, np.where(x >= 1 - slack, 1.0, x))
 
 
-def _on_arcs(paths: Paths, pieces: Ints, half: Floats, x: Floats) -> tuple[Complexes, Floats]:
+def _on_arcs(paths: Paths, segments: Ints, half: Floats, x: Floats) -> tuple[Complexes, Floats]:
     """The points at x in the frame of the chord, and their shares of the angle."""
     v, t = from_chord_share(x, half)
-    start, end = paths.start[pieces], paths.end[pieces]
-    # From the nearer end, so that an end has the bits of the piece's own.
+    start, end = paths.start[segments], paths.end[segments]
+    # From the nearer end, so that an end has the bits of the segment's own.
     return np.where(x > 0.5, end + (end - start) * (v - 1), start + (end - start) * v), t
 
 
@@ -260,7 +260,7 @@ def _quadratic_roots(a: Floats, b: Floats, c: Floats, touching: Floats) -> Float
 
 
 def _coincident(pairs: _Pairs) -> Bools:
-    """Where the first piece lies on the second one's line or circle, and the other way round."""
+    """Where the first segment lies on the second one's line or circle, and the other way round."""
     off = np.zeros(len(pairs.i))
     for one, other in ((pairs.here, pairs.there), (pairs.there, pairs.here)):
         for z in (one.start, _middle(one), one.start + one.chord):
@@ -279,7 +279,7 @@ def _end_to_end(pairs: _Pairs, alike: Ints) -> tuple[Ints, Floats, Ints]:
 
     overlap = np.zeros(len(alike), np.bool_)
     for one, other in ((here, there), (there, here)):
-        # The middle tells the same piece once more, whichever way, from the other half of one circle.
+        # The middle tells the same segment once more, whichever way, from the other half of one circle.
         for z in (one.start, _middle(one), one.start + one.chord):
             overlap |= strictly_inside(z, other)
     met, x = [], []
@@ -292,7 +292,7 @@ def _end_to_end(pairs: _Pairs, alike: Ints) -> tuple[Ints, Floats, Ints]:
 
 
 def _middle(circles: Circles) -> Complexes:
-    """The middles of the pieces."""
+    """The middles of the segments."""
     return circles.start + circles.chord * from_chord_share(np.full(len(circles.half), 0.5), circles.half)[0]
 
 

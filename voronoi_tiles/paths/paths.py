@@ -26,12 +26,12 @@ ARC: Final = 3
 
 @dataclass(frozen=True, eq=False)
 class Paths:
-    """p paths of n pieces altogether.
+    """p paths of n segments altogether.
 
     `start` and `end` are complex128 (n,). `kind` (uint8, n) says what lies between: LINE; QUAD, a quadratic Bezier
     curve with the control point `control[:, 0]`; CUBIC, a cubic one with both of `control` (complex128, n x 2); ARC, a
     circular arc over the point `control[:, 0]`, which is the middle of it. What a kind does not use is 0. The
-    pieces of path k are those from `offsets[k]` up to, not including, `offsets[k + 1]` (intp, p + 1); each piece starts
+    segments of path k are those from `offsets[k]` up to, not including, `offsets[k + 1]` (intp, p + 1); each starts
     where the one before ends, bit for bit, and where `closed` (bool, p), the first where the last ends.
     """
 
@@ -94,22 +94,22 @@ class Paths:
 
     @property
     def counts(self) -> Ints:
-        """The number of pieces of each path."""
+        """The number of segments of each path."""
         return np.diff(self.offsets)
 
     @cached_property
     def owner(self) -> Ints:
-        """The path that each piece belongs to."""
+        """The path that each segment belongs to."""
         return np.repeat(np.arange(len(self)), self.counts)
 
     def take(self, paths: Ints) -> Paths:
         """The paths at these places, in this order."""
-        pieces = ranges(self.offsets[paths], self.counts[paths])
+        segments = ranges(self.offsets[paths], self.counts[paths])
         return Paths(
-            start=self.start[pieces],
-            end=self.end[pieces],
-            control=self.control[pieces],
-            kind=self.kind[pieces],
+            start=self.start[segments],
+            end=self.end[segments],
+            control=self.control[segments],
+            kind=self.kind[segments],
             offsets=np.append(0, np.cumsum(self.counts[paths])).astype(np.intp),
             closed=self.closed[paths],
         )
@@ -131,14 +131,14 @@ class Paths:
         turned = np.ones(len(self), np.bool_) if flags is None else flags
         order = np.arange(len(self.start))
         mirrored = (self.offsets[:-1] + self.offsets[1:] - 1)[self.owner] - order
-        piece = turned[self.owner]
-        order = np.where(piece, mirrored, order)
+        backwards = turned[self.owner]
+        order = np.where(backwards, mirrored, order)
         start, end, control = self.start[order], self.end[order], self.control[order]
-        swap = piece & (self.kind[order] == CUBIC)
+        swap = backwards & (self.kind[order] == CUBIC)
         return replace(
             self,
-            start=np.where(piece, end, start),
-            end=np.where(piece, start, end),
+            start=np.where(backwards, end, start),
+            end=np.where(backwards, start, end),
             control=np.where(swap[:, None], control[:, ::-1], control),
             kind=self.kind[order],
         )
@@ -150,7 +150,7 @@ class Paths:
         return replace(self, start=image[0], end=image[1], control=self._used(image[2:].T))
 
     def shifted(self, shift: Complexes) -> Paths:
-        """The image where each piece is moved by its own vector, complex128 (n,): the same one for those that meet."""
+        """The image where each segment is moved by its own vector, complex128 (n,): those that meet by the same."""
         control = self._used(self.control + shift[:, None])
         return replace(self, start=self.start + shift, end=self.end + shift, control=control)
 
@@ -162,7 +162,7 @@ class Paths:
 
     @cached_property
     def lengths(self) -> Floats:
-        """The length of each piece; of cubics to about 1e-9 of it."""
+        """The length of each segment; of cubics to about 1e-9 of it."""
         from voronoi_tiles.paths.quadratics import quadratic_lengths
 
         lengths = np.abs(self.end - self.start)
@@ -208,7 +208,7 @@ class Paths:
     def bounds(self) -> tuple[float, float, float, float]:
         """The smallest upright rectangle around the paths: least x, least y, greatest x, greatest y.
 
-        Raises ValueError where there is no piece.
+        Raises ValueError where there is no segment.
         """
         if not len(self.start):
             raise ValueError("no path has no bounds")

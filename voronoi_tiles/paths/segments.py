@@ -1,4 +1,4 @@
-"""Single pieces of paths: points and directions on them, parts of them, boxes around them, distances from them."""
+"""Single segments of paths: points and directions on them, parts of them, boxes around them, distances from them."""
 
 from __future__ import annotations
 
@@ -13,20 +13,20 @@ from voronoi_tiles.paths.paths import ARC, CUBIC, QUAD, Paths
 _AXES: Final = np.array([1, 1j, -1, -1j])
 
 
-def point_at(paths: Paths, pieces: Ints, t: Floats) -> Complexes:
-    """The point at t of each piece, 0 <= t <= 1: a Bezier parameter, on ARC the share of the angle.
+def point_at(paths: Paths, segments: Ints, t: Floats) -> Complexes:
+    """The point at t of each segment, 0 <= t <= 1: a Bezier parameter, on ARC the share of the angle.
 
-    The ends have the bits of the paths' own. `pieces` and `t` have one shape. Raises ValueError for CUBIC.
+    The ends have the bits of the paths' own. `segments` and `t` have one shape. Raises ValueError for CUBIC.
     """
-    _refuse_cubics(paths, pieces)
-    start, end = paths.start[pieces], paths.end[pieces]
+    _refuse_cubics(paths, segments)
+    start, end = paths.start[segments], paths.end[segments]
     chord = end - start
     # From the nearer end: an error in proportion to what is left, and the end's own bits at the end.
     points = np.where(t <= 0.5, start + chord * t, end - chord * (1 - t))
-    bent = paths.kind[pieces] == QUAD
-    points[bent] = bezier_at(paths, pieces[bent], t[bent])
-    arcs = paths.kind[pieces] == ARC
-    half = 2.0 * np.arctan(paths.bulges()[pieces[arcs]])
+    bent = paths.kind[segments] == QUAD
+    points[bent] = bezier_at(paths, segments[bent], t[bent])
+    arcs = paths.kind[segments] == ARC
+    half = 2.0 * np.arctan(paths.bulges()[segments[arcs]])
     share = t[arcs]
     s = np.where(share <= 0.5, share, 1 - share)
     v = s * np.sinc(s * half / np.pi) / np.sinc(half / np.pi)
@@ -39,48 +39,48 @@ def point_at(paths: Paths, pieces: Ints, t: Floats) -> Complexes:
     return points
 
 
-def tangent_at(paths: Paths, pieces: Ints, t: Floats) -> Complexes:
-    """The unit direction of each piece at t, 0 <= t <= 1; see `point_at`.
+def tangent_at(paths: Paths, segments: Ints, t: Floats) -> Complexes:
+    """The unit direction of each segment at t, 0 <= t <= 1; see `point_at`.
 
     Where a QUAD has a cusp, because its control point is one of its ends, the limit is taken. Raises ValueError for
     CUBIC.
     """
-    _refuse_cubics(paths, pieces)
-    start, end = paths.start[pieces], paths.end[pieces]
+    _refuse_cubics(paths, segments)
+    start, end = paths.start[segments], paths.end[segments]
     along = end - start
-    bent = np.flatnonzero(paths.kind[pieces] == QUAD)
-    control = paths.control[pieces[bent], 0]
+    bent = np.flatnonzero(paths.kind[segments] == QUAD)
+    control = paths.control[segments[bent], 0]
     speed = (control - start[bent]) * (1 - t[bent]) + (end[bent] - control) * t[bent]
     along[bent] = np.where(speed == 0, along[bent], speed)
-    half = 2.0 * np.arctan(paths.bulges()[pieces])
+    half = 2.0 * np.arctan(paths.bulges()[segments])
     along = along * np.exp(1j * half * (2 * t - 1))
     return np.asarray(along / np.abs(along), np.complex128)
 
 
 def split(
     paths: Paths,
-    pieces: Ints,
+    segments: Ints,
     t0: Floats,
     t1: Floats,
     start: Complexes | None = None,
     end: Complexes | None = None,
 ) -> Paths:
-    """The part from t0 to t1 of each piece, as an open path of one piece; exact for LINE, QUAD and ARC.
+    """The part from t0 to t1 of each segment, as an open path of one segment; exact for LINE, QUAD and ARC.
 
     `start` and `end` are where the parts begin and end, to share the bits of a point with another part; without
     them they are `point_at`. Raises ValueError for CUBIC.
     """
-    begin = point_at(paths, pieces, t0) if start is None else start
-    stop = point_at(paths, pieces, t1) if end is None else end
-    kind = paths.kind[pieces]
-    control = np.zeros((len(pieces), 2), np.complex128)
+    begin = point_at(paths, segments, t0) if start is None else start
+    stop = point_at(paths, segments, t1) if end is None else end
+    kind = paths.kind[segments]
+    control = np.zeros((len(segments), 2), np.complex128)
     bent = np.flatnonzero(kind == QUAD)
-    a, b, c = paths.start[pieces[bent]], paths.control[pieces[bent], 0], paths.end[pieces[bent]]
+    a, b, c = paths.start[segments[bent]], paths.control[segments[bent], 0], paths.end[segments[bent]]
     u, v = t0[bent], t1[bent]
     control[bent, 0] = a * (1 - u) * (1 - v) + b * (u * (1 - v) + v * (1 - u)) + c * u * v
     arcs = np.flatnonzero(kind == ARC)
-    control[arcs, 0] = point_at(paths, pieces[arcs], (t0[arcs] + t1[arcs]) / 2)
-    n = len(pieces)
+    control[arcs, 0] = point_at(paths, segments[arcs], (t0[arcs] + t1[arcs]) / 2)
+    n = len(segments)
     return Paths(
         start=np.asarray(begin, np.complex128),
         end=np.asarray(stop, np.complex128),
@@ -92,7 +92,7 @@ def split(
 
 
 def boxes(paths: Paths) -> Floats:
-    """The smallest upright rectangle around each piece: least x, least y, greatest x, greatest y, float64 (n, 4).
+    """The smallest upright rectangle around each segment: least x, least y, greatest x, greatest y, float64 (n, 4).
 
     Raises ValueError for CUBIC.
     """
@@ -102,11 +102,11 @@ def boxes(paths: Paths) -> Floats:
     low = np.stack((points.real.min(axis=0), points.imag.min(axis=0)))
     high = np.stack((points.real.max(axis=0), points.imag.max(axis=0)))
 
-    def widen(pieces: Ints, more: Complexes) -> None:
-        """Take points into the boxes; no piece may appear twice."""
+    def widen(segments: Ints, more: Complexes) -> None:
+        """Take points into the boxes; no segment may appear twice."""
         found = np.stack((more.real, more.imag))
-        low[:, pieces] = np.minimum(low[:, pieces], found)
-        high[:, pieces] = np.maximum(high[:, pieces], found)
+        low[:, segments] = np.minimum(low[:, segments], found)
+        high[:, segments] = np.maximum(high[:, segments], found)
 
     bent = np.flatnonzero(paths.kind == QUAD)
     a, b, c = paths.start[bent], paths.control[bent, 0], paths.end[bent]
@@ -127,10 +127,10 @@ def boxes(paths: Paths) -> Floats:
 
 def item_boxes(paths: Paths, items: Ints) -> Floats:
     """The same around each item: item k are the paths from items[k] up to, not including, items[k + 1]."""
-    piece = boxes(paths)
+    each = boxes(paths)
     first = paths.offsets[items[:-1]]
-    low = np.minimum.reduceat(piece[:, :2], first)
-    return np.column_stack((low, np.maximum.reduceat(piece[:, 2:], first)))
+    low = np.minimum.reduceat(each[:, :2], first)
+    return np.column_stack((low, np.maximum.reduceat(each[:, 2:], first)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,14 +148,14 @@ class Circles:
     curvature: Floats
 
     @classmethod
-    def of(cls, paths: Paths, pieces: Ints) -> Self:
+    def of(cls, paths: Paths, segments: Ints) -> Self:
         """The circles of some LINEs and ARCs; what is said about a QUAD is that of its chord."""
-        chord = paths.end[pieces] - paths.start[pieces]
-        half = 2.0 * np.arctan(paths.bulges()[pieces])
+        chord = paths.end[segments] - paths.start[segments]
+        half = 2.0 * np.arctan(paths.bulges()[segments])
         length = np.abs(chord)
         length = np.where(length == 0, 1.0, length)
         normal = 1j * chord / length * np.exp(-1j * half)
-        return cls(paths.start[pieces], chord, half, normal, 2.0 * np.sin(half) / length)
+        return cls(paths.start[segments], chord, half, normal, 2.0 * np.sin(half) / length)
 
     def take(self, places: Ints) -> Circles:
         """Those at these places."""
@@ -169,7 +169,7 @@ class Circles:
         return np.asarray(self.curvature * np.abs(w) ** 2 / 2 - (w * self.normal.conj()).real, np.float64)
 
     def distance(self, points: Complexes) -> Floats:
-        """The distance of each point from the piece of the same place; 0 or more."""
+        """The distance of each point from the segment of the same place; 0 or more."""
         ray = self.curvature * (points - self.start) - self.normal
         # How far from the centre, in radii. Its square is 1 + 2 curvature off, whose root would lose half the digits.
         reach = np.abs(ray)
@@ -182,7 +182,7 @@ class Circles:
 
 
 def candidate_pairs(first: Paths, second: Paths, margin: float = 0.0) -> tuple[Ints, Ints]:
-    """The pairs of a piece of `first` and one of `second` whose boxes come within `margin` of each other.
+    """The pairs of a segment of `first` and one of `second` whose boxes come within `margin` of each other.
 
     In the order of the first, then of the second. Raises ValueError for CUBIC.
     """
@@ -198,9 +198,9 @@ def candidate_pairs(first: Paths, second: Paths, margin: float = 0.0) -> tuple[I
     return i[order].astype(np.intp), j[order].astype(np.intp)
 
 
-def bezier_at(paths: Paths, pieces: Ints, t: Floats) -> Complexes:
+def bezier_at(paths: Paths, segments: Ints, t: Floats) -> Complexes:
     """The points of QUADs."""
-    a, b, c = paths.start[pieces], paths.control[pieces, 0], paths.end[pieces]
+    a, b, c = paths.start[segments], paths.control[segments, 0], paths.end[segments]
     s = 1 - t
     return np.asarray(
         np.where(t <= 0.5, a + t * (2 * s * (b - a) + t * (c - a)), c + s * (2 * t * (b - c) + s * (a - c))),
@@ -227,6 +227,6 @@ def chord_share(v: Complexes, half: Floats) -> Floats:
         return np.where(second, 1.0, ratio) / (1 + ratio)
 
 
-def _refuse_cubics(paths: Paths, pieces: Ints) -> None:
-    if (paths.kind[pieces] == CUBIC).any():
+def _refuse_cubics(paths: Paths, segments: Ints) -> None:
+    if (paths.kind[segments] == CUBIC).any():
         raise ValueError("cubic curves have no place here: approximate them by lines, arcs or quadratic curves")

@@ -12,31 +12,31 @@ from voronoi_tiles.base.arrays import Bools, Complexes, Ints
 from voronoi_tiles.paths.paths import ARC, CUBIC, QUAD, Paths
 
 _AT_ONCE = 1 << 20
-"""Pairs of a piece and a point that are looked at in one go: tens of megabytes."""
+"""Pairs of a segment and a point that are looked at in one go: tens of megabytes."""
 
 
 def winding(paths: Paths, points: Complexes) -> Ints:
     """The winding number of closed paths about points, > 0 counter-clockwise: intp, one for each point.
 
-    On a path it is that of one side or the other. Raises ValueError for CUBIC pieces.
+    On a path it is that of one side or the other. Raises ValueError for CUBIC segments.
     """
     return np.asarray(item_winding(paths, np.array([0, len(paths.start)]), points)[0], np.intp)
 
 
-def item_winding(paths: Paths, pieces: Ints, points: Complexes) -> Ints:
-    """The winding numbers of parts of paths about points: those of part k are pieces[k] up to pieces[k + 1] (k x n)."""
-    result = np.zeros((len(pieces) - 1, len(points)), np.intp)
+def item_winding(paths: Paths, offsets: Ints, points: Complexes) -> Ints:
+    """The winding numbers (k, n) of parts of paths about points: part k is the segments from offsets[k] on."""
+    result = np.zeros((len(offsets) - 1, len(points)), np.intp)
     if not len(paths.start):
         return result
     size = max(1, _AT_ONCE // max(1, len(paths.start)))
     for first in range(0, len(points), size):
         turns = _turns(paths, points[first : first + size])
-        result[:, first : first + size] = np.add.reduceat(turns, pieces[:-1], axis=0)
+        result[:, first : first + size] = np.add.reduceat(turns, offsets[:-1], axis=0)
     return result
 
 
 def _turns(paths: Paths, points: Complexes) -> Ints:
-    """What each piece adds to the winding number about each point."""
+    """What each segment adds to the winding number about each point."""
     if (paths.kind == CUBIC).any():
         raise ValueError("cubic curves have to be replaced before points are looked for inside them")
     a, b = paths.start[:, None], paths.end[:, None]

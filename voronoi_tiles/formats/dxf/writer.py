@@ -35,7 +35,7 @@ _TAKES: Final[dict[Curves, tuple[int, ...]]] = {
     "spline": (LINE, QUAD, CUBIC),
     "polyline": (LINE,),
 }
-_BLOCK: Final = 1 << 16  # pieces that are held as text at a time
+_BLOCK: Final = 1 << 16  # segments that are held as text at a time
 _NAME_MAX: Final = 31  # R12 takes no longer names of layers
 _COMMENT_MAX: Final = 200  # old readers take lines of 255 characters
 
@@ -47,16 +47,16 @@ _NO_GUID: Final = "{00000000-0000-0000-0000-000000000000}"
 def write_dxf(drawing: Drawing, file: BinaryIO, *, curves: Curves, accuracy: float) -> None:
     """Write a drawing as DXF in millimetres, y up, an entity for each path, in the order of the drawing.
 
-    "arc": R2000, an LWPOLYLINE with bulges for each path of LINE and ARC pieces. "spline": R2000, a SPLINE of degree 3
-    in Bezier form for each path of LINE, QUAD and CUBIC pieces, exact; a path of nothing but LINE is an LWPOLYLINE, as
-    exact, a third as long, and read by every program. "polyline": R12, a POLYLINE for each path of LINE pieces.
+    "arc": R2000, an LWPOLYLINE with bulges for each path of LINE and ARC. "spline": R2000, a SPLINE of degree 3 in
+    Bezier form for each path of LINE, QUAD and CUBIC, exact; a path of nothing but LINE is an LWPOLYLINE, as exact, a
+    third as long, and read by every program. "polyline": R12, a POLYLINE for each path of LINE.
     Closed paths have the closed flag; LibreCAD 2.2 draws closed splines millimetres off, so "arc" is for it. Layers
     have the drawing's names in upper case, without what DXF does not take in a name, and the nearest colour of the
     AutoCAD index; that a layer is filled cannot be said. Extents and limits are the bounds of all paths, the page's
     where there is none. The recipe, with `curves` and `accuracy`, stands as JSON in the comments at the top.
     Coordinates are rounded to GRID_MM. The same drawing gives the same bytes.
 
-    `accuracy` (millimetres) is what the pieces keep to. Raises ValueError for pieces of another kind, and where
+    `accuracy` (millimetres) is what the segments keep to. Raises ValueError for segments of another kind, and where
     `accuracy` is finer than the rounding.
     """
     if curves not in _TAKES:
@@ -79,7 +79,7 @@ def write_dxf(drawing: Drawing, file: BinaryIO, *, curves: Curves, accuracy: flo
 
 
 def _refuse_others(layer: Layer, curves: Curves) -> None:
-    """Raise ValueError where a layer has pieces that the entities cannot hold."""
+    """Raise ValueError where a layer has segments that the entities cannot hold."""
     others = set(np.unique(layer.paths.kind).tolist()) - set(_TAKES[curves])
     if others:
         takes = " and ".join(_NAMES[kind] for kind in _TAKES[curves])
@@ -91,7 +91,7 @@ def _refuse_others(layer: Layer, curves: Curves) -> None:
 
 
 def _blocks(paths: Paths) -> Iterator[Paths]:
-    """The paths that have pieces, in blocks of bounded size."""
+    """The paths that have segments, in blocks of bounded size."""
     kept = np.flatnonzero(paths.counts > 0)
     block = np.cumsum(paths.counts[kept]) // _BLOCK
     for part in np.split(kept, np.flatnonzero(np.diff(block)) + 1):
@@ -110,7 +110,7 @@ def _lwpolylines(paths: Paths, layer: str) -> list[str]:  # noqa: ARG001 - the s
     points, first, last = _vertices(paths)
     rows = [f" 10\n{x}\n 20\n{y}\n" for x, y in zip(_reals(points.real), _reals(points.imag), strict=True)]
     bulges, bent = paths.bulges(), np.flatnonzero(paths.kind == ARC)
-    # Vertices of open paths, one more than their pieces, push the later ones on.
+    # Vertices of open paths, one more than their segments, push the later ones on.
     places = bent + (np.cumsum(~paths.closed) - ~paths.closed)[paths.owner[bent]]
     for place, bulge in zip(places.tolist(), _figures(bulges[bent]), strict=True):
         rows[place] += f" 42\n{bulge}\n"
@@ -130,7 +130,7 @@ def _splines(paths: Paths, layer: str) -> list[str]:
 
 
 def _curved_splines(paths: Paths) -> list[str]:
-    """SPLINE entities without their heads: the cubic pieces with knots 0 0 0 0 1 1 1 2 2 2 ... n n n n."""
+    """SPLINE entities without their heads: the cubic segments with knots 0 0 0 0 1 1 1 2 2 2 ... n n n n."""
     cubics = all_cubic(paths)
     points = np.stack((cubics.start, *cubics.control.T), axis=1).ravel()
     ends = cubics.end[cubics.offsets[1:] - 1]
@@ -161,7 +161,7 @@ _BODIES: Final = {"arc": _lwpolylines, "spline": _splines, "polyline": _polyline
 
 
 def _vertices(paths: Paths) -> tuple[Complexes, Ints, Ints]:
-    """The starts of all pieces, and the end of the last one of an open path.
+    """The starts of all segments, and the end of the last one of an open path.
 
     Path k has those from `first[k]` up to, not including, `last[k]`.
     """

@@ -38,7 +38,7 @@ def path_data(paths: Paths, *, top: float = 0.0, number: Callable[[float], str] 
     """Write paths as one text: M, L, Q, C, A and Z.
 
     y is turned about `top`, the ordinate that becomes SVG's 0. `number` writes a coordinate; by default it reads back
-    as the same float. A last straight piece of a closed path is drawn by Z.
+    as the same float. A last straight segment of a closed path is drawn by Z.
     """
     points = np.column_stack((paths.start, paths.control, paths.end))
     x, y = points.real.tolist(), (top - points.imag).tolist()
@@ -73,13 +73,13 @@ def path_data(paths: Paths, *, top: float = 0.0, number: Callable[[float], str] 
 def path_texts(paths: Paths, items: Ints, height: float) -> Iterator[bytes]:
     """Write the path data of every item: those paths from items[k] up to, not including, items[k + 1].
 
-    y is turned about a page of this height. A last straight piece of a closed path is drawn by Z. Raises ValueError for
-    circular arcs, which path data hold only as elliptical ones: cutters' readers do not agree on these.
+    y is turned about a page of this height. A last straight segment of a closed path is drawn by Z. Raises ValueError
+    for circular arcs, which path data hold only as elliptical ones: cutters' readers do not agree on these.
     """
     if (paths.kind == ARC).any():
         raise ValueError("circular arcs have to become cubic curves before they are written as path data")
     sizes = paths.offsets[items[1:]] - paths.offsets[items[:-1]]
-    # Three pairs a piece at most, and one more at the beginning of a path.
+    # Three pairs a segment at most, and one more at the beginning of a path.
     weight = np.cumsum(3 * sizes + np.diff(items))
     first = 0
     while first < len(sizes):
