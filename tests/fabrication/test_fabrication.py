@@ -152,6 +152,25 @@ def test_curves_are_within_the_accuracy(name: str, edges: str, curves: str) -> N
     assert counts[1] < counts[0] if curves in {"arc", "polyline"} else counts[1] == counts[0]
 
 
+@pytest.mark.parametrize("curves", ["arc", "polyline"])
+def test_a_drawn_border_is_within_the_accuracy(tmp_path: Path, curves: str) -> None:
+    """Of the waves that bound a sheet, as they were drawn: the errors of all that is done to them add up to no more."""
+    corners = 10 + 10j + 60 * np.array([0, 1, 1 + 1j, 1j])
+    t, waves, data = np.linspace(0.0, 1.0, 2000), [], f"M {corners[0].real} {corners[0].imag}"
+    for a, d in zip(corners, np.roll(corners, -1), strict=True):
+        b, c = a + (d - a) * (0.4 + 0.4j), a + (d - a) * (0.6 - 0.4j)
+        data += f" C {b.real} {b.imag} {c.real} {c.imag} {d.real} {d.imag}"
+        waves.append((1 - t) ** 3 * a + 3 * t * (1 - t) ** 2 * b + 3 * t * t * (1 - t) * c + t**3 * d)
+    sheet = tmp_path / "waves.svg"
+    sheet.write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="80mm" height="80mm" viewBox="0 0 80 80">'
+        f'<path d="{data} Z" fill="none" stroke="#000"/></svg>'
+    )
+    drawn = np.concatenate(waves)
+    paths = cuts(made("p1-leaf", sheet=str(sheet), fit="clip", curves=curves, accuracy=0.05))
+    assert farthest(shapely.points(drawn.real, 80.0 - drawn.imag), shapely.multilinestrings(lines_of(paths))) <= 0.0502
+
+
 def svg_lines(data: bytes) -> list[Any]:
     """The lines of an SVG file by svgelements, in millimetres, y up."""
     document = SVG.parse(io.BytesIO(data), ppi=25.4)

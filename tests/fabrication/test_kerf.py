@@ -12,6 +12,7 @@ from helpers.cutting import contour_shapes, cuts, dense, exact_shape, farthest, 
 from helpers.examples import each_example, tiling
 
 from voronoi_tiles.fabrication import Job, JobError
+from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.arc_fitting import curve_fit
 from voronoi_tiles.fabrication.layout import lay_out
 from voronoi_tiles.fabrication.sheets import read_sheet
@@ -25,8 +26,9 @@ ACCURACY = 0.005
 
 def contours(tiles: Tiling, job: Job) -> list[tuple[int, Paths]]:
     """Each piece's site and rings where its tile lies in the plane, the pulling undone."""
-    fit, _ = curve_fit(job, "exact", tiles.design.unit_mm)
-    layout = lay_out(tiles.design, tiles.tessellation, job, read_sheet(job), fit)
+    budget = AccuracyBudget.of(job, "exact")
+    fit = curve_fit(job, "exact", budget, tiles.design.unit_mm)
+    layout = lay_out(tiles.design, tiles.tessellation, job, read_sheet(job, budget), budget, fit)
     found = layout.contours
     result = []
     for k, copy in enumerate(found.copy.tolist()):

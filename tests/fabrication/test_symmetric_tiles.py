@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-from helpers.sheets import NAMES, tiling
+from helpers.examples import NAMES, tiling
 
 from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.arc_fitting import curve_fit
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.layout import Contours, Layout, lay_out
@@ -36,8 +37,9 @@ in decimals: some, as 11.547 in a hexagonal cell, have it to 1e-9 of the cell an
 def laid_out(name: str, **options: Any) -> Layout:
     """Lay out a design's tiles."""
     tiles, job = tiling(name), Job(**options)
-    fit, _ = curve_fit(job, "arc", tiles.design.unit_mm)
-    return lay_out(tiles.design, tiles.tessellation, job, read_sheet(job), fit)
+    budget = AccuracyBudget.of(job, "arc")
+    fit = curve_fit(job, "arc", budget, tiles.design.unit_mm)
+    return lay_out(tiles.design, tiles.tessellation, job, read_sheet(job, budget), budget, fit)
 
 
 def page_map(layout: Layout, motion: Motion, place: complex) -> Callable[[Complexes], Complexes]:

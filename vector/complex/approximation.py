@@ -12,7 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from voronoi_tiles.paths.paths import LINE, Paths
-from voronoi_tiles.paths.symmetric_fit import doubled, first_half, moved
+from voronoi_tiles.paths.symmetric_halves import doubled, first_half, moved
 from voronoi_tiles.vector.complex.period import Period
 from voronoi_tiles.vector.complex.quotient import Quotient
 

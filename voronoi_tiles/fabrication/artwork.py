@@ -13,7 +13,7 @@ from voronoi_tiles.base.arrays import Bools, Complexes, Ints
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import unit_at
 from voronoi_tiles.designs.design import Art
-from voronoi_tiles.fabrication.arc_fitting import side_arcs
+from voronoi_tiles.fabrication.arc_fitting import edge_arcs
 from voronoi_tiles.fabrication.clipping import OUTSIDE, Strands, inner_runs, outer_strands
 from voronoi_tiles.fabrication.contours import clipped_pieces
 from voronoi_tiles.fabrication.job import SHEET_MAX
@@ -99,8 +99,8 @@ def draw_art(layout: Layout, shown: Bools, *, fills: bool) -> Works:
         _refuse_excess(drawn, layout, site, art)
         try:
             if job.art == "clip":
-                accuracy = job.accuracy / 2 / design.unit_mm
-                outline = side_arcs(layout.outline(site).paths, accuracy=accuracy, absorbed=0.0)
+                accuracy = layout.budget.arcs / design.unit_mm
+                outline = edge_arcs(layout.outline(site).paths, accuracy=accuracy, absorbed=0.0)
                 drawn = drawn.clipped(Region(outline), accuracy)
             parts += _copies_of(drawn, layout, site, shown)
         except ValueError as error:
@@ -222,7 +222,7 @@ def _copies_of(drawn: Works, layout: Layout, site: int, shown: Bools) -> list[Wo
         if layout.region is not None:
             # On a tile that the sheet's edge cuts, art ends there too.
             at_edge = (image.moved(1.0, shift) for shift in place[~whole].tolist())
-            result += [part.clipped(layout.region, layout.job.accuracy / 2) for part in at_edge]
+            result += [part.clipped(layout.region, layout.budget.arcs) for part in at_edge]
     return result
 
 

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.maps import Isometry
-from voronoi_tiles.fabrication.kerf import Dressing
+from voronoi_tiles.fabrication.kerf import Compensation
 from voronoi_tiles.paths.paths import Paths
-from voronoi_tiles.paths.symmetric_fit import moved
+from voronoi_tiles.paths.symmetric_halves import moved
 from voronoi_tiles.vector.complex.period import Period
-from voronoi_tiles.vector.copies import Placed
 from voronoi_tiles.vector.motions import Action, Motion, compose, inverse
 
 
@@ -47,9 +45,8 @@ class DressedTiles:
     """The rings of a period's tiles on the page, as they are cut; the tiles of one site are images of the first."""
 
     period: Period
-    placed: Sequence[Placed]
     page: PageMap
-    dressing: Dressing
+    compensation: Compensation
     _rings: dict[int, Paths] = field(default_factory=dict)
 
     def moved(self, shift: complex) -> DressedTiles:
@@ -60,19 +57,12 @@ class DressedTiles:
     def rings(self, tile: int) -> Paths:
         """The rings of a tile where it stands in the period. Raises JobError where it does not survive."""
         if tile not in self._rings:
-            site = int(self.period.site[tile])
-            first = int(np.flatnonzero(self.period.site == site)[0])
-            here = self.period.motion[first]
+            first = int(np.flatnonzero(self.period.site == self.period.site[tile])[0])
             if tile == first:
                 rings, items = self.period.own_outlines
-                own = rings.take(np.arange(items[tile], items[tile + 1]))
-                stabilizer = self.placed[site].stabilizer[1:]
-                symmetry = [
-                    self.page.isometry(compose(compose(here, element), inverse(here))) for element in stabilizer
-                ]
-                self._rings[tile] = self.dressing.tile(own, symmetry)
+                self._rings[tile] = self.compensation.tile(rings.take(np.arange(items[tile], items[tile + 1])))
             else:
-                image = self.page.isometry(compose(self.period.motion[tile], inverse(here)))
+                image = self.page.isometry(compose(self.period.motion[tile], inverse(self.period.motion[first])))
                 rings = moved(self.rings(first), image)
                 # The material stays on the left.
                 self._rings[tile] = rings.reversed() if image.conj else rings

@@ -133,7 +133,7 @@ class Job:
         self._check_edges()
 
     @property
-    def dressed(self) -> bool:
+    def moves_contours(self) -> bool:
         """Whether contours differ from the tiles' outlines: by half a kerf, or by round corners."""
         return self.kerf > 0.0 or self.fillet > 0.0
 

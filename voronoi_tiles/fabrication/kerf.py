@@ -2,24 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from itertools import pairwise
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Ints
-from voronoi_tiles.base.maps import Isometry
-from voronoi_tiles.fabrication.arc_fitting import fewer_arcs
+from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.contours import ClosedPieces
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.offset import Offset, OffsetError, offset, round_corners
 from voronoi_tiles.paths.paths import Paths
-from voronoi_tiles.paths.symmetric_fit import fitted_symmetrically
+from voronoi_tiles.paths.short_segments import without_short_segments
 from voronoi_tiles.paths.winding import item_winding
-
-_SAME_NODE_MM = 1e-7
-"""How far a node may be from the image of another one that symmetry maps there; millimetres, far above rounding."""
 
 _LOSSES = {
     "ring": "a piece vanishes",
@@ -29,41 +25,34 @@ _LOSSES = {
 }
 
 
-class Dressing:
-    """Applies the kerf and the fillet of a job; `losses` says in sentences what pieces have lost so far."""
+class Compensation:
+    """Applies the fillet and the kerf of a job to contours; `losses` says in sentences what pieces have lost so far."""
 
-    def __init__(self, job: Job, *, refit: bool) -> None:
-        """Where `refit`, the many short arcs that kerf and fillet leave become the fewest."""
+    def __init__(self, job: Job, budget: AccuracyBudget) -> None:
         self.job = job
-        self.refit = refit
+        self.budget = budget
         self.losses: list[str] = []
 
-    def tile(self, rings: Paths, symmetry: Sequence[Isometry]) -> Paths:
-        """Apply them to a whole tile, which must keep all its rings. Raises JobError where it does not.
-
-        `symmetry` are the isometries that map the tile onto itself, without the identity.
-        """
-        dressed = self._dress(rings, whole=True)
-        if not (self.job.dressed and self.refit):
-            return dressed
-        return fitted_symmetrically(dressed, symmetry, self._refitted, close=_SAME_NODE_MM)
+    def tile(self, rings: Paths) -> Paths:
+        """Apply them to a whole tile, which must keep all its rings. Raises JobError where it does not."""
+        return self._compensated(rings, whole=True)
 
     def pieces(self, pieces: ClosedPieces) -> tuple[ClosedPieces, Ints]:
         """Apply fillet and kerf to pieces one by one; also gives of which of them each of the pieces now is."""
-        if not self.job.dressed:
+        if not self.job.moves_contours:
             return pieces, np.arange(len(pieces.tile))
         done: list[Paths] = []
         of: list[int] = []
         for k, (a, b) in enumerate(pairwise(pieces.items.tolist())):
-            parts = _parts(self._dress(pieces.paths.take(np.arange(a, b)), whole=False))
+            parts = _parts(self._compensated(pieces.paths.take(np.arange(a, b)), whole=False))
             done += parts
             of += [k] * len(parts)
         items = np.append(0, np.cumsum([len(rings) for rings in done])).astype(np.intp)
         owner = np.array(of, np.intp)
-        return ClosedPieces(self._refitted(Paths.concatenate(done)), items, pieces.tile[owner]), owner
+        return ClosedPieces(Paths.concatenate(done), items, pieces.tile[owner]), owner
 
-    def _dress(self, rings: Paths, *, whole: bool) -> Paths:
-        """Round the corners of a piece and let its contour keep half the kerf.
+    def _compensated(self, rings: Paths, *, whole: bool) -> Paths:
+        """The rings of a piece with round corners, half the kerf outside of it, and without short segments.
 
         A tile that is `whole` must leave all its rings; of a part of one, or of a frame, less may be left, or nothing.
         """
@@ -72,7 +61,7 @@ class Dressing:
             rings = self._kept(round_corners, rings, job.fillet, "fillet", whole=whole)
         if job.kerf > 0.0 and len(rings):
             rings = self._kept(offset, rings, job.kerf / 2, "kerf", whole=whole)
-        return rings
+        return without_short_segments(rings, self.budget.short)
 
     def _kept(
         self, change: Callable[[Paths, float], Offset], rings: Paths, size: float, name: str, *, whole: bool
@@ -95,10 +84,6 @@ class Dressing:
                 )
             self.losses.append(f"--{name} {given:g}mm: {_LOSSES[lost.kind]} at {place} of the page")
         return result.paths
-
-    def _refitted(self, rings: Paths) -> Paths:
-        """Replace the many short arcs that kerf and fillet leave by the fewest within what is left of the accuracy."""
-        return fewer_arcs(rings, self.job.accuracy) if self.job.dressed and self.refit else rings
 
 
 def _parts(rings: Paths) -> list[Paths]:

@@ -12,12 +12,13 @@ import numpy as np
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
 from voronoi_tiles.base.maps import unit_at
 from voronoi_tiles.designs.design import Design
+from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.best_offset import best_shift
 from voronoi_tiles.fabrication.clipping import Strands, clipped_strands, whole_strands
 from voronoi_tiles.fabrication.contours import ClosedPieces, clipped_pieces, frame_pieces
 from voronoi_tiles.fabrication.dressed_tiles import DressedTiles, PageMap
 from voronoi_tiles.fabrication.job import Job, JobError
-from voronoi_tiles.fabrication.kerf import Dressing
+from voronoi_tiles.fabrication.kerf import Compensation
 from voronoi_tiles.fabrication.region import Region
 from voronoi_tiles.fabrication.spacing import UNSTRETCHED, Stretch, pulled_apart, spread
 from voronoi_tiles.fabrication.tile_placement import TilePlacement, place_tiles
@@ -95,6 +96,7 @@ class Layout:
     tessellation: Tessellation
     job: Job
     sheet: Sheet
+    budget: AccuracyBudget
     tiles: DressedTiles
     spaced: Period
     placement: TilePlacement
@@ -151,7 +153,7 @@ class Layout:
         copy, area = whole, self.tile_areas[self.copies.tile[whole]]
         rest = self.rest()
         if rest is not None:
-            done, of = self.tiles.dressing.pieces(rest)
+            done, of = self.tiles.compensation.pieces(rest)
             # What fillets cut in two shares the area that it had.
             left = piece_areas(done) if len(of) else np.zeros(0)
             share = left / np.bincount(of, left, len(rest.tile))[of]
@@ -182,7 +184,7 @@ class Layout:
     def _whole(self, copies: Ints) -> tuple[Paths, Ints]:
         """The rings of whole tiles, and where each one's begin."""
         tile = self.copies.tile[copies]
-        if not self.job.dressed and not self.copies.moved_by.any():
+        if not self.job.moves_contours and not self.copies.moved_by.any():
             return self.period.outlines(tile, self.copies.step[copies])
         bases = self.tiles.all_rings()
         rings = Paths.concatenate(bases)
@@ -198,11 +200,10 @@ def lay_out(
     tessellation: Tessellation,
     job: Job,
     sheet: Sheet,
+    budget: AccuracyBudget,
     fit: Callable[[Paths], Paths] | None,
-    *,
-    refit: bool = True,
 ) -> Layout:
-    """Place the tiles of a job; `fit` replaces the exact curves (in the design's units), `refit` what kerf leaves.
+    """Place the tiles of a job; `fit` replaces the exact curves (in the design's units).
 
     Raises JobError where the sheet holds no tile, or too many, or a tile does not survive kerf or fillet.
     """
@@ -210,21 +211,22 @@ def lay_out(
     shift = 0j if region is None else sheet.centre + (job.offset or 0j)
     page = PageMap(tessellation.action, design.unit_mm * unit_at(job.rotate), shift)
     period = tessellation.period if fit is None else approximated(tessellation.period, tessellation.quotient, fit)
-    tiles = DressedTiles(period.placed(page.factor, page.shift), tessellation.placed, page, Dressing(job, refit=refit))
+    tiles = DressedTiles(period.placed(page.factor, page.shift), page, Compensation(job, budget))
     if region is None:
         placement = _one_of_each(tiles.period, tessellation.placed)
         return Layout(
-            design, tessellation, job, sheet, tiles, tiles.period, placement, _in_a_row(tiles, placement, job)
+            design, tessellation, job, sheet, budget, tiles, tiles.period, placement, _in_a_row(tiles, placement, job)
         )
     _refuse_crowd(tiles.period, region)
-    stretch = UNSTRETCHED if job.apart is None else _stretch(tiles, job.apart, job.accuracy)
+    stretch = UNSTRETCHED if job.apart is None else _stretch(tiles, job.apart, budget.measured)
     field = _inset(region, FRAME_MM) if job.fit == "frame" else region
     spaced = _spaced(tiles, sheet, stretch)
     if job.offset is None and job.fit != "clip":
         tiles = tiles.moved(stretch.inverse(best_shift(spaced, field)))
         spaced = _spaced(tiles, sheet, stretch)
     placement = _placement(spaced, field, job)
-    return Layout(design, tessellation, job, sheet, tiles, spaced, placement, _pulled(tiles, placement, sheet, stretch))
+    copies = _pulled(tiles, placement, sheet, stretch)
+    return Layout(design, tessellation, job, sheet, budget, tiles, spaced, placement, copies)
 
 
 def _refuse_crowd(period: Period, region: Region) -> None:
@@ -248,11 +250,10 @@ def _spaced(tiles: DressedTiles, sheet: Sheet, stretch: Stretch) -> Period:
 
 
 def _stretch(tiles: DressedTiles, apart: float, accuracy: float) -> Stretch:
-    """How far the layout is spread for a gap."""
-    fine = accuracy / 8
-    contours = [to_lines(rings, accuracy=fine) for rings in tiles.all_rings()]
+    """How far the layout is spread for a gap, measured by chords within an accuracy."""
+    contours = [to_lines(rings, accuracy=accuracy) for rings in tiles.all_rings()]
     try:
-        return spread(contours, tiles.centres(), tiles.period.basis, apart + 2 * fine)
+        return spread(contours, tiles.centres(), tiles.period.basis, apart + 2 * accuracy)
     except ValueError as error:
         raise JobError(str(error), remedy="Use --edges once, or leave --sheet out: pieces lie in a row.") from error
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, ranges
 from voronoi_tiles.designs.design import Design
+from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.arc_fitting import curve_fit
 from voronoi_tiles.fabrication.cutting import Cut, cut_once, cut_pieces, toured
 from voronoi_tiles.fabrication.engraving import Engraving, engrave
@@ -102,15 +103,11 @@ def colour_names(
 
 @dataclass(frozen=True, eq=False)
 class _Plan:
-    """What the drawings of a job share: the tiles on the page, in the curves that a format takes, and their colours.
-
-    `rest` is what approximating the tiles has left of the accuracy; millimetres.
-    """
+    """What the drawings of a job share: the tiles on the page, in the curves that a format takes, and their colours."""
 
     form: Format
     preset: Preset
     curves: str
-    rest: float
     layout: Layout
     colouring: TileColouring
 
@@ -120,9 +117,10 @@ class _Plan:
         preset = load_preset(job.preset)
         preset.require(form)
         curves = _curves(job, preset, form)
-        fit, rest = curve_fit(job, curves, design.unit_mm)
-        layout = lay_out(design, tessellation, job, read_sheet(job), fit, refit=curves != "polyline")
-        return cls(form, preset, curves, rest, layout, colour_tiles(layout))
+        budget = AccuracyBudget.of(job, curves)
+        fit = curve_fit(job, curves, budget, design.unit_mm)
+        layout = lay_out(design, tessellation, job, read_sheet(job, budget), budget, fit)
+        return cls(form, preset, curves, layout, colour_tiles(layout))
 
     def colours(self) -> list[tuple[int, str]]:
         """The colours that the page has pieces of, each with a name for its file; FRAME for the frame."""
@@ -145,9 +143,9 @@ class _Plan:
             pieces = cut_free(layout, colouring)
         shown = _shown(colouring, layout, job)
         engraving = engrave(layout, contours, layout.sheet, shown, fills=preset.fill_engraving)
-        layers = _layers(preset, self.form, job, cuts, engraving, _converter(self.curves, self.rest))
+        layers = _layers(preset, self.form, job, cuts, engraving, _converter(self.curves, layout.budget))
         drawing = _page(layers, layout.sheet, job, layout.design)
-        said = (*layout.tiles.dressing.losses, *engraving.notes, *_doubled(layout, job), *_untabbed(cuts, job))
+        said = (*layout.tiles.compensation.losses, *engraving.notes, *_doubled(layout, job), *_untabbed(cuts, job))
         notes = tuple(dict.fromkeys(said))
         return Product(self.form, drawing, pieces, colouring.count, notes, self.curves, job.accuracy)
 
@@ -204,13 +202,13 @@ def _curves(job: Job, preset: Preset, form: Format) -> str:
     return wanted
 
 
-def _converter(curves: str, accuracy: float) -> Callable[[Paths], Paths]:
+def _converter(curves: str, budget: AccuracyBudget) -> Callable[[Paths], Paths]:
     """What is still to be done to paths so that they hold only what the file takes."""
     match curves:
         case "polyline":
-            return lambda paths: to_lines(paths, accuracy=accuracy)
+            return lambda paths: to_lines(paths, accuracy=budget.chords)
         case "arc":
-            return lambda paths: to_arcs(paths, accuracy=accuracy)
+            return lambda paths: to_arcs(paths, accuracy=budget.arcs)
         case "spline":
             return lambda paths: to_cubics(paths, accuracy=CUBIC_ACCURACY_MM)
         case _:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.job import SHEET_MAX, SHEET_MIN, Job, JobError
 from voronoi_tiles.fabrication.layout import Sheet
 from voronoi_tiles.fabrication.region import Region
@@ -22,7 +23,7 @@ _RINGS_MAX = 1000
 """Most closed paths that bound a sheet; a count. More are a drawing, and no sheet."""
 
 
-def read_sheet(job: Job) -> Sheet:
+def read_sheet(job: Job, budget: AccuracyBudget) -> Sheet:
     """Give the page of a job and the region that is filled, its margin taken off.
 
     Raises JobError where nothing is left of it, DrawingError where a drawing cannot be read.
@@ -39,10 +40,10 @@ def read_sheet(job: Job) -> Sheet:
             )
         region = Region.rectangle(m, m, width - m, height - m)
         return Sheet(width, height, region, complex(width, height) / 2)
-    return _drawn_sheet(job.sheet, job)
+    return _drawn_sheet(job.sheet, job, budget)
 
 
-def _drawn_sheet(name: str, job: Job) -> Sheet:
+def _drawn_sheet(name: str, job: Job, budget: AccuracyBudget) -> Sheet:
     """Read the closed paths of a drawing as a sheet."""
     from voronoi_tiles.formats.reading import read_drawing
 
@@ -57,7 +58,7 @@ def _drawn_sheet(name: str, job: Job) -> Sheet:
     _refuse_size(name, closed)
     if len(closed) > _RINGS_MAX:
         raise JobError(f"{name} has {len(closed)} closed paths", remedy=f"Bound a sheet by {_RINGS_MAX} at most.")
-    border = oriented(to_arcs(closed, accuracy=job.accuracy / 2))
+    border = oriented(to_arcs(closed, accuracy=budget.arcs))
     if not len(border):
         raise JobError(f"the closed paths of {name} enclose nothing, or cross themselves", remedy="Draw one outline.")
     if not simple(border):

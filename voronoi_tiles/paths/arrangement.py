@@ -1,4 +1,4 @@
-"""Pieces cut at all their crossings: the parts between, and the nodes where they begin and end."""
+"""Segments cut at all their crossings: the parts between, and the nodes where they begin and end."""
 
 from __future__ import annotations
 
@@ -15,28 +15,27 @@ from voronoi_tiles.paths.segments import Circles, candidate_pairs, chord_share, 
 
 @dataclass(frozen=True, eq=False)
 class Arrangement:
-    """The parts of pieces between their crossings.
+    """The parts of segments between their crossings.
 
-    Part k runs along the piece `piece[k]` from `t0[k]` to `t1[k]`, from the node `tail[k]` to the node `head[k]`
-    (intp); `nodes` (complex128) are their places. Parts of one piece stand together, in its order. `pairs` (intp,
-    2 x m) are the pieces that meet anywhere but where one follows the other.
+    Part k runs along the segment `segment[k]` from `t0[k]` to `t1[k]`, from the node `tail[k]` to the node `head[k]`
+    (intp); `nodes` (complex128) are their places. Parts of one segment stand together, in its order.
     """
 
-    piece: Ints
+    segment: Ints
     t0: Floats
     t1: Floats
     tail: Ints
     head: Ints
     nodes: Complexes
-    pairs: Ints
 
 
 def arrangement(paths: Paths, tail: Ints, head: Ints, nodes: Complexes, tolerance: float) -> Arrangement:
     """Cut LINEs and ARCs, each a path of its own, at their crossings, and join nodes nearer than `tolerance`.
 
-    Piece k runs from the node `tail[k]` to `head[k]`; `nodes` are the places. A crossing of a piece with the one that
-    follows it is the node between them where the two do not part by `tolerance` in between: the point where two curves
-    touch is known to the root of the rounding only. Pieces that run along each other are cut at each other's ends.
+    Segment k runs from the node `tail[k]` to `head[k]`; `nodes` are the places. A crossing of a segment with the one
+    that follows it is the node between them where the two do not part by `tolerance` in between: the point where two
+    curves touch is known to the root of the rounding only. Segments that run along each other are cut at each other's
+    ends.
     """
     i, j = candidate_pairs(paths, paths, tolerance)
     once = i < j
@@ -49,27 +48,26 @@ def arrangement(paths: Paths, tail: Ints, head: Ints, nodes: Complexes, toleranc
     along = _ends_on(paths, i[met.overlaps], j[met.overlaps], tail, head, nodes, tolerance)
     places = np.concatenate((nodes, met.point[~near]))
     everything = np.arange(len(paths.start))
-    piece = np.concatenate((everything, everything, i[pair], j[pair], along[0]))
+    segment = np.concatenate((everything, everything, i[pair], j[pair], along[0]))
     share = np.concatenate((np.zeros(len(everything)), np.ones(len(everything)), t, u, along[1]))
     node = np.concatenate((tail, head, fresh, fresh, along[2]))
     node = merged(places, tolerance)[node]
     # The ends stay first and last, whatever else has the same share.
-    rank = np.repeat([0, 2, 1], [len(everything), len(everything), len(piece) - 2 * len(everything)])
-    order = np.lexsort((rank, share, piece))
-    piece, share, node = piece[order], share[order], node[order]
-    inner = np.flatnonzero(piece[1:] == piece[:-1])
+    rank = np.repeat([0, 2, 1], [len(everything), len(everything), len(segment) - 2 * len(everything)])
+    order = np.lexsort((rank, share, segment))
+    segment, share, node = segment[order], share[order], node[order]
+    inner = np.flatnonzero(segment[1:] == segment[:-1])
     begin, stop = node[inner], node[inner + 1]
-    length = paths.lengths[piece[inner]] * (share[inner + 1] - share[inner])
+    length = paths.lengths[segment[inner]] * (share[inner + 1] - share[inner])
     real = (begin != stop) | (length > 4 * tolerance)
     inner = inner[real]
     return Arrangement(
-        piece=piece[inner],
+        segment=segment[inner],
         t0=share[inner],
         t1=share[inner + 1],
         tail=begin[real],
         head=stop[real],
         nodes=places,
-        pairs=np.concatenate((np.stack((i[pair], j[pair])), np.stack((i[met.overlaps], j[met.overlaps]))), axis=1),
     )
 
 
@@ -85,7 +83,7 @@ def merged(places: Complexes, tolerance: float) -> Ints:
 def _at_common_node(
     paths: Paths, tail: Ints, head: Ints, nodes: Complexes, i: Ints, j: Ints, points: Complexes, tolerance: float
 ) -> Bools:
-    """Whether pieces that follow each other part by no more than `tolerance` between their node and a crossing."""
+    """Whether segments that follow each other part by no more than `tolerance` between their node and a crossing."""
     circles = Circles.of(paths, np.arange(len(paths.start)))
     near = np.zeros(len(i), np.bool_)
     for first, second in ((i, j), (j, i)):
@@ -103,8 +101,8 @@ def _at_common_node(
 def _ends_on(
     paths: Paths, i: Ints, j: Ints, tail: Ints, head: Ints, nodes: Complexes, tolerance: float
 ) -> tuple[Ints, Floats, Ints]:
-    """The ends of pieces that lie on the other of their pair: the other, the share of its angle there, the node."""
-    piece, share, node = [], [], []
+    """The ends of segments that lie on the other of their pair: the other, the share of its angle there, the node."""
+    segment, share, node = [], [], []
     for on, of in ((i, j), (j, i)):
         circles = Circles.of(paths, on)
         for end in (tail, head):
@@ -112,15 +110,15 @@ def _ends_on(
             x = chord_share((z - circles.start) / circles.chord, circles.half)
             slack = tolerance / np.abs(circles.chord)
             inside = np.flatnonzero((x > slack) & (x < 1 - slack))
-            piece.append(on[inside])
+            segment.append(on[inside])
             share.append(from_chord_share(x[inside], circles.half[inside])[1])
             node.append(end[of[inside]])
-    return np.concatenate(piece), np.concatenate(share), np.concatenate(node)
+    return np.concatenate(segment), np.concatenate(share), np.concatenate(node)
 
 
 def without_doubles(parts: Arrangement, paths: Paths, kept: Bools, tolerance: float) -> Bools:
     """Of `kept` parts that lie on each other one, where they run the same way, and none, where they run both ways."""
-    middle = point_at(paths, parts.piece, (parts.t0 + parts.t1) / 2)
+    middle = point_at(paths, parts.segment, (parts.t0 + parts.t1) / 2)
     low, high = np.minimum(parts.tail, parts.head), np.maximum(parts.tail, parts.head)
     forward = parts.tail <= parts.head
     places = np.flatnonzero(kept)

@@ -7,8 +7,8 @@ import numpy as np
 from voronoi_tiles.base.arrays import Bools, Ints
 from voronoi_tiles.paths.arrangement import Arrangement
 from voronoi_tiles.paths.paths import Paths
-from voronoi_tiles.paths.raw_offset import straightened
 from voronoi_tiles.paths.segments import point_at, split, tangent_at
+from voronoi_tiles.paths.short_segments import straightened
 
 _ROUNDS = 1000
 """Most parts of one dead end; a longer one means that a crossing was missed, which the length of what is left tells."""
@@ -75,9 +75,12 @@ def _paired(parts: Arrangement, paths: Paths, comes: list[int], goes: list[int])
     t_in, t_out = 0.75 * parts.t1 + 0.25 * parts.t0, 0.75 * parts.t0 + 0.25 * parts.t1
     node = parts.nodes[parts.tail[goes[0]]]
     # A chord of a quarter of the part, beside the tangent, tells curves that leave in one direction.
-    back = node - point_at(paths, parts.piece[into], t_in[into])
-    ahead = point_at(paths, parts.piece[out], t_out[out]) - node
-    tangents = tangent_at(paths, parts.piece[into], parts.t1[into]), tangent_at(paths, parts.piece[out], parts.t0[out])
+    back = node - point_at(paths, parts.segment[into], t_in[into])
+    ahead = point_at(paths, parts.segment[out], t_out[out]) - node
+    tangents = (
+        tangent_at(paths, parts.segment[into], parts.t1[into]),
+        tangent_at(paths, parts.segment[out], parts.t0[out]),
+    )
     rough = np.angle(tangents[1][None] / tangents[0][:, None])
     fine = np.angle(ahead[None] / np.where(back == 0, 1, back)[:, None])
     turn = np.where(np.abs(np.abs(rough) - np.pi) < 1e-6, np.copysign(np.abs(rough), fine), rough)
@@ -90,14 +93,14 @@ def _paired(parts: Arrangement, paths: Paths, comes: list[int], goes: list[int])
     return pairs
 
 
-def built(parts: Arrangement, paths: Paths, rings: list[Ints], tolerance: float) -> tuple[Paths, Ints]:
-    """Rings of parts as closed paths, parts that go on along one piece as one; and the piece that each comes from."""
+def built(parts: Arrangement, paths: Paths, rings: list[Ints], tolerance: float) -> Paths:
+    """Rings of parts as closed paths; parts that go on along one segment are one again."""
     if not rings:
-        return Paths.empty(), np.zeros(0, np.intp)
+        return Paths.empty()
     firsts, lasts, counts = [], [], []
     for parts_of in rings:
         before = np.roll(parts_of, 1)
-        other = parts.piece[parts_of] != parts.piece[before]
+        other = parts.segment[parts_of] != parts.segment[before]
         breaks = np.flatnonzero(other | (parts.t0[parts_of] < parts.t1[before]))
         ring = np.roll(parts_of, -breaks[0]) if len(breaks) else parts_of
         starts = breaks - breaks[0] if len(breaks) else np.zeros(1, np.intp)
@@ -105,20 +108,20 @@ def built(parts: Arrangement, paths: Paths, rings: list[Ints], tolerance: float)
         lasts.append(ring[np.append(starts[1:], len(ring)) - 1])
         counts.append(len(starts))
     first, last = np.concatenate(firsts), np.concatenate(lasts)
-    pieces = split(
+    segments = split(
         paths,
-        parts.piece[first],
+        parts.segment[first],
         parts.t0[first],
         parts.t1[last],
         parts.nodes[parts.tail[first]],
         parts.nodes[parts.head[last]],
     )
     whole = Paths(
-        start=pieces.start,
-        end=pieces.end,
-        control=pieces.control,
-        kind=pieces.kind,
+        start=segments.start,
+        end=segments.end,
+        control=segments.control,
+        kind=segments.kind,
         offsets=np.append(0, np.cumsum(counts)).astype(np.intp),
         closed=np.ones(len(rings), np.bool_),
     )
-    return straightened(whole, tolerance), parts.piece[first]
+    return straightened(whole, tolerance)

@@ -1,26 +1,27 @@
 """Offsets of regions with lines and arcs for edges: kerf compensation, and rounded corners; exact but for rounding.
 
-The offset of a line is a line, that of an arc an arc about the same centre. All pieces are moved, corners joined, and
+The offset of a line is a line, that of an arc an arc about the same centre. All segments are moved, corners joined, and
 everything cut where it crosses; what is nearer to the region's edge than the distance goes, the rest is chained.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import ClassVar, Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints, next_in_ring
 from voronoi_tiles.base.errors import VoronoiTilesError
 from voronoi_tiles.base.tolerance import EPSILON
 from voronoi_tiles.paths.areas import ring_areas
-from voronoi_tiles.paths.arrangement import Arrangement, arrangement, without_doubles
+from voronoi_tiles.paths.arrangement import arrangement, without_doubles
 from voronoi_tiles.paths.chaining import built, chained, without_dead_ends
 from voronoi_tiles.paths.offset_events import Lost, losses
 from voronoi_tiles.paths.paths import ARC, LINE, Paths
-from voronoi_tiles.paths.raw_offset import Join, RawOffset, next_pieces, raw_offset, straightened
+from voronoi_tiles.paths.raw_offset import raw_offset
 from voronoi_tiles.paths.segments import Circles, boxes, point_at
+from voronoi_tiles.paths.short_segments import straightened
 
 OFFSET_ULPS: Final = 256.0
 """How far an offset may be from its distance; ulps of the largest coordinate: some ten rounded operations, and
@@ -59,15 +60,14 @@ class Offset:
     lost: tuple[Lost, ...]
 
 
-def offset(region: Paths, distance: float, *, join: Join = "round", mitre_limit: float = 4.0) -> Offset:
+def offset(region: Paths, distance: float) -> Offset:
     """The region grown by `distance` > 0, or shrunk by -`distance` where it is < 0.
 
     `region` has closed rings of LINEs and ARCs that neither cross nor touch, the material on their left: outer ones
-    counter-clockwise, holes clockwise. Corners on the growing side become arcs about the corner, or with "mitre" two
-    lines along the tangents where their tip is within `mitre_limit` times the distance of the corner and meets nothing
-    else. Self-overlaps are removed between all parts and rings. The edge of the result is at the distance from the
-    region's to OFFSET_ULPS (mitres further), checked at the end; where the check fails, the distance is changed by up
-    to 3e-9 of itself. Raises ValueError for other pieces or open paths, OffsetError where no change helps.
+    counter-clockwise, holes clockwise. Corners on the growing side become arcs about the corner. Self-overlaps are
+    removed between all parts and rings. The edge of the result is at the distance from the region's to OFFSET_ULPS,
+    checked at the end; where the check fails, the distance is changed by up to 3e-9 of itself. Raises ValueError for
+    other segments or open paths, OffsetError where no change helps.
     """
     _check_region(region, distance)
     if distance == 0 or not len(region):
@@ -75,7 +75,7 @@ def offset(region: Paths, distance: float, *, join: Join = "round", mitre_limit:
     failure: OffsetError | None = None
     for change in _RETRIES:
         try:
-            return _Attempt(region, distance * (1 + change)).result(join, mitre_limit)
+            return _Attempt(region, distance * (1 + change)).result()
         except OffsetError as error:
             failure = failure or error
     assert failure is not None
@@ -119,14 +119,15 @@ class _Attempt:
         # Curves that touch or cross at small angles are apart by the tolerance over this length.
         self.blurred = 16 * float(np.sqrt(self.tolerance * size))
 
-    def result(self, join: Join, mitre_limit: float) -> Offset:
+    def result(self) -> Offset:
         """The offset; raises OffsetError."""
-        raw, parts = self._arranged(join, mitre_limit)
-        middle = point_at(raw.paths, parts.piece, (parts.t0 + parts.t1) / 2)
+        raw = raw_offset(self.region, self.distance, self.tolerance)
+        parts = arrangement(raw.paths, raw.tail, raw.head, raw.nodes, self.tolerance)
+        middle = point_at(raw.paths, parts.segment, (parts.t0 + parts.t1) / 2)
         far = self._nearest(middle) >= abs(self.distance) - self.tolerance
         single = without_doubles(parts, raw.paths, far, self.tolerance)
         used = without_dead_ends(parts, single)
-        length = raw.paths.lengths[parts.piece] * (parts.t1 - parts.t0)
+        length = raw.paths.lengths[parts.segment] * (parts.t1 - parts.t0)
         astray = np.flatnonzero(single & ~used & (length > self.blurred))
         if len(astray):
             raise OffsetError("the offset has an open end", middle[astray[0]])
@@ -134,31 +135,11 @@ class _Attempt:
             rings = chained(parts, raw.paths, used)
         except LookupError as error:
             raise OffsetError("the offset has a ring that does not close", middle[error.args[0]]) from None
-        paths, pieces = built(parts, raw.paths, rings, self.tolerance / 64)
-        solid = np.abs(ring_areas(paths)) > 4 * self.tolerance * paths.path_lengths
-        paths, pieces = paths.take(np.flatnonzero(solid)), pieces[solid[paths.owner]]
-        rings = [ring for ring, real in zip(rings, solid, strict=True) if real]
-        self._verify(paths, raw.mitred[pieces])
-        paths = _lengthened(paths, raw.mitred[pieces])
+        paths = built(parts, raw.paths, rings, self.tolerance / 64)
+        solid = np.flatnonzero(np.abs(ring_areas(paths)) > 4 * self.tolerance * paths.path_lengths)
+        paths, rings = paths.take(solid), [rings[k] for k in solid.tolist()]
+        self._verify(paths)
         return Offset(paths, losses(self.region, self.distance, raw, parts, rings))
-
-    def _arranged(self, join: Join, mitre_limit: float) -> tuple[RawOffset, Arrangement]:
-        """The raw offset, cut at its crossings; mitres that something crosses are rounded."""
-        plain = np.zeros(len(self.region.start), np.bool_)
-        while True:
-            raw = raw_offset(
-                self.region, self.distance, self.tolerance, join=join, mitre_limit=mitre_limit, plain=plain
-            )
-            if not len(raw.paths):
-                none = np.zeros(0, np.intp)
-                empty = Arrangement(none, np.zeros(0), np.zeros(0), none, none, raw.nodes, np.zeros((2, 0), np.intp))
-                return raw, empty
-            parts = arrangement(raw.paths, raw.tail, raw.head, raw.nodes, self.tolerance)
-            met = np.unique(parts.pairs)
-            crossed = raw.source[met[raw.mitred[met]]]
-            if not len(crossed):
-                return raw, parts
-            plain[crossed] = True
 
     def _nearest(self, points: Complexes, beyond: float = 0.0) -> Floats:
         """The distance of each point from the region's edge; infinite where it is more than the offset's + `beyond`."""
@@ -170,46 +151,24 @@ class _Attempt:
             np.minimum.at(nearest, k + i, self.circles.take(j).distance(chunk[i]))
         return nearest
 
-    def _verify(self, paths: Paths, mitred: Bools) -> None:
+    def _verify(self, paths: Paths) -> None:
         """Raise OffsetError where a ring is open or a point of it is not at the distance."""
         if not len(paths):
             return
-        gaps = np.flatnonzero(paths.end != paths.start[next_pieces(paths)])
+        gaps = np.flatnonzero(paths.end != paths.start[next_in_ring(paths.offsets)])
         if len(gaps):
             raise OffsetError("the offset has a ring that does not close", paths.end[gaps[0]])
-        n, allowed = len(paths.start), 4 * self.tolerance
+        n = len(paths.start)
         for t in (0.0, 0.25, 0.5, 0.75):
             points = point_at(paths, np.arange(n), np.full(n, t))
-            error = self._nearest(points, 2 * allowed) - abs(self.distance)
-            # At a mitre's first end its line is still at the distance, elsewhere beyond.
-            wrong = np.flatnonzero((error < -allowed) | ((error > allowed) & ~mitred))
-            wrong = wrong[~((t == 0) & mitred[np.roll(np.arange(n), 1)][wrong] & (error[wrong] > 0))]
+            off = np.abs(self._nearest(points, 8 * self.tolerance) - abs(self.distance))
+            wrong = np.flatnonzero(off > 4 * self.tolerance)
             if len(wrong):
                 raise OffsetError("the offset is not at its distance", points[wrong[0]])
 
 
-def _lengthened(paths: Paths, mitred: Bools) -> Paths:
-    """The same rings, each line of a mitre one with the line that it lengthens."""
-    following = next_pieces(paths)
-    straight = (paths.kind == LINE) & (paths.kind[following] == LINE)
-    inside = np.flatnonzero(straight & (mitred != mitred[following]))
-    begins = np.ones(len(paths.start), np.bool_)
-    begins[following[inside]] = False
-    kept = np.flatnonzero(begins)
-    counts = np.bincount(paths.owner[kept], minlength=len(paths))
-    shorter = Paths(
-        start=paths.start[kept],
-        end=paths.end[kept],
-        control=paths.control[kept],
-        kind=paths.kind[kept],
-        offsets=np.append(0, np.cumsum(counts)).astype(np.intp),
-        closed=paths.closed,
-    )
-    return replace(shorter, end=shorter.start[next_pieces(shorter)])
-
-
 class _Tree:
-    """Finds the pieces whose boxes are near a point."""
+    """Finds the segments whose boxes are near a point."""
 
     def __init__(self, rectangles: Floats) -> None:
         import shapely
@@ -217,7 +176,7 @@ class _Tree:
         self._tree = shapely.STRtree(shapely.box(*rectangles.T))
 
     def near(self, points: Complexes, reach: float) -> tuple[Ints, Ints]:
-        """Pairs of a point and a piece whose box is within `reach` of it, along both axes."""
+        """Pairs of a point and a segment whose box is within `reach` of it, along both axes."""
         import shapely
 
         x, y = points.real, points.imag

@@ -28,7 +28,7 @@ _WINDING: Final = 0.5
 """How far an edge turns against the sense of a corner if it winds; radians. Fitted curves waver by less."""
 
 _SAMPLES: Final = 16
-"""Points on each piece, where the place of a loss is sought."""
+"""Points on each segment, where the place of a loss is sought."""
 
 
 @dataclass(frozen=True)
@@ -45,10 +45,10 @@ class Lost:
 
 def losses(region: Paths, distance: float, raw: RawOffset, parts: Arrangement, rings: list[Ints]) -> tuple[Lost, ...]:
     """What the offset of a region by `distance` lost, from its raw offset, the parts of this and the rings of parts."""
-    ring_of = np.full(len(parts.piece), -1)
+    ring_of = np.full(len(parts.segment), -1)
     for number, ring in enumerate(rings):
         ring_of[ring] = number
-    origin = region.owner[raw.source[parts.piece]]
+    origin = region.owner[raw.source[parts.segment]]
     gone = np.setdiff1d(np.arange(len(region)), origin[ring_of >= 0])
     lost = [Lost("ring", _inmost(region, int(ring))) for ring in gone]
     chains = _Chains.of(region, distance, raw, parts, ring_of)
@@ -63,11 +63,11 @@ def losses(region: Paths, distance: float, raw: RawOffset, parts: Arrangement, r
 class _Chains:
     """Runs of the region's edge whose offset is gone, c of them, between two parts that are left.
 
-    Each runs from the share `begin` (c) of the first of its `pieces` to the share `stop` of the last, round the ring
+    Each runs from the share `begin` (c) of the first of its `segments` to the share `stop` of the last, round the ring
     `origin` of the region. `nodes` (intp, c x 2) are what is left at both ends, `rings` the result's rings there.
     """
 
-    pieces: list[Ints]
+    segments: list[Ints]
     begin: Floats
     stop: Floats
     origin: Ints
@@ -77,8 +77,8 @@ class _Chains:
     @classmethod
     def of(cls, region: Paths, distance: float, raw: RawOffset, parts: Arrangement, ring_of: Ints) -> _Chains:
         """The runs that may mean a loss: not those of one node that are too short to reach far from it."""
-        source, joins = raw.source[parts.piece], raw.joins[parts.piece]
-        order = np.lexsort((parts.t0, parts.piece, source + 0.5 * joins))
+        source, joins = raw.source[parts.segment], raw.joins[parts.segment]
+        order = np.lexsort((parts.t0, parts.segment, source + 0.5 * joins))
         rank = np.empty(len(order), np.intp)
         rank[order] = np.arange(len(order))
         left = order[ring_of[order] >= 0]
@@ -101,7 +101,7 @@ class _Chains:
         nodes = np.stack((parts.head[left], parts.tail[after]), axis=1)
         far = np.flatnonzero((run > abs(distance)) | (nodes[:, 0] != nodes[:, 1]))
         return cls(
-            pieces=[_between(region, *pair) for pair in zip(first[far].tolist(), final[far].tolist(), strict=True)],
+            segments=[_between(region, *pair) for pair in zip(first[far].tolist(), final[far].tolist(), strict=True)],
             begin=begin[far],
             stop=stop[far],
             origin=owner[left[far]],
@@ -134,32 +134,32 @@ class _Chains:
         points = np.concatenate(sides)
         away = np.abs(points[:, None] - parts.nodes[self.nodes[members].ravel()]).min(axis=1)
         tip = int(np.argmax(away))
-        winds = sum(_winding(region, self.pieces[k], distance) for k in members) > _WINDING
+        winds = sum(_winding(region, self.segments[k], distance) for k in members) > _WINDING
         reach = _BULB_REACH if winds else _PART_REACH
         return Lost("part", complex(points[tip])) if away[tip] > reach * abs(distance) else None
 
     def samples(self, region: Paths, chain: int) -> Complexes:
         """Points on a chain, in its order."""
-        pieces = self.pieces[chain]
-        low, high = np.zeros(len(pieces)), np.ones(len(pieces))
+        segments = self.segments[chain]
+        low, high = np.zeros(len(segments)), np.ones(len(segments))
         low[0], high[-1] = self.begin[chain], self.stop[chain]
         t = low[:, None] + (high - low)[:, None] * np.linspace(0.0, 1.0, _SAMPLES + 1)
-        return point_at(region, np.repeat(pieces, _SAMPLES + 1), np.clip(t, 0.0, 1.0).ravel())
+        return point_at(region, np.repeat(segments, _SAMPLES + 1), np.clip(t, 0.0, 1.0).ravel())
 
 
 def _between(region: Paths, first: int, last: int) -> Ints:
-    """The pieces of a ring from one to another, both included."""
+    """The segments of a ring from one to another, both included."""
     ring = int(region.owner[first])
     begin, count = int(region.offsets[ring]), int(region.counts[ring])
     steps = (last - first) % count + 1
     return np.asarray(begin + (first - begin + np.arange(steps)) % count, np.intp)
 
 
-def _winding(region: Paths, pieces: Ints, distance: float) -> float:
-    """How far the edge turns, between the first and last of some pieces in a row, to where offsets open."""
-    ends = [tangent_at(region, pieces, np.full(len(pieces), t)) for t in (0.0, 1.0)]
+def _winding(region: Paths, segments: Ints, distance: float) -> float:
+    """How far the edge turns, between the first and last of some segments in a row, to where offsets open."""
+    ends = [tangent_at(region, segments, np.full(len(segments), t)) for t in (0.0, 1.0)]
     corners = np.angle(ends[0][1:] * ends[1][:-1].conj())
-    arcs = 4 * np.arctan(region.bulges()[pieces[1:-1]])
+    arcs = 4 * np.arctan(region.bulges()[segments[1:-1]])
     return float(np.maximum(np.concatenate((corners, arcs)) * np.sign(distance), 0.0).sum())
 
 
@@ -177,9 +177,9 @@ def _inmost(region: Paths, ring: int) -> complex:
     """The middle of the largest circle inside a ring, to a thousandth of its size."""
     import shapely
 
-    pieces = np.arange(region.offsets[ring], region.offsets[ring + 1])
-    t = np.tile(np.linspace(0.0, 1.0, _SAMPLES + 1), len(pieces))
-    points = point_at(region, np.repeat(pieces, _SAMPLES + 1), t)
+    segments = np.arange(region.offsets[ring], region.offsets[ring + 1])
+    t = np.tile(np.linspace(0.0, 1.0, _SAMPLES + 1), len(segments))
+    points = point_at(region, np.repeat(segments, _SAMPLES + 1), t)
     shape = shapely.make_valid(shapely.Polygon(np.stack((points.real, points.imag), axis=1)))
     size = max(np.ptp(points.real), np.ptp(points.imag))
     circle = shapely.maximum_inscribed_circle(shape, tolerance=1e-3 * size)

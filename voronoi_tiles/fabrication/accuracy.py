@@ -1,0 +1,53 @@
+"""How the accuracy of a job is spent: what each step on the way to the file may move curves by."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Final, Self
+
+from voronoi_tiles.fabrication.job import Job
+
+_SHORT: Final = 0.2
+"""What short segments may take of what chords leave. Fits leave joints at which tangents differ by some thousandths of
+a radian; an offset by a tenth of a millimetre makes arcs of some tenths of a micrometre of them."""
+
+_CHORDS: Final = 0.7
+"""What chords may take, a part of the whole. They get most: their number grows with the root of it, that of arcs only
+with the third root."""
+
+_MEASURED: Final = 0.125
+"""How far chords are from contours where the distance between these is measured, a part of the whole."""
+
+
+@dataclass(frozen=True, slots=True)
+class AccuracyBudget:
+    """What of the `whole` accuracy each step spends; millimetres.
+
+    Curves become arcs within `arcs`: those of tiles where the job has kerf or fillets or the file holds arcs, those of
+    sheets and of art where they are clipped. Kerf and fillets spend nothing: an offset of arcs is exact, and what lies
+    within e of a curve lies at any distance from both within e again. Then segments shorter than `short` are left out,
+    and where the file holds polylines, chords within `chords` take the place of curves. Errors add up: the three come
+    to the whole, or less. Nothing else is approximated, but that the cubic curves of SVG and PDF are a nanometre off
+    circular arcs, which is the last digit of these files.
+    """
+
+    whole: float
+    arcs: float
+    short: float
+    chords: float
+
+    def __post_init__(self) -> None:
+        assert self.arcs + self.short + self.chords <= self.whole * (1 + 1e-12), "more is spent than there is"
+
+    @classmethod
+    def of(cls, job: Job, curves: str) -> Self:
+        """The budget of a job whose file holds these `curves`: exact, arc, spline or polyline."""
+        chords = _CHORDS * job.accuracy if curves == "polyline" else 0.0
+        left = job.accuracy - chords
+        short = _SHORT * left if job.moves_contours else 0.0
+        return cls(whole=job.accuracy, arcs=left - short, short=short, chords=chords)
+
+    @property
+    def measured(self) -> float:
+        """How far chords may be from contours by which only the distances between these are measured."""
+        return _MEASURED * self.whole
