@@ -1,6 +1,6 @@
 # Everything sets itself up: python3, python3-venv and make are all it needs.
 #   make demo    export and draw the examples        make test    run the tests, but for the slow ones
-#   make test-slow  run those                        make test-pythons  the tests on every other Python that is here
+#   make test-slow  run those
 #   make lint    lint and format check               make types   mypy --strict
 #   make bench   speed and accuracy, beside peers    make fuzz N=10000
 #   make format  rewrite the sources' layout         make clean   remove all that was made here
