@@ -16,7 +16,7 @@ from helpers.cutting import RINGS, SQUARES
 from helpers.outlines import CommandLine
 
 from voronoi_tiles import Design, Job
-from voronoi_tiles.cli.main import main as cli
+from voronoi_tiles.cli import main as cli
 from voronoi_tiles.designs.starters import starter_text
 from voronoi_tiles.formats.reading import read_drawing
 from voronoi_tiles.preflight import preflight

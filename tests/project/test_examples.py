@@ -79,7 +79,7 @@ def test_there_are_the_special_ones() -> None:
 @each_example
 def test_it_is_proved_in_time(name: str) -> None:
     """Every figure of the proof holds, and nobody waits for it."""
-    design = Design.loadpath_of(name)
+    design = Design.load(path_of(name))
     begin = time.process_time()
     result = design.tessellate()
     assert time.process_time() - begin < TIME_LIMIT
