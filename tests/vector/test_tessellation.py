@@ -584,6 +584,18 @@ def test_corners_where_many_tiles_meet() -> None:
     np.testing.assert_allclose(outline.lengths, [math.sqrt(1200)] * 3, rtol=1e-12)
 
 
+def test_edges_on_a_mirror_stay_whole() -> None:
+    """Far from two near points rounding put two arcs of no length where an edge turns from one to the other.
+
+    Their vertices are as near to each other as where a tile touches itself, and the edge was cut there.
+    """
+    points = [{"point": [1.0, 3**0.5]}, {"point": [1.0055836291546125, 3**0.5]}]
+    tiling = tile(one("p3m1", *points))
+    assert tiling.proof.passed
+    assert len(tiling.tiles[0].outline) == 3
+    assert [len(ring) for ring in tiling.tessellation.quotient.boundaries[0]] == [3]
+
+
 @pytest.mark.parametrize("name", list(TOUCHING))
 def test_found_touching_by_the_fuzz(name: str) -> None:
     """Designs that an earlier engine should have refused."""

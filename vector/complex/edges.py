@@ -73,7 +73,7 @@ def find_edges(
     they cannot be paired at all.
     """
     limit = (_ONE_SIDED if without_short else PROOF_LIMIT) * action.size
-    traced = [boundary.take(_long_edges(boundary, limit)) for boundary in traced]
+    traced = [_without_short_edges(boundary, limit) for boundary in traced]
     pinched = True
     while True:
         try:
@@ -123,17 +123,18 @@ def _paired(action: Action, placed: list[Placed], traced: list[Traced], *, pinch
     return edges
 
 
-def _long_edges(boundary: Traced, limit: float) -> Ints:
-    """The arcs of the edges that extend farther than a limit; all, where no other would be left of a ring."""
+def _without_short_edges(boundary: Traced, limit: float) -> Traced:
+    """The boundary of the edges that extend farther than a limit; of all in a ring that would have none."""
     kept = []
-    for ring, cut in zip(boundary.rings(), _cuts(boundary), strict=True):
+    for ring, cut in zip(boundary.rings, _cuts(boundary), strict=True):
         long = [
             arcs
             for arcs, end in _runs(ring, cut)
             if np.abs(boundary.vertex[np.append(arcs, end)] - boundary.vertex[arcs[0]]).max() > limit
         ]
         kept.append(np.sort(np.concatenate(long)) if len(cut) > 1 and long else ring)
-    return np.concatenate(kept)
+    index = np.concatenate(kept)
+    return boundary if len(index) == len(boundary) else boundary.take(index)
 
 
 def _gap(one: Complexes, other: Complexes, limit: float) -> float:
@@ -159,7 +160,7 @@ def _gap(one: Complexes, other: Complexes, limit: float) -> float:
 def _cuts(boundary: Traced) -> list[list[int]]:
     """For each ring the places in it where the copy beyond changes."""
     result = []
-    for ring in boundary.rings():
+    for ring in boundary.rings:
         target, copy = boundary.target[ring], boundary.copy[ring]
         changes = (target != np.roll(target, 1)) | (copy != np.roll(copy, 1))
         result.append(np.flatnonzero(changes).tolist())
@@ -195,7 +196,7 @@ def _cut_further(
     for tile, boundary in enumerate(traced):
         if pinched:
             waiting += [(tile, arc) for arc in _pinches(boundary, _SAME * action.size)]
-        waiting += [(tile, int(r[0])) for r, cut in zip(boundary.rings(), cuts[tile], strict=True) if not cut]
+        waiting += [(tile, int(r[0])) for r, cut in zip(boundary.rings, cuts[tile], strict=True) if not cut]
     done: set[Corner] = set()
     while waiting:
         tile, arc = waiting.pop()
@@ -203,7 +204,7 @@ def _cut_further(
             continue
         done.add((tile, arc))
         boundary = traced[tile]
-        number, ring = next((n, r) for n, r in enumerate(boundary.rings()) if r[0] <= arc <= r[-1])
+        number, ring = next((n, r) for n, r in enumerate(boundary.rings) if r[0] <= arc <= r[-1])
         before = arc - 1 if arc > ring[0] else int(ring[-1])
         place = arc - int(ring[0])
         if place not in cuts[tile][number]:
@@ -224,7 +225,7 @@ def _at(boundary: Traced, point: Complexes, limit: float) -> list[int]:
 
 
 def _pinches(boundary: Traced, limit: float) -> list[int]:
-    """The vertices that another one coincides with."""
+    """The vertices at which a boundary touches itself: another one is within a limit, and not just along the way."""
     # Sorted from left to right, turned by the slant, few vertices are near each other.
     along = (boundary.vertex * _SLANT).real
     order = np.argsort(along)
@@ -237,9 +238,12 @@ def _pinches(boundary: Traced, limit: float) -> list[int]:
         same = near[np.abs(vertex[near + step] - vertex[near]) <= limit]
         pairs.append(np.stack((order[same], order[same + step]), axis=1))
     one, two = np.concatenate(pairs).T
-    # Neighbours on the boundary may be as close without touching: a short arc lies between them.
-    following = boundary.following()
-    apart = (following[one] != two) & (following[two] != one)
+    # Vertices along a ring may be as close without touching: only short arcs lie between them, one way or the other.
+    chord = np.abs(boundary.vertex[boundary.following] - boundary.vertex)
+    walk, around = np.cumsum(chord) - chord, np.bincount(boundary.ring, chord)
+    between = np.abs(walk[one] - walk[two])
+    between = np.minimum(between, around[boundary.ring[one]] - between)
+    apart = (boundary.ring[one] != boundary.ring[two]) | (between > limit)
     return [int(vertex) for vertex in np.unique(np.concatenate((one[apart], two[apart])))]
 
 
@@ -251,13 +255,12 @@ def _runs(ring: Ints, cut: list[int]) -> Iterator[tuple[Ints, int]]:
 
 def _edges(tile: int, boundary: Traced, cuts: list[list[int]]) -> Iterator[Edge]:
     """The edges of a boundary whose rings are cut at these places."""
-    middle = boundary.middles()
-    for ring, cut in zip(boundary.rings(), cuts, strict=True):
+    for ring, cut in zip(boundary.rings, cuts, strict=True):
         for arcs, end in _runs(ring, cut):
             start = int(arcs[0])
             vertex = boundary.vertex[np.append(arcs, end)]
             course = np.empty(2 * len(vertex) - 1, complex)
-            course[::2], course[1::2] = vertex, middle[arcs]
+            course[::2], course[1::2] = vertex, boundary.middles[arcs]
             yield Edge(
                 tile=tile,
                 arcs=arcs,

@@ -175,7 +175,7 @@ def _add_symmetric(
 
 
 def _with_counterparts(action: Action, reversal: Motion, vertex: Complexes, arcs: Ints) -> tuple[Complexes, Ints]:
-    """The vertices of a symmetric edge that have a counterpart, and its arcs: rounding splits some on one side only."""
+    """The vertices of a symmetric edge that have a counterpart, and its arcs: rounding splits some in one half only."""
     image = action.apply(reversal, vertex)[::-1]
     if len(arcs) == 1 or np.abs(image - vertex).max() <= PAIRING * action.size:
         return vertex, arcs

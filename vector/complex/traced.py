@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from voronoi_tiles.vector.copies import Copies
 from voronoi_tiles.vector.motions import Motion
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False)
 class Traced:
     """The traced boundary of a tile: n arcs, ring after ring, with the tile on their left.
 
@@ -44,13 +45,15 @@ class Traced:
 
     def take(self, index: Ints) -> Traced:
         """The boundary of these arcs only, each ending where the next one starts."""
-        arrays = {name: getattr(self, name)[index] for name in self.__slots__ if name != "copies"}
+        arrays = {field.name: getattr(self, field.name)[index] for field in fields(self) if field.name != "copies"}
         return Traced(**arrays, copies=self.copies)
 
+    @cached_property
     def rings(self) -> list[Ints]:
         """The indices of each ring's arcs."""
         return np.split(np.arange(len(self)), starts(self.ring)[1:])
 
+    @cached_property
     def following(self) -> Ints:
         """The next arc of each arc's ring, intp (n,)."""
         return next_in_ring(np.append(starts(self.ring), len(self)))
@@ -61,9 +64,10 @@ class Traced:
         a, b, c, d, s, t = self.copies[target].motions[self.copy[arc]].tolist()
         return target, (a, b, c, d, s, t)
 
+    @cached_property
     def middles(self) -> Complexes:
         """The point of each arc halfway between its ends, by its parameter."""
-        start, end = self.vertex, self.vertex[self.following()]
+        start, end = self.vertex, self.vertex[self.following]
         middle = (start + end) / 2
         bent = np.flatnonzero(self.curved)
         control = parabola_controls(start[bent], end[bent], self.focus[bent], self.directrix[bent])
@@ -121,7 +125,7 @@ def _tidy(traced: Traced, curve: Ints) -> Traced:
     `curve` (intp, m x n) is what determines the curve of each of the n arcs.
     """
     kept, areas = [], []
-    for ring in traced.rings():
+    for ring in traced.rings:
         fresh = (curve[:, ring] != np.roll(curve[:, ring], 1, axis=1)).any(axis=0)
         kept.append(ring[fresh] if fresh.any() else ring)
         start = traced.vertex[ring]
