@@ -1,7 +1,7 @@
 # Everything sets itself up: python3, python3-venv and make are all it needs.
 #   make demo    export and draw the examples        make test    run the tests, but for the slow ones
-#   make test-slow  run those
-#   make lint    lint and format check               make types   mypy --strict
+#   make test-slow  run those                        make test-pythons  the tests on every other Python that is here
+#   make lint    lint and format check               make types   mypy --strict, tests and scripts too
 #   make bench   speed and accuracy, beside peers    make fuzz N=10000
 #   make format  rewrite the sources' layout         make clean   remove all that was made here
 #   make docs    the documentation, in docs/_build   make paper   docs/paper.md: the paper, reproduced and measured
@@ -84,6 +84,7 @@ $(INSTALLED_TYPES): $(TYPES_VENV)/.created $(SOURCES)
 # From inside the environment, where the folder voronoi_tiles/ of the checkout cannot shadow the installed package.
 types: $(INSTALLED_TYPES)
 	cd $(TYPES_VENV) && bin/mypy --config-file $(abspath pyproject.toml) --cache-dir cache -p voronoi_tiles
+	cd $(TYPES_VENV) && bin/mypy --config-file $(abspath pyproject.toml) --cache-dir cache $(abspath tests bench docs)
 
 bench: $(INSTALLED_DEV)
 	$(VENV)/bin/python bench/engine.py --write

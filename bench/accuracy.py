@@ -29,9 +29,9 @@ import numpy as np
 import peer
 from exact import Label, Plane, Vertex, as_given, distance, exact_images, longer_side, true_vertices
 from mpmath import mpc, mpf
-from numpy.typing import NDArray
 from report import machine, published, table
 
+from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.base.errors import TouchingCopiesError
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.designs.site import Site, build_site
@@ -52,8 +52,6 @@ PROMISE = 1e-12
 """The engine's limit for the difference of the two distances along an edge; relative to the cell's longer side."""
 WHO = ("engine", "Boost.Polygon", "CGAL")
 
-Complexes = NDArray[np.complex128]
-
 
 # What the engine and the peers found
 
@@ -72,7 +70,9 @@ class Score:
     untrue: int = 0
 
 
-def elements_at(plane: Plane, outline: Outline, number: dict[Operation, int], share: float) -> list[tuple[int, int]]:
+def elements_at(
+    plane: Plane, outline: Outline, number: dict[Operation, int], share: float | Floats
+) -> list[tuple[int, int]]:
     """Give the two elements that each arc is equally far from at a parameter: the base site's, the neighbour's.
 
     They are the same all along an arc, but for a straight edge on a mirror, where two can give way to two others.
@@ -216,7 +216,7 @@ def _controls(group: WallpaperGroup, lattice: Lattice, kind: str, rng: np.random
     """Give four control points: of any curve, of one that is bent by a millionth, or of one that ends near a copy."""
     reach = 0.5 * math.sqrt(lattice.det / group.order)
     place = lattice.cartesian(*rng.uniform(0.0, 1.0, 2))
-    p = place + reach * rng.uniform(0.2, 1.0, 4) * np.exp(2j * np.pi * rng.uniform(0.0, 1.0, 4))
+    p: Complexes = place + reach * rng.uniform(0.2, 1.0, 4) * np.exp(2j * np.pi * rng.uniform(0.0, 1.0, 4))
     if kind == "nearly straight":
         normal = 1j * (p[3] - p[0]) / abs(p[3] - p[0])
         p[1], p[2] = ((2 * p[0] + p[3]) / 3, (p[0] + 2 * p[3]) / 3) + normal * longer_side(lattice) * np.array(
@@ -286,7 +286,7 @@ def measure(task: tuple[str, str, int, int]) -> Row:
 def _run_boost(plane: Plane, nodes: Complexes) -> tuple[Plane, peer.Reading]:
     """Run Boost.Polygon on nodes rounded to the finest grid, a power of two, that 32 bits allow."""
     scale = 2.0 ** math.floor(math.log2((2**31 - 1) / max(np.abs(nodes.real).max(), np.abs(nodes.imag).max())))
-    rounded = (np.round(nodes.real * scale) + 1j * np.round(nodes.imag * scale)) / scale
+    rounded: Complexes = np.asarray((np.round(nodes.real * scale) + 1j * np.round(nodes.imag * scale)) / scale)
     segments = peer.block_segments(plane.site, rounded)
     given = as_given(plane.site, rounded, plane.size)
     return given, peer.run_peer(segments, len(plane.site.segments), scale)[1]

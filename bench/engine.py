@@ -43,7 +43,9 @@ try:
 except ImportError as error:
     if error.name != "pyvoronoi":
         raise
-    peer = cgal = None
+    HAS_PEERS = False
+else:
+    HAS_PEERS = True
 
 # Of each group a cell in millimetres and a cubic curve in it, without a loop.
 CURVES: dict[str, tuple[dict[str, float], list[list[float]]]] = {
@@ -127,7 +129,7 @@ class Peers:
 
     def __init__(self, limit: int) -> None:
         """Give them no more than so many segments in the site."""
-        self.limit = limit if peer is not None else 0
+        self.limit = limit if HAS_PEERS else 0
         self.known: list[list[Operation] | None] = [None, None]
         self.slow = [False, False]
 
@@ -163,7 +165,7 @@ class Peers:
 def has_cgal() -> bool:
     """Whether CGAL can be used here."""
     try:
-        return cgal is not None and bool(cgal.version())
+        return HAS_PEERS and bool(cgal.version())
     except cgal.MissingError:
         return False
 
@@ -174,7 +176,7 @@ def compare(group: str, sizes: Sequence[int], peer_limit: int, most: int) -> lis
     for size in sizes:
         case = case_of(group, size)
         offered = peers.actions(case, case.solve())
-        actions: list[Callable[[], float]] = [lambda case=case: stopwatch(case.solve)]
+        actions: list[Callable[[], float]] = [partial(stopwatch, case.solve)]
         actions += [run for _, *runs in offered for run in runs if run is not None]
         times = [[action()] for action in actions]
         gc.collect()
@@ -264,9 +266,9 @@ def print_stages(group: str, most: int) -> None:
         design = design_of(group, tolerance)
         record = tessellate(design.sites, design.group, design.lattice)
         stages: list[Callable[[], object]] = [
-            lambda tolerance=tolerance: design_of(group, tolerance),
-            lambda design=design: tessellate(design.sites, design.group, design.lattice),
-            lambda design=design, record=record: prove(design.group, design.lattice, record),
+            partial(design_of, group, tolerance),
+            partial(tessellate, design.sites, design.group, design.lattice),
+            partial(prove, design.group, design.lattice, record),
         ]
         times = [min(stopwatch(stage) for _ in range(min(most, 5))) * 1e3 for stage in stages]
         print(f"| {tolerance:g} | {len(design.sites[0].segments)} | " + " | ".join(f"{t:.2f}" for t in times) + " |")
@@ -357,8 +359,8 @@ def main() -> None:
 
 def print_all(largest: int, peer_limit: int, most: int) -> None:
     """Print the tables."""
-    print(f"{machine()}; {cgal.described() if cgal is not None else 'without CGAL'}")
-    if peer is None:
+    print(f"{machine()}; {cgal.described() if HAS_PEERS else 'without CGAL'}")
+    if not HAS_PEERS:
         print("\nThe peers are missing: install pyvoronoi (the extra `test`) to compare with Boost.Polygon and CGAL.")
     sizes = [size for size in SIZES if size <= largest]
     timings = [timing for group in CURVES for timing in compare(group, sizes, peer_limit, most)]

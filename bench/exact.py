@@ -178,9 +178,9 @@ def equations(plane: Plane, label: Label, z: Any) -> list[tuple[Any, Any]]:
         node, copy = plane.node_of(element), plane.copy_of(element)
         hosts = [other for other in label if other != element and plane.copy_of(other) == copy]
         hosts = [other for other in hosts if plane.node_of(other) is None and node in plane.nodes_of(other)]
-        for host in hosts if node is not None else ():
-            along = line_of(plane, host)[1]
-            rows.append((((z - plane.node(copy, node)) * mpmath.conj(along)).real, along))
+        if node is not None:
+            lines = [line_of(plane, host)[1] for host in hosts]
+            rows += [(((z - plane.node(copy, node)) * mpmath.conj(along)).real, along) for along in lines]
         if node is None or not hosts:
             single.append(distance(plane, element, z))
     here, slope = single[0]

@@ -22,7 +22,6 @@ from engine import case_of
 from report import machine, published
 
 from voronoi_tiles import Design
-from voronoi_tiles.crosscheck import crosscheck
 from voronoi_tiles.raster.block_lists import find_candidates
 from voronoi_tiles.raster.frame import Frame, cell_frame
 from voronoi_tiles.raster.gl import Device, GlError, Prepared
@@ -155,9 +154,9 @@ def checks(device: Device | None) -> None:
             if choice == "gl" and device is None:
                 cells.append("-")
                 continue
-            report = crosscheck(tiling, samples=samples, renderer=choice)
+            report = tiling.check(samples=samples, renderer=choice)
             assert report.passed
-            cells.append(fastest(lambda: crosscheck(tiling, samples=samples, renderer=choice)))  # noqa: B023
+            cells.append(fastest(lambda: tiling.check(samples=samples, renderer=choice)))  # noqa: B023
         row(samples, segments, *cells)
 
 

@@ -68,8 +68,7 @@ def chamber_about(group: WallpaperGroup, lattice: Lattice, point: complex) -> Ch
     mirrors = placed(symmetry_elements(group), lattice, box).mirrors
     side = ((point - mirrors[:, 0]) * (mirrors[:, 1] - mirrors[:, 0]).conj()).imag
     mirrors = np.where(side[:, None] > 0, mirrors, mirrors[:, ::-1])
-    frame = point + reach * np.array([-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j])
-    corners = frame
+    corners: Complexes = np.asarray(point + reach * np.array([-1 - 1j, 1 - 1j, 1 + 1j, -1 + 1j]), np.complex128)
     for mirror in mirrors:
         corners = _left_of(corners, mirror)
     chord = mirrors[:, 1:] - mirrors[:, :1]

@@ -59,7 +59,7 @@ def _parabola() -> None:
     side = next(r for r in range(len(scene.rows)) if scene.rows.straight[r] and scene.rows.axis[r].real > 0)
     with drawing("parabola.svg", (6.0, 3.0)) as (_, axes):
         bare(axes, _points((-0.5, -1.0), (12.5, 8.4)))
-        for part in np.flatnonzero(scene.row == side):
+        for part in np.flatnonzero(scene.row == side).tolist():
             _draw(axes, scene.curve(part), color=PARABOLA, lw=2.0)
             inside = (scene.start[part] <= _FEET) & (scene.end[part] > _FEET)
             s = _FEET[inside]
@@ -117,7 +117,7 @@ def _envelope() -> None:
     with drawing("envelope.svg", (7.4, 3.0), 2) as (_, (left, right)):
         _functions(left, scene, side)
         bare(right, _points((-1.2, -1.0), (11.2, 7.2)))
-        for part in np.flatnonzero(scene.row == side):
+        for part in np.flatnonzero(scene.row == side).tolist():
             curve = scene.curve(part, 40)
             area = np.concatenate([curve, scene.feet(part)[::-1]])
             colour = FIELDS[scene.functions.target[scene.lowest[part]]]
@@ -143,7 +143,7 @@ def _envelope_of(axes: Axes, scene: Scene, row: int) -> None:
     for k in np.flatnonzero(functions.row == row):
         x = np.linspace(functions.low[k], functions.high[k], 40)
         axes.plot(x, functions.value(np.full(40, k), x), color=_dark(functions.target[k]), lw=0.9, alpha=0.8)
-    for part in np.flatnonzero(scene.row == row):
+    for part in np.flatnonzero(scene.row == row).tolist():
         x = np.linspace(scene.start[part], scene.end[part], 40)
         colour = _dark(functions.target[scene.lowest[part]])
         axes.plot(x, functions.value(np.full(40, scene.lowest[part]), x), color=colour, lw=3.0, solid_capstyle="butt")
@@ -151,7 +151,7 @@ def _envelope_of(axes: Axes, scene: Scene, row: int) -> None:
 
 def _functions(axes: Axes, scene: Scene, row: int) -> None:
     _envelope_of(axes, scene, row)
-    for part in np.flatnonzero(scene.row == row):
+    for part in np.flatnonzero(scene.row == row).tolist():
         axes.axvline(scene.start[part], color=PALE, lw=0.8, zorder=0)
     axes.set(xlim=(0, 10), ylim=(0, 7.2), xlabel="s along the segment", ylabel="h: height of the bisector")
     axes.set_aspect("equal")
@@ -172,7 +172,7 @@ def _fan() -> None:
         bare(right, _points((-5.6, -5.8), (6.0, 5.8)))
         for row in fans:
             _fan_functions(left, scene, row)
-            for part in np.flatnonzero(scene.row == row):
+            for part in np.flatnonzero(scene.row == row).tolist():
                 curve = scene.curve(part, 40)
                 colour = FIELDS[scene.functions.target[scene.lowest[part]]]
                 area = np.append(curve, scene.rows.origin[row])

@@ -48,7 +48,7 @@ def perspective(design: Design, region: Region, output: Path) -> None:
     figure = Figure(figsize=_INCHES, dpi=_DOTS)
     canvas = FigureCanvasAgg(figure)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0), projection="3d", computed_zorder=False)
-    at = frame.points(*np.meshgrid(np.arange(SAMPLES), np.arange(SAMPLES)))
+    at = frame.points(*np.meshgrid(np.arange(SAMPLES, dtype=float), np.arange(SAMPLES, dtype=float)))
     axes.plot_surface(
         at.real,
         at.imag,
@@ -87,7 +87,7 @@ def _shaded(pattern: Pattern, image: LabelImage) -> Floats:
     light = 0.66 + 0.46 * lit
     beyond = np.abs(image.d1 / LEVELS - np.rint(image.d1 / LEVELS)) * LEVELS / step
     light *= 1.0 - 0.25 * np.clip(1.5 - beyond, 0.0, 1.0)
-    return np.minimum(flat * light[..., None], 1.0)
+    return np.asarray(np.minimum(flat * light[..., None], 1.0))
 
 
 def _region(text: str) -> Region:

@@ -321,10 +321,8 @@ def test_names_that_are_no_text(voronoi_tiles: CommandLine, command: str, tmp_pa
         )
         assert result.returncode == 0, result.stderr
         assert r"\xffb\n" in getattr(result, stream)
-    result = subprocess.run(
-        [os.fsencode(command), b"info", b"--json", name], capture_output=True, check=True, cwd=tmp_path
-    )
-    assert json.loads(result.stdout)["group"] == "p4"
+    asked = [os.fsencode(command), b"info", b"--json", name]
+    assert json.loads(subprocess.run(asked, capture_output=True, check=True, cwd=tmp_path).stdout)["group"] == "p4"
 
 
 def test_messages_end_with_a_full_stop(voronoi_tiles: CommandLine, design: Path, tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication import Job
 from voronoi_tiles.fabrication.art_template import art_template
+from voronoi_tiles.fabrication.job import Fit
 from voronoi_tiles.fabrication.lettering import lettering
 from voronoi_tiles.formats.writing import write_drawing
 from voronoi_tiles.tiling import Tiling
@@ -102,7 +103,7 @@ def test_art_goes_with_tiles_that_are_pulled_apart(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("fit", ["whole", "clip"])
-def test_clipped_art_stays_inside_its_tile(tmp_path: Path, fit: str) -> None:
+def test_clipped_art_stays_inside_its_tile(tmp_path: Path, fit: Fit) -> None:
     """What of long lines lies in each tile is drawn, and no more; on the sheet alone where that cuts the tile."""
     outline = Design.load(EXAMPLES / "pg-wave.toml").tessellate().tiles[0].outline
     inner = exact_shape(outline, 1.0).representative_point()

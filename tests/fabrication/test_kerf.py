@@ -270,7 +270,7 @@ def test_kerf_after_fillets() -> None:
 
 def test_a_piece_at_the_edge_that_breaks_in_two_is_two() -> None:
     """Each part has its own contour and number, and its share of the area."""
-    job = {
+    job: dict[str, Any] = {
         "sheet": (172.07674328799897, 220.5660638091932),
         "fit": "clip",
         "offset": 9.290764003561844 + 17.189404303288313j,

@@ -114,7 +114,7 @@ def test_spaces_have_no_ink() -> None:
 @given(st.lists(st.tuples(TEXTS, POINTS, HEIGHTS), max_size=8))
 def test_labels_are_letterings_at_their_positions(labels: list[tuple[str, complex, float]]) -> None:
     """Many labels at once are each of them alone, moved to its position: same order, same pieces."""
-    texts, points, heights = ([label[k] for label in labels] for k in range(3))
+    texts, points, heights = [t for t, _, _ in labels], [z for _, z, _ in labels], [h for _, _, h in labels]
     placed = place_labels(texts, np.array(points, np.complex128), height=np.array(heights))
     alone = [
         lettering(text, height=height, align="centre", vertical="middle").moved(1.0, point)
@@ -140,7 +140,7 @@ def test_a_label_has_one_shape_wherever_it_stands_in_the_list() -> None:
 def test_ten_thousand_labels() -> None:
     """A sheet's labels are those of their digits, none lost."""
     texts = [str(k) for k in range(10_000)]
-    positions = np.arange(10_000) * (1 + 1j)
+    positions = np.arange(10_000, dtype=np.complex128) * (1 + 1j)
     paths = place_labels(texts, positions, height=2)
     strokes = {digit: len(lettering(digit, height=1)) for digit in string.digits}
     assert len(paths) == sum(strokes[digit] for text in texts for digit in text)
@@ -217,7 +217,7 @@ def clearance(rings: list[np.ndarray], point: complex) -> float:
 def winding(rings: list[np.ndarray], point: complex) -> int:
     """How often the rings run around a point."""
     turns = sum(np.angle((np.roll(ring, -1) - point) / (ring - point)).sum() for ring in rings)
-    return round(turns / (2 * np.pi))
+    return round(float(turns) / (2 * np.pi))
 
 
 SHAPES = {
@@ -277,7 +277,7 @@ def test_the_fitting_height_stays_in_the_circle(text: str, radius: float, wanted
     """All ink lies in the circle, and touches it or has the wanted height."""
     height = fitting_height(text, radius, wanted)
     assert 0 < height <= wanted
-    ink = [z for line in polylines(place_labels([text], np.zeros(1), height=height)) for z in line]
+    ink = [z for line in polylines(place_labels([text], np.zeros(1, np.complex128), height=height)) for z in line]
     reach = max(map(abs, ink), default=0.0)
     assert reach <= radius * (1 + 1e-12) or not ink
     assert height == wanted or reach == pytest.approx(radius)

@@ -27,6 +27,7 @@ from helpers.sheets import (
     shape,
 )
 
+from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.fabrication.clipping import OUTSIDE, clipped_strands
 from voronoi_tiles.fabrication.region import Region
 from voronoi_tiles.fabrication.tile_placement import TilePlacement
@@ -238,8 +239,8 @@ def test_tiles_come_row_by_row() -> None:
 def test_a_rectangle_needs_a_width_and_a_height() -> None:
     """And tells what it is."""
     region = Region.rectangle(1, 2, 4, 6)
-    assert region.bounds == (1, 2, 4, 6)
-    assert region_area(region) == 12
+    assert region.bounds == (1.0, 2.0, 4.0, 6.0)
+    assert region_area(region) == 12.0
     assert region.is_rectangle
     for other in (polygon(0j, 1 + 0j, 1j), polygon(0j, 2 + 1j, 1 + 3j, -1 + 2j), Region(rounded(0, 0, 4, 3, 1))):
         assert not other.is_rectangle
@@ -276,7 +277,8 @@ def test_winding_numbers_against_angles() -> None:
     t = np.linspace(0, 1, 4001)[:, None]
     for _ in range(20):
         count = int(rng.integers(2, 8))
-        corners = rng.integers(-4, 5, count) + 1j * rng.integers(-4, 5, count) + 0.01 * rng.standard_normal(count)
+        corners: Complexes = rng.integers(-4, 5, count) + 1j * rng.integers(-4, 5, count)
+        corners += 0.01 * rng.standard_normal(count)
         control = rng.uniform(-5, 5, count) + 1j * rng.uniform(-5, 5, count)
         kind = rng.choice([LINE, QUAD], count).astype(np.uint8)
         control[kind == LINE] = 0
@@ -286,7 +288,7 @@ def test_winding_numbers_against_angles() -> None:
         a, b, c = paths.start, paths.control[:, 0], paths.end
         curve = np.where(kind == LINE, a + (c - a) * t, a * (1 - t) ** 2 + 2 * b * t * (1 - t) + c * t**2)
         line = np.append(curve[:-1].T.ravel(), curve[0, 0])
-        places = rng.uniform(-5, 5, 40) + 1j * rng.uniform(-5, 5, 40)
+        places: Complexes = rng.uniform(-5, 5, 40) + 1j * rng.uniform(-5, 5, 40)
         places = places[np.abs(line[:, None] - places).min(axis=0) > 0.02]
         turns = np.angle((line[1:, None] - places) / (line[:-1, None] - places)).sum(axis=0) / (2 * np.pi)
         assert winding(paths, places).tolist() == np.rint(turns).astype(int).tolist()
@@ -294,7 +296,7 @@ def test_winding_numbers_against_angles() -> None:
 
 def test_winding_numbers_of_points_on_the_lines_of_chords() -> None:
     """Level with corners, and beyond them, on a grid."""
-    places = np.array([complex(x, y) for x in range(-1, 6) for y in range(-1, 6)]) + 0.0
+    places = np.array([complex(x, y) for x in range(-1, 6) for y in range(-1, 6)])
     ring = Paths.polylines([[0j, 4 + 0j, 4 + 4j, 2 + 2j, 4j]], closed=True)
     seen = shape(ring)
     away = shapely.distance(seen.boundary, shapely.points(places.real, places.imag)) > 0

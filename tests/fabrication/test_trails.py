@@ -166,8 +166,8 @@ def test_a_tour_begins_as_one_that_goes_to_the_nearest_end(count: int) -> None:
     """As a plain search over all ends does; strokes that are long and short, open and closed."""
     rng = np.random.default_rng(count)
     for spread in (0.01, 0.1, 1.0):
-        start = rng.uniform(0, 1, count) + 1j * rng.uniform(0, 1, count)
-        end = start + spread * (rng.standard_normal(count) + 1j * rng.standard_normal(count))
+        start: Complexes = rng.uniform(0, 1, count) + 1j * rng.uniform(0, 1, count)
+        end: Complexes = start + spread * (rng.standard_normal(count) + 1j * rng.standard_normal(count))
         end = np.where(rng.uniform(0, 1, count) < 0.3, start, end)
         order, turned = tour.nearest_first(start, end)
         wanted, _ = nearest_first(start, end)

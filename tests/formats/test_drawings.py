@@ -16,6 +16,7 @@ import numpy as np
 import pytest
 import shapely
 import svgelements
+from ezdxf.entities import Insert
 
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.units import parse_length, parse_size
@@ -277,7 +278,7 @@ def test_dxf_entities_are_where_ezdxf_sees_them() -> None:
     all_kinds(document, document.modelspace())
     lines = []
     for entity in document.modelspace():
-        parts = entity.virtual_entities() if entity.dxftype() == "INSERT" else [entity]
+        parts = entity.virtual_entities() if isinstance(entity, Insert) else [entity]
         for part in parts:
             points = [(p.x, p.y) for p in ezdxf.path.make_path(part, level=8).flattening(1e-3, segments=16)]
             lines.append(shapely.LineString(points))

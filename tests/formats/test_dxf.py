@@ -113,6 +113,7 @@ def test_closed_paths_have_the_flag(curves: Curves, kind: int) -> None:
 def test_the_numbers_are_those_of_the_paths(closed: bool) -> None:
     """Vertices and control points to half a nanometre, bulges to twelve digits, knots in Bezier form."""
     arcs, quads = cad.ring(ARC, closed=closed), cad.ring(QUAD, closed=closed)
+    polyline: Any
     (polyline,) = read(written(one_layer(arcs), "arc")).modelspace().query("LWPOLYLINE")
     rows = np.array(polyline.get_points("xyb"))
     corners = arcs.start if closed else np.append(arcs.start, arcs.end[-1])
@@ -123,6 +124,7 @@ def test_the_numbers_are_those_of_the_paths(closed: bool) -> None:
     middle = (arcs.start + arcs.end) / 2 - 0.5j * chord * rows[: len(chord), 2]
     assert np.abs(middle - arcs.control[:, 0]).max() < 1e-10
 
+    spline: Any
     (spline,) = read(written(one_layer(quads), "spline")).modelspace().query("SPLINE")
     points = np.array([complex(x, y) for x, y, _ in spline.control_points])
     assert np.abs(points[:-1:3] - quads.start).max() <= 0.75e-6
@@ -203,6 +205,7 @@ def test_numbers_have_no_exponents() -> None:
     entities = data[data.index("ENTITIES") : data.index("OBJECTS")]
     assert not re.search(r"\d[eE][+-]?\d", entities)
     assert not re.search(r"\n (?:10|20|42)\n-?\d+\n", entities)
+    entity: Any
     (entity,) = read(data.encode()).modelspace()
     assert [row[2] for row in entity.get_points("xyb")] == pytest.approx(bulges, rel=1e-6, abs=1e-16)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -10,6 +11,7 @@ import ezdxf
 import numpy as np
 import pytest
 import svgelements
+from ezdxf.entities import LWPolyline
 from helpers.cad import (
     EXAMPLES,
     MM_PER_PX,
@@ -23,6 +25,7 @@ from helpers.cad import (
 
 from voronoi_tiles import Design, Job, Product
 from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.fabrication.job import Curves
 from voronoi_tiles.paths.paths import ARC, Paths
 
 ACCURACY = 0.005  # of a job, where it says nothing else; millimetres
@@ -122,8 +125,8 @@ def test_ezdxf_finds_nothing_to_mend(case: tuple[str, Job], tmp_path: Path) -> N
     assert not audit.fixes
     assert document.units == ezdxf.units.MM
     paths = Paths.concatenate([layer.paths for layer in sheet.product.drawing.layers])
-    entities = list(document.modelspace())
-    assert [entity.dxftype() for entity in entities] == ["LWPOLYLINE"] * len(paths)
+    entities = [entity for entity in document.modelspace() if isinstance(entity, LWPolyline)]
+    assert len(entities) == len(document.modelspace()) == len(paths)
     assert [entity.closed for entity in entities] == paths.closed.tolist()
     low, high = document.header["$EXTMIN"], document.header["$EXTMAX"]
     assert np.allclose((low[0], low[1], high[0], high[1]), paths.bounds, atol=1e-6)
@@ -148,10 +151,8 @@ def test_inkscape_keeps_the_svg(job: str, tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("curves", ["arc", "spline"])
 @pytest.mark.parametrize("job", JOBS)
-def test_inkscape_imports_the_dxf(job: str, curves: str, tmp_path: Path) -> None:
+def test_inkscape_imports_the_dxf(job: str, curves: Curves, tmp_path: Path) -> None:
     """By its own importer: one path for each of ours, arcs and splines."""
-    from dataclasses import replace
-
     sheet = written(tmp_path, "p4-key", replace(JOBS[job], curves=curves), "dxf")
     read = inkscape_reads_dxf(sheet.file)
     # It puts the drawing's lower left corner where it likes: at the corner of what it has read.
@@ -178,11 +179,11 @@ def test_librecad_draws_the_dxf(job: str, tmp_path: Path) -> None:
 def test_the_comparison_sees_what_is_missing(form: str, tmp_path: Path) -> None:
     """A path left out, one opened, one moved by a hundredth of a millimetre."""
     sheet = written(tmp_path, "p4-key", JOBS["once"], form)
-    good = {layer: list(zip(*curves, strict=True)) for layer, curves in sheet.curves.items()}
-    compare(good, sheet, DIGITS)  # type: ignore[arg-type] - tuples of two
+    good = {layer: list(zip(curves, closed, strict=True)) for layer, (curves, closed) in sheet.curves.items()}
+    compare(good, sheet, DIGITS)
     (layer,) = good
     first, *rest = good[layer]
     broken = [rest, [(first[0], not first[1]), *rest], [(first[0] + 0.01, first[1]), *rest]]
     for rows in broken:
         with pytest.raises(AssertionError):
-            compare({layer: rows}, sheet, DIGITS)  # type: ignore[dict-item] - same
+            compare({layer: rows}, sheet, DIGITS)

@@ -71,8 +71,8 @@ def test_the_path_is_the_outline_bit_for_bit(mixed: Outline) -> None:
 def test_holes_are_subpaths_of_the_same_path(ring: Outline) -> None:
     """A tile with a hole is one path of two closed subpaths."""
     outer, hole = subpaths(path_data(ring.paths))
-    assert outer == [("M", [0, 0]), ("L", [10, 0]), ("L", [10, -10]), ("L", [0, -10]), ("Z", [])]
-    assert hole[0] == ("M", [4, -4])
+    assert outer == [("M", [0.0, 0.0]), ("L", [10.0, 0.0]), ("L", [10.0, -10.0]), ("L", [0.0, -10.0]), ("Z", [])]
+    assert hole[0] == ("M", [4.0, -4.0])
     root = parse(make(ring))
     assert len(root.findall(f".//{SVG}path")) == 1
 

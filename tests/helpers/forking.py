@@ -17,9 +17,11 @@ import signal
 import socket
 import subprocess
 import sys
+import traceback
 import warnings
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 from types import TracebackType
 from typing import NoReturn, Self
@@ -37,7 +39,8 @@ class ForkServer:
         """Start the server."""
         self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
         call = [sys.executable, __file__, str(theirs.fileno())]
-        self._process = subprocess.Popen(call, pass_fds=[theirs.fileno()], start_new_session=True)
+        strict = os.environ | {"PYTHONWARNINGS": "error"}
+        self._process = subprocess.Popen(call, pass_fds=[theirs.fileno()], start_new_session=True, env=strict)
         theirs.close()
         return self
 
@@ -54,14 +57,19 @@ class ForkServer:
         stdin: str = "",
         cwd: Path | None = None,
         environment: Mapping[str, str] | None = None,
+        merged: bool = False,
         timeout: float = 120.0,
     ) -> subprocess.CompletedProcess[str]:
-        """Run `voronoi-tiles` with these arguments. Raises TimeoutError after so many seconds, and ends all of it."""
+        """Run `voronoi-tiles` with these arguments; `merged` puts what it says on standard error into its output.
+
+        Raises TimeoutError after so many seconds, and ends all of it.
+        """
         words = [str(word) for word in arguments]
         message = {"words": words, "cwd": str(cwd or Path.cwd()), "environment": dict(environment or os.environ)}
         pipes = [os.pipe() for _ in range(3)]
         theirs = [pipes[0][0], pipes[1][1], pipes[2][1]]
-        socket.send_fds(self._socket, [json.dumps(message).encode()], theirs)
+        handed = [*theirs[:2], theirs[1 if merged else 2]]
+        socket.send_fds(self._socket, [json.dumps(message).encode()], handed)
         for end in theirs:
             os.close(end)
         with (
@@ -123,7 +131,18 @@ def _run(fds: list[int], words: list[str], cwd: str, environment: dict[str, str]
     os.environ.update(environment)
     sys.stdin, sys.stdout, sys.stderr = (os.fdopen(k, "w" if k else "r", encoding="utf-8") for k in range(3))
     sys.argv[:] = ["voronoi-tiles", *words]
-    run()
+    code: object = 1
+    try:
+        run()
+    except SystemExit as end:
+        code = end.code
+    except BaseException:  # noqa: BLE001 - what Python itself would do
+        traceback.print_exc()
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError):  # the command has said so
+            stream.flush()
+    # To take a copy of everything apart takes longer than most commands.
+    os._exit(code if isinstance(code, int) else int(code is not None))
 
 
 if __name__ == "__main__":

@@ -28,7 +28,7 @@ FLAT = 1e-5
 @cache
 def period(name: str) -> Period:
     """One period of a design in its own frame."""
-    return engine(name).period
+    return tiling(name).tessellation.period
 
 
 def engine(name: str) -> Any:
@@ -85,7 +85,7 @@ def rounded(left: float, bottom: float, right: float, top: float, radius: float)
 
 def points_on(paths: Paths, k: int, t: Floats) -> Complexes:
     """Points of one piece: de Casteljau, and the circle through three points."""
-    a, b, m, n = paths.start[k], paths.end[k], *paths.control[k]
+    a, b, (m, n) = paths.start[k], paths.end[k], paths.control[k]
     match int(paths.kind[k]):
         case int(kind) if kind == LINE:
             return np.asarray(a + (b - a) * t)
@@ -220,7 +220,7 @@ class Sheet:
     @cached_property
     def slack(self) -> float:
         """The area that chords may make of the curves along a border of this length."""
-        return 2 * FLAT * (self.outline.length + max((tile.length for tile in self.tiles), default=0.0))
+        return float(2 * FLAT * (self.outline.length + max((tile.length for tile in self.tiles), default=0.0)))
 
 
 def region_area(region: Region) -> float:

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.paths import offset as offset_module
 from voronoi_tiles.paths.areas import ring_areas as areas
-from voronoi_tiles.paths.arrangement import Arrangement
+from voronoi_tiles.paths.arrangement import Arrangement, arrangement
 from voronoi_tiles.paths.biarcs import to_arcs
 from voronoi_tiles.paths.offset import OffsetError, offset, round_corners
 from voronoi_tiles.paths.paths import ARC, LINE, QUAD, Paths
@@ -280,7 +280,7 @@ def test_coincidences(distance: float, turn: complex) -> None:
 def between(area: float, region: Paths, distance: float) -> bool:
     """Whether an area is that of the offset by the distance, or by a little more or less, by another library."""
     sizes = [solid(region).buffer(distance * factor, quad_segs=100).area for factor in (0.9999, 1.0001)]
-    return min(sizes) - 3e-3 < area < max(sizes) + 3e-3
+    return bool(min(sizes) - 3e-3 < area < max(sizes) + 3e-3)
 
 
 def test_corners_are_rounded() -> None:
@@ -331,10 +331,9 @@ def test_bad_input_is_refused() -> None:
 
 def test_a_lost_part_fails_the_check(monkeypatch: pytest.MonkeyPatch) -> None:
     """A part that is missing, or at another distance, gives an error with its place, not a wrong contour."""
-    whole = offset_module.arrangement
 
     def without_one(*args: Any) -> Arrangement:
-        parts = whole(*args)
+        parts = arrangement(*args)
         names = ("segment", "t0", "t1", "tail", "head")
         return replace(parts, **{name: np.delete(getattr(parts, name), 3) for name in names})
 
@@ -346,7 +345,7 @@ def test_a_lost_part_fails_the_check(monkeypatch: pytest.MonkeyPatch) -> None:
     assert f"({caught.value.place.real:.6g}, " in str(caught.value)
 
     def moved(*args: Any) -> Arrangement:
-        parts = whole(*args)
+        parts = arrangement(*args)
         return replace(parts, nodes=parts.nodes + 1e-9)
 
     monkeypatch.setattr(offset_module, "arrangement", moved)

@@ -93,7 +93,7 @@ def test_moved(paths: Paths, angle: float, scale: float, conj: bool) -> None:
 @given(drawings())
 def test_shifted(paths: Paths) -> None:
     """Every path is moved by its own vector; the lengths of the paths stay."""
-    vectors = np.arange(len(paths)) * (1 - 2j)
+    vectors = np.arange(len(paths), dtype=np.complex128) * (1 - 2j)
     image = paths.shifted(vectors[paths.owner])
     check_joints(image)
     for k, vector in enumerate(vectors.tolist()):

@@ -7,6 +7,7 @@ import itertools
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -212,7 +213,7 @@ def test_the_overlay_of_symmetry_elements(tmp_path: Path) -> None:
     site = {"strokes": [{"segment": [[8, 6], [16, 9]]}]}
     design = vt.Design.from_dict({"schema": 1, "group": "p4g", "cell": {"a": 60.0}, "site": [site]})
     plain, marked = tmp_path / "plain.png", tmp_path / "marked.png"
-    options = {"size": 300, "region": (-30.0, -30.0, 30.0, 30.0), "renderer": "cpu"}
+    options: dict[str, Any] = {"size": 300, "region": (-30.0, -30.0, 30.0, 30.0), "renderer": "cpu"}
     render(design, plain, **options)
     render(design, marked, overlay=["symmetry"], **options)
     before, after = decoded(plain.read_bytes()), decoded(marked.read_bytes())
@@ -246,7 +247,7 @@ def test_art_is_drawn_on_every_copy_in_the_place_of_the_strokes(tmp_path: Path) 
     site = {"strokes": [{"segment": [[5, 4], [20, 12]]}], "art": "face.svg"}
     design = {"schema": 1, "group": "pg", "cell": {"a": 50.0, "b": 40.0}, "site": [site]}
     (tmp_path / "bird.json").write_text(json.dumps(design))
-    options = {"size": 1000, "region": (0.0, 0.0, 50.0, 50.0), "renderer": "cpu"}
+    options: dict[str, Any] = {"size": 1000, "region": (0.0, 0.0, 50.0, 50.0), "renderer": "cpu"}
     render(vt.Design.load(tmp_path / "bird.json"), tmp_path / "art.png", overlay=["art"], **options)
     pixels = decoded((tmp_path / "art.png").read_bytes())
 
@@ -341,7 +342,7 @@ def test_the_region_grows_to_the_shape_of_the_picture(tmp_path: Path) -> None:
         {"region": (1e9, 1e9, 1e9 + 1e-6, 1e9 + 1e-6)},
     ],
 )
-def test_impossible_pictures_are_refused(options: dict[str, object], tmp_path: Path) -> None:
+def test_impossible_pictures_are_refused(options: dict[str, Any], tmp_path: Path) -> None:
     """One message, and no file."""
     with pytest.raises(vt.DesignError):
         render(segment_design(), tmp_path / "x.png", renderer="cpu", **options)

@@ -9,6 +9,7 @@ import random
 import tracemalloc
 import xml.etree.ElementTree as ET
 from pathlib import Path
+from typing import Any
 
 import ezdxf
 import numpy as np
@@ -46,7 +47,7 @@ def serious(report: PreflightReport) -> list[Finding]:
 
 
 # What is planted, and what is to be found: kind, place as Inkscape shows it, size.
-PLANTED = {
+PLANTED: dict[str, tuple[str, list[tuple[str, Any, Any]]]] = {
     "nearly closed": ("<path d='M10 10H30V30H10V10.2'/>", [("gap", (10, 10.1), 0.2)]),
     "open": ("<path d='M40 10H60V30H40V20'/>", [("open", (40, 10), 10)]),
     "slit": ("<path d='M10 60H30'/>", [("loose end", (10, 60), None), ("loose end", (30, 60), None)]),
@@ -197,7 +198,7 @@ def test_our_own_files_pass(name: str, tmp_path: Path) -> None:
             for other in tile["neighbours"]
             if other["operation"] == "x,y" and other["site"] in names[number + 1 :]
         )
-        twice = sorted(finding.value for finding in report.findings if finding.kind == "duplicate")
+        twice = sorted(finding.value or 0.0 for finding in report.findings if finding.kind == "duplicate")
         assert twice == pytest.approx(shared, rel=1e-3)
         assert report.passed == (not shared)
         return

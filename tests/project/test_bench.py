@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -180,7 +181,7 @@ def test_cgal_gives_the_same_tile(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cgal, "FLAGS", ("-std=c++17", "-O0", "-frounding-math"))  # compiles in a third of the time
     case = engine.case_of("p6", 3)
     record = case.solve()
-    nodes = peer.block_nodes(case.site, case.lattice, engine.peer.neighbours(record))
+    nodes = peer.block_nodes(case.site, case.lattice, peer.neighbours(record))
     _, reading = cgal.run_cgal(case.site, nodes)
     segments = peer.block_segments(case.site, nodes)
     assert peer.tile_area(reading, segments) == pytest.approx(record.outline.area, rel=1e-12)
@@ -192,7 +193,7 @@ def test_cgal_gives_the_same_tile(monkeypatch: pytest.MonkeyPatch) -> None:
 
 def test_missing_cgal_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     """Without a compiler the reason is given, in the tables too."""
-    monkeypatch.setattr(cgal.shutil, "which", lambda _: None)
+    monkeypatch.setattr(shutil, "which", lambda _: None)
     monkeypatch.setattr(cgal, "version", cgal.version.__wrapped__)
     assert "g++ is missing" in cgal.described()
     assert not engine.has_cgal()

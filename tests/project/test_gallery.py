@@ -98,8 +98,8 @@ def difference(first: Path, second: Path) -> float:
             return 1.0
         pairs = zip(NUMBER.findall(one), NUMBER.findall(other), strict=True)
         return float(any(abs(float(a) - float(b)) > OTHER_NUMBERS for a, b in pairs))
-    one, other = decoded(first.read_bytes()), decoded(second.read_bytes())
-    return 1.0 if one.shape != other.shape else float(np.any(one != other, axis=-1).mean())
+    old, new = decoded(first.read_bytes()), decoded(second.read_bytes())
+    return 1.0 if old.shape != new.shape else float(np.any(old != new, axis=-1).mean())
 
 
 def anew(command: Command, folder: Path, voronoi_tiles: CommandLine) -> float:

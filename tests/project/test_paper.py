@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
@@ -45,7 +46,7 @@ from straight_lines import endless_lines, mirror_lines, same_line  # noqa: E402
 FREE = ("p1", "p2", "pg", "pgg", "p4", "p3", "p6")
 
 
-def tiling_of(group: str, strokes: list[object], **cell: float) -> vt.Tiling:
+def tiling_of(group: str, strokes: Sequence[object], **cell: float) -> vt.Tiling:
     """The tiles of one site."""
     design = {"schema": 1, "group": group, "cell": cell, "site": [{"strokes": strokes}]}
     return vt.Design.from_dict(design).tessellate()
@@ -105,7 +106,8 @@ def test_shapes_are_known_again(group: str) -> None:
     outline = tiling.tiles[0].outline
     shape = Shape.of(outline)
     turn = np.exp(0.7j)
-    moved = Shape(*(turn * points + (31 - 12j) for points in shape[:3]), shape.curved)
+    start, control, end = (turn * points + (31 - 12j) for points in shape[:3])
+    moved = Shape(start, control, end, shape.curved)
     assert congruent(shape, moved)
     assert congruent(shape.mirrored, moved.mirrored)
     for operation in GROUPS[group].operations:
@@ -190,7 +192,7 @@ def test_the_verdicts_can_be_otherwise() -> None:
     found = census("p4m", 8)
     tile = found.tiles[3]
 
-    def with_tile(**changed: float) -> Census:
+    def with_tile(**changed: Any) -> Census:
         return replace(found, tiles=[*found.tiles[:3], replace(tile, **changed), *found.tiles[4:]])
 
     assert fixed_polygon(found).holds

@@ -24,7 +24,7 @@ from voronoi_tiles.raster import block_lists as candidates
 from voronoi_tiles.raster import cpu, hoff
 from voronoi_tiles.raster import reference as judge
 from voronoi_tiles.raster import scene as copies
-from voronoi_tiles.raster.block_lists import find_candidates
+from voronoi_tiles.raster.block_lists import BlockLists, find_candidates
 from voronoi_tiles.raster.frame import BLOCK, PHASE, Frame, cell_frame, rectangle_frame
 from voronoi_tiles.raster.gl import element_records
 from voronoi_tiles.raster.reference import Judge, decode, encode
@@ -168,7 +168,8 @@ class Truth:
         own = np.empty((2, count))
         for label in np.unique(labels).tolist():
             layer, sample = np.nonzero(labels == label)
-            own[layer, sample] = self.distance(*named[label][1:], z[sample])
+            _, site, motion = named[label]
+            own[layer, sample] = self.distance(site, motion, z[sample])
 
         slack = self.slack(z)
         decided = 0
@@ -203,7 +204,7 @@ def two_nearest(label: NDArray[np.int32], distance: Floats) -> tuple[Floats, Int
     start = np.flatnonzero(np.append(True, label[1:] != label[:-1]))
     nearest = np.minimum.reduceat(distance, start)
     two = np.argsort(nearest, kind="stable")[:2]
-    return nearest[two], label[start[two]]
+    return nearest[two], label[start[two]].astype(np.intp)
 
 
 def in_disc(rng: np.random.Generator, count: int) -> Complexes:
@@ -253,7 +254,8 @@ def test_a_frame_s_disc_holds_its_samples_and_their_neighbours() -> None:
     rng = np.random.default_rng(2)
     for _ in range(100):
         u, v = (complex(*rng.normal(size=2)) for _ in range(2))
-        frame = Frame(5j, u, v, *(int(n) for n in rng.integers(1, 40, 2)), PHASE, 7, 9)
+        wide, high = rng.integers(1, 40, 2).tolist()
+        frame = Frame(5j, u, v, wide, high, PHASE, 7, 9)
         corners = frame.offsets(np.array([-1.0, frame.width]), np.array([[-1.0], [frame.height]]))
         far = float(np.abs(corners - frame.middle).max())
         assert far <= frame.radius * (1 + 1e-12) <= far + 2 * (abs(u) + abs(v)) * (1 + 1e-9)
@@ -481,16 +483,16 @@ def test_scenes_are_united() -> None:
 # --- candidate lists ----------------------------------------------------------------------------------------
 
 
-def lists_of(pattern: Pattern, frame: Frame, looseness: float = 0.0) -> candidates.Candidates:
+def lists_of(pattern: Pattern, frame: Frame, looseness: float = 0.0) -> BlockLists:
     """The lists of a frame's blocks."""
     return find_candidates(gather(pattern, frame.origin, frame.middle, frame.radius), frame, looseness=looseness)
 
 
-def list_of(lists: candidates.Candidates, block: int) -> Ints:
+def list_of(lists: BlockLists, block: int) -> Ints:
     """The elements of one block."""
     runs = slice(lists.run_start[block], lists.run_start[block + 1])
     first, last = lists.element_start[runs.start], lists.element_start[runs.stop]
-    element = lists.element[first:last].astype(np.intp)
+    element: Ints = lists.element[first:last].astype(np.intp)
     size = np.diff(lists.element_start)[runs]
     assert (lists.scene.label[element] == np.repeat(lists.run_label[runs], size)).all()
     assert (np.diff(lists.run_label[runs]) > 0).all()
@@ -709,10 +711,11 @@ def test_few_runs_at_once_give_the_same_image(monkeypatch: pytest.MonkeyPatch) -
     pattern = one("p6", {"segment": [[8, 3], [23, 7]]}, {"point": [20, 3]})
     frame = cell_frame(pattern.lattice, 75)
     lists = lists_of(pattern, frame)
-    whole = cpu.render(lists, frame)
+    whole: list[NDArray[Any]] = list(cpu.render(lists, frame))
     for runs in (1, 7, 10**6):
         monkeypatch.setattr(cpu, "_RUNS", runs)
-        assert all((one == other).all() for one, other in zip(cpu.render(lists, frame), whole, strict=True))
+        parts: list[NDArray[Any]] = list(cpu.render(lists, frame))
+        assert all(np.array_equal(part, same) for part, same in zip(parts, whole, strict=True))
 
 
 # --- meshes -------------------------------------------------------------------------------------------------
@@ -867,7 +870,7 @@ def test_crossings_are_equidistant_and_nothing_is_nearer(group: str) -> None:
         truth, image = Truth(pattern), Renderer("cpu").render(pattern, frame)
         steps = steps_of(image)
         chosen = rng.permutation(len(steps.column))[:30]
-        steps = Steps(*(column[chosen] for column in steps))
+        steps = Steps._make(column[chosen] for column in steps)
         if not len(chosen):
             continue
         found = judge_of(pattern, frame).certify(*steps)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -273,7 +274,7 @@ def test_without_copies_nobody_owns_anything() -> None:
 @pytest.mark.parametrize(
     "change", [{"nx": 0}, {"ny": -1}, {"b": 40 + 0j}, {"a": complex("nan")}, {"origin": complex("inf")}]
 )
-def test_grids_without_samples_are_refused(change: dict[str, complex]) -> None:
+def test_grids_without_samples_are_refused(change: dict[str, Any]) -> None:
     """No samples, no area, no place."""
     with pytest.raises(ValueError, match="a grid needs"):
         replace(UNIT_GRID, **change)
