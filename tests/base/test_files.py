@@ -191,7 +191,7 @@ def test_open_descriptors_by_their_names(tmp_path: Path) -> None:
         ("missing/a.svg", "No such file or directory. Make its folder first"),
         ("file/a.svg", "Not a directory. A part of its path is a file"),
         ("n" * 300, "File name too long. Choose a shorter name."),
-        ("a\0b", "null byte. Choose another name or place."),
+        ("a\0b", ": its name has a null byte. Choose another name or place."),
     ],
 )
 def test_messages_have_a_remedy(name: str, message: str, tmp_path: Path) -> None:

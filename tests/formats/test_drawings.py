@@ -249,8 +249,9 @@ def test_compressed_files_and_doctypes_are_read(tmp_path: Path) -> None:
     other.write_text("hello")
     with pytest.raises(DrawingError, match="neither an SVG nor a DXF"):
         read_drawing(other)
-    with pytest.raises(DrawingError, match="cannot be read"):
-        read_drawing(tmp_path / "none.svg")
+    for name, reason in (("none.svg", "No such file"), ("a\0b", "its name has a null byte")):
+        with pytest.raises(DrawingError, match=f"cannot be read: {reason}"):
+            read_drawing(tmp_path / name)
 
 
 def all_kinds(document: Any, space: Any) -> None:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, cast
 
-from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.base.errors import DesignError, why_not_opened
 from voronoi_tiles.base.tolerance import FILE_BYTES_MAX
 from voronoi_tiles.base.values import shown
 
@@ -26,8 +26,7 @@ def read_document(file: str, what: str, *, missing: str, remedy: str = "") -> st
             with Path(file).open("rb") as stream:
                 data = stream.read(FILE_BYTES_MAX + 1)
     except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or str(error)
-        raise DesignError(f"cannot read the {what}: {reason}", remedy=missing) from None
+        raise DesignError(f"cannot read the {what}: {why_not_opened(file, error)}", remedy=missing) from None
     if len(data) > FILE_BYTES_MAX:
         raise DesignError(f"larger than {FILE_BYTES_MAX // 2**20} MiB", remedy=_joined(f"Is it a {what}?", remedy))
     try:

@@ -145,3 +145,10 @@ class OutputError(_RemediedError, OSError):
     def __init__(self, message: str, path: str | os.PathLike[str] | None = None, *, remedy: str | None = None) -> None:
         super().__init__(message, remedy=remedy)
         self.path = path
+
+
+def why_not_opened(name: str, error: Exception) -> str:
+    """The reason why a file could not be opened, read or written: the system's words, where it was asked."""
+    if "\0" in name:
+        return "its name has a null byte"  # Python's own words for that differ from version to version
+    return getattr(error, "strerror", None) or str(error)

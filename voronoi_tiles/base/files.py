@@ -14,7 +14,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from voronoi_tiles.base.errors import OutputError
+from voronoi_tiles.base.errors import OutputError, why_not_opened
 
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
@@ -89,11 +89,11 @@ def writing(path: str | os.PathLike[str]) -> Iterator[io.RawIOBase]:
 
 def output_error(path: str, error: Exception) -> OutputError:
     """Say why a file could not be written, and what to do."""
-    reason, remedy = str(error), None
-    if isinstance(error, OSError) and error.errno is not None:
-        reason, remedy = error.strerror or reason, _REMEDIES.get(error.errno)
+    remedy = _REMEDIES.get(error.errno) if isinstance(error, OSError) and error.errno is not None else None
     return OutputError(
-        f"cannot write {path or repr(path)}: {reason}", path=path, remedy=remedy or "Choose another name or place."
+        f"cannot write {path or repr(path)}: {why_not_opened(path, error)}",
+        path=path,
+        remedy=remedy or "Choose another name or place.",
     )
 
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, BinaryIO, Final
 
-from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.base.errors import DesignError, why_not_opened
 from voronoi_tiles.paths.paths import Paths
 
 BYTES_MAX: Final = 256 * 2**20
@@ -100,7 +100,7 @@ def load_bytes(name: str) -> bytes:
     except (OSError, ValueError) as error:
         if isinstance(error, DrawingError):
             raise
-        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        reason = why_not_opened(name, error)
         raise DrawingError(f"cannot be read: {reason}", file=name or repr(name), remedy="Check the name.") from error
 
 
