@@ -13,7 +13,7 @@ from unittest import mock
 import mpmath
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -170,6 +170,7 @@ PLAIN = st.lists(
 
 
 @given(PLAIN)
+@example("5 M0 0 L 1")  # a number before the first command, and one too few after it
 def test_data_drawn_at_once_are_the_same(data: str) -> None:
     """The short way for long data draws the same bits as command by command, or leaves them alone."""
     pens = PathPen(0.1), PathPen(0.1)

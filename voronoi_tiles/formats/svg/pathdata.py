@@ -117,7 +117,7 @@ def _drawn_at_once(pen: PathPen, data: str) -> bool:
         return False
     signs = _SIGNS[np.frombuffer(text, np.uint8)]
     numeral, letters = signs == _NUMERAL, np.flatnonzero(signs >= 0)
-    begins = np.flatnonzero(numeral[1:] > numeral[:-1])  # of numbers: each ends at a blank or a letter
+    begins = np.flatnonzero(np.diff(numeral, prepend=False) & numeral)  # of numbers: each ends at a blank or a letter
     kind = signs[letters].astype(np.uint8)
     counts = np.diff(np.append(np.searchsorted(begins, letters), len(values)))
     size = 2 * POINTS[kind]
