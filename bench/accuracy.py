@@ -34,7 +34,7 @@ from report import machine, published, table
 from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.base.errors import TouchingCopiesError
 from voronoi_tiles.base.operations import Operation
-from voronoi_tiles.designs.site import Site, build_site
+from voronoi_tiles.designs.site import NodedSite, build_site
 from voronoi_tiles.groups.wallpaper import GROUPS, Lattice, WallpaperGroup
 from voronoi_tiles.vector.outline import Outline
 from voronoi_tiles.vector.tessellation import TileRecord, tessellate
@@ -191,7 +191,7 @@ class Drawing(NamedTuple):
     """A design: its group, and the site's one curve cut into segments."""
 
     group: WallpaperGroup
-    site: Site
+    site: NodedSite
     lattice: Lattice
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from peer import Reading
 
-from voronoi_tiles.designs.site import Site
+from voronoi_tiles.designs.site import NodedSite
 
 SOURCE = Path(__file__).with_name("cgal.cpp")
 FLAGS = ("-std=c++17", "-O3", "-DNDEBUG", "-frounding-math")
@@ -60,7 +60,7 @@ def _program() -> Path:
     return program
 
 
-def run_cgal(site: Site, nodes: NDArray[np.complex128]) -> tuple[float, Reading]:
+def run_cgal(site: NodedSite, nodes: NDArray[np.complex128]) -> tuple[float, Reading]:
     """Build the graph and read the cells of the base site back.
 
     Args:
@@ -86,7 +86,7 @@ def run_cgal(site: Site, nodes: NDArray[np.complex128]) -> tuple[float, Reading]
     return float(first), Reading(list(cells.items()), owner)
 
 
-def _input_text(site: Site, nodes: NDArray[np.complex128]) -> str:
+def _input_text(site: NodedSite, nodes: NDArray[np.complex128]) -> str:
     """Write what cgal.cpp reads; repr gives back the very same doubles."""
     copies, count = nodes.shape
     shifts = count * np.arange(copies)[:, None, None]
@@ -97,7 +97,7 @@ def _input_text(site: Site, nodes: NDArray[np.complex128]) -> str:
     return "\n".join(rows)
 
 
-def _owners(site: Site, copies: int) -> list[tuple[int, int]]:
+def _owners(site: NodedSite, copies: int) -> list[tuple[int, int]]:
     """Give the segment and the category of each cell as Boost.Polygon numbers them: 1 start, 2 end, 3 open segment."""
     of_node: list[tuple[int, int]] = [(-1, 0)] * len(site.nodes)
     for k, ends in enumerate(site.segments.tolist()):
@@ -109,7 +109,7 @@ def _owners(site: Site, copies: int) -> list[tuple[int, int]]:
     return points + [(k, 3) for k in range(copies * count)]
 
 
-def _straight(site: Site, owner: Sequence[tuple[int, int]], cell: int, beyond: int) -> bool:
+def _straight(site: NodedSite, owner: Sequence[tuple[int, int]], cell: int, beyond: int) -> bool:
     """Whether two cells have a straight edge: two points, two segments, or a segment and an end of its own."""
     (one, first), (two, second) = owner[cell], owner[beyond]
     if (first == 3) == (second == 3):

@@ -32,7 +32,7 @@ from report import machine, published, table
 
 from voronoi_tiles import Design
 from voronoi_tiles.base.operations import Operation
-from voronoi_tiles.designs.site import Site, build_site
+from voronoi_tiles.designs.site import NodedSite, build_site
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.vector.proof import prove
 from voronoi_tiles.vector.tessellation import TileRecord, tessellate
@@ -65,7 +65,7 @@ Complexes = NDArray[np.complex128]
 class Case(NamedTuple):
     """One problem: a curve of so many segments under a group."""
 
-    site: Site
+    site: NodedSite
     group: WallpaperGroup
     lattice: Lattice
 
@@ -264,14 +264,14 @@ def print_stages(group: str, most: int) -> None:
     )
     for tolerance in (1.0, 0.1, 0.01, 1e-3, 1e-4, 1e-6):
         design = design_of(group, tolerance)
-        record = tessellate(design.sites, design.group, design.lattice)
+        record = tessellate(design.noded, design.group, design.lattice)
         stages: list[Callable[[], object]] = [
             partial(design_of, group, tolerance),
-            partial(tessellate, design.sites, design.group, design.lattice),
+            partial(tessellate, design.noded, design.group, design.lattice),
             partial(prove, design.group, design.lattice, record),
         ]
         times = [min(stopwatch(stage) for _ in range(min(most, 5))) * 1e3 for stage in stages]
-        print(f"| {tolerance:g} | {len(design.sites[0].segments)} | " + " | ".join(f"{t:.2f}" for t in times) + " |")
+        print(f"| {tolerance:g} | {len(design.noded[0].segments)} | " + " | ".join(f"{t:.2f}" for t in times) + " |")
 
 
 def process_cost(command: Sequence[str], runs: int) -> float:

@@ -20,7 +20,7 @@ from mpmath import mpc, mpf
 from numpy.typing import NDArray
 
 from voronoi_tiles.base.operations import Operation
-from voronoi_tiles.designs.site import Site
+from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 
 # So that 50 are left where the elements are nearly parallel: they take up to 25.
@@ -55,7 +55,7 @@ class Plane:
     `mirrored` are the numbers of the copies that are the site's images in a mirror.
     """
 
-    site: Site
+    site: NodedSite
     nodes: Complexes
     size: float
     exact: Callable[[int, int], Any]
@@ -105,7 +105,7 @@ class Plane:
         return np.concatenate((ending, lines), axis=1).ravel()
 
 
-def exact_images(site: Site, lattice: Lattice, group: WallpaperGroup, copies: Sequence[Operation]) -> Plane:
+def exact_images(site: NodedSite, lattice: Lattice, group: WallpaperGroup, copies: Sequence[Operation]) -> Plane:
     """Give the plane of exact copies: the operation in 50 digits, applied to the doubles of the site."""
     a, b = mpc(lattice.a), mpc(lattice.b)
     if group.system == "hexagonal":
@@ -128,7 +128,7 @@ def exact_images(site: Site, lattice: Lattice, group: WallpaperGroup, copies: Se
     return Plane(site, peer.block_nodes(site, lattice, copies[1:]), longer_side(lattice), image, mirrored)
 
 
-def as_given(site: Site, nodes: Complexes, size: float) -> Plane:
+def as_given(site: NodedSite, nodes: Complexes, size: float) -> Plane:
     """Give the plane of copies whose nodes are these very doubles."""
     return Plane(site, nodes, size, lambda copy, node: mpc(complex(nodes[copy, node])))
 

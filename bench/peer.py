@@ -17,7 +17,7 @@ import pyvoronoi
 from numpy.typing import NDArray
 
 from voronoi_tiles.base.operations import Operation
-from voronoi_tiles.designs.site import Site
+from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.groups.wallpaper import Lattice
 from voronoi_tiles.vector.tessellation import TileRecord
 
@@ -46,12 +46,12 @@ class Reading:
     owner: list[tuple[int, int]]
 
 
-def block_nodes(site: Site, lattice: Lattice, copies: Iterable[Operation]) -> Complexes:
+def block_nodes(site: NodedSite, lattice: Lattice, copies: Iterable[Operation]) -> Complexes:
     """Give the nodes of the site and then of its copies, complex128 (copies + 1, m)."""
     return np.array([site.nodes, *(lattice.isometry(operation)(site.nodes) for operation in copies)])
 
 
-def block_segments(site: Site, nodes: Complexes) -> list[Segment]:
+def block_segments(site: NodedSite, nodes: Complexes) -> list[Segment]:
     """Give the segments of a block of copies, which has these nodes, as pyvoronoi takes them."""
     ends = nodes[:, site.segments].reshape(-1, 2)
     segments: list[Segment] = np.stack((ends.real, ends.imag), axis=-1).tolist()

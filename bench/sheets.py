@@ -24,7 +24,7 @@ from pathlib import Path
 from report import machine, published
 
 from voronoi_tiles import Design, Job
-from voronoi_tiles.fabrication import Product
+from voronoi_tiles.fabrication.product import Product
 
 SHEET = (600.0, 300.0)
 SEGMENTS = 24

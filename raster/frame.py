@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, Floats
+from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.groups.wallpaper import Lattice
 
 BLOCK = 16
@@ -38,7 +39,7 @@ class Frame:
 
     def __post_init__(self) -> None:
         if self.width < 1 or self.height < 1:
-            raise ValueError(f"an image of {self.width} x {self.height} samples is empty")
+            raise ArgumentError(f"an image of {self.width} x {self.height} samples is empty")
 
     @property
     def pixel(self) -> float:
@@ -101,9 +102,9 @@ def rectangle_frame(region: tuple[float, float, float, float], width: int, heigh
     """The frame of a picture of the rectangle x0, y0, x1, y1: the first row at the top, samples at pixels' middles."""
     x0, y0, x1, y1 = region
     if not (x1 > x0 and y1 > y0):
-        raise ValueError(f"the region {region} is empty")
+        raise ArgumentError(f"the region {region} is empty")
     if width < 1 or height < 1:
-        raise ValueError(f"an image of {width} x {height} samples is empty")
+        raise ArgumentError(f"an image of {width} x {height} samples is empty")
     return Frame(
         complex(x0, y1), complex((x1 - x0) / width), complex(0.0, (y0 - y1) / height), width, height, (0.5, 0.5)
     )

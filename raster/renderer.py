@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voronoi_tiles.base.arrays import Ints
-from voronoi_tiles.base.errors import RenderError
+from voronoi_tiles.base.errors import ArgumentError, RenderError
 from voronoi_tiles.raster import cpu, hoff
 from voronoi_tiles.raster.block_lists import BlockLists, find_candidates
 from voronoi_tiles.raster.frame import BLOCK, WINDOW, Frame
@@ -92,14 +92,14 @@ class Renderer:
         sides: int = hoff.SIDES,
         notice: Callable[[str], None] | None = None,
     ) -> None:
-        """Find the device. Raises RenderError where `choice` is "gl" and there is none."""
+        """Find the device. Raises RenderError where `choice` is "gl" and there is none, ArgumentError for bad words."""
         for name, value, known in (("renderer", choice, get_args(Choice)), ("method", method, get_args(Method))):
             if value not in known:
-                raise ValueError(f"unknown {name} {value!r}: use {', '.join(known)}")
+                raise ArgumentError(f"`{name}` {value!r} is unknown", remedy=f"Use one of {', '.join(known)}.")
         if sides < 4 or sides % 4:
             raise ValueError(f"cones have 4, 8, 12, ... sides, not {sides}")
         if device is not None and operator.index(device) < 0:
-            raise ValueError(f"no number of a device: {device}")
+            raise ArgumentError(f"`device` {device} is no number of a device", remedy="Count them from 0.")
         self._choice, self._method, self._compute, self._sides = choice, method, compute, sides
         self._notice = notice or (lambda _: None)
         self._fallback = ""
@@ -200,7 +200,9 @@ class Renderer:
             forget(self._device)
         self._device = None
         if self._choice == "gl":
-            raise RenderError(f"OpenGL failed: {error}", remedy="Use --renderer cpu, or auto.") from error
+            raise RenderError(
+                f"OpenGL failed: {error}", remedy="Use `renderer='cpu'`, or `renderer='auto'`."
+            ) from error
         self._fallback = str(error)
         self._notice(f"OpenGL {what} ({error}). Using the CPU renderer.{_remedy(str(error))}")
 

@@ -16,7 +16,7 @@ from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import Isometry
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.base.tolerance import EPSILON, SAME_POINT
-from voronoi_tiles.designs.site import Site
+from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.raster.frame import Frame
 
@@ -38,7 +38,7 @@ class Coset(NamedTuple):
 class Pattern:
     """The sites of a design under a wallpaper group, over a lattice."""
 
-    sites: tuple[Site, ...]
+    sites: tuple[NodedSite, ...]
     group: WallpaperGroup
     lattice: Lattice
 
@@ -95,7 +95,7 @@ class Pattern:
         """
         return 16 * EPSILON * max(self.scale, abs(frame.origin + frame.middle) + frame.radius)
 
-    def _symmetry(self, site: Site) -> tuple[Operation, ...]:
+    def _symmetry(self, site: NodedSite) -> tuple[Operation, ...]:
         """The operations that map a site onto itself: they map its nodes' centre to itself."""
         nodes = site.nodes
         middle = nodes[len(nodes) // 2]

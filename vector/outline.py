@@ -10,12 +10,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from math import fsum
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, Any, Final, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
 
 from voronoi_tiles.base.arrays import Complexes, Floats
+from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.maps import Isometry
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.paths.conversion import chord_counts, chords
@@ -25,6 +26,9 @@ from voronoi_tiles.vector.arcs import Arc, LineArc, Neighbour, ParabolaArc
 if TYPE_CHECKING:
     from shapely import MultiPolygon, Polygon
 
+
+DISPLAY_SHARE: Final = 1e-4
+"""How far the chords of `__geo_interface__` and of pictures are from an outline; relative to its larger side."""
 
 _SPLITTER = 134217729.0  # 2**27 + 1 cuts a float64 into two halves of 26 bits (Dekker 1971)
 
@@ -82,6 +86,22 @@ class Outline:
     def __len__(self) -> int:
         """The number of arcs."""
         return len(self.start)
+
+    def __repr__(self) -> str:
+        rings = len(self.ring_offsets) - 1
+        return f"<Outline: {len(self)} edges in {rings} ring{'s' * (rings != 1)}>"
+
+    @property
+    def __geo_interface__(self) -> dict[str, Any]:
+        """The outline as GeoJSON names it, Polygon or MultiPolygon, within `display_accuracy`."""
+        shape: dict[str, Any] = self.to_shapely(accuracy=self.display_accuracy).__geo_interface__
+        return shape
+
+    @property
+    def display_accuracy(self) -> float:
+        """How far chords are from the outline where nobody says: DISPLAY_SHARE of its larger side, in units."""
+        low_x, low_y, high_x, high_y = self.bounds
+        return DISPLAY_SHARE * max(high_x - low_x, high_y - low_y)
 
     @cached_property
     def rings(self) -> tuple[tuple[Arc, ...], ...]:
@@ -146,22 +166,22 @@ class Outline:
     def bounds(self) -> tuple[float, float, float, float]:
         """The smallest upright rectangle around the arcs: least x, least y, greatest x, greatest y, in units.
 
-        Raises ValueError for an outline without arcs.
+        Raises ArgumentError for an outline without arcs.
         """
         if not len(self):
-            raise ValueError("an outline without arcs has no bounds")
+            raise ArgumentError("an outline without arcs has no bounds")
         return self.paths.bounds
 
     def flatten(self, *, accuracy: float) -> list[Complexes]:
         """Replace every parabolic arc by chords that stay within `accuracy` (in units) of it.
 
         Returns one complex128 array per ring, closed implicitly: the first point is not repeated. An arc and its
-        reverse give the same points bit for bit. Raises ValueError when the accuracy is not positive, or finer than
+        reverse give the same points bit for bit. Raises ArgumentError when the accuracy is not positive, or finer than
         the coordinates' own resolution. See `paths.conversion.chords`.
         """
         size = float(np.abs(self.start).max(initial=0.0))
         if not accuracy > 4 * np.finfo(np.float64).eps * size:
-            raise ValueError(f"accuracy {accuracy!r} must be positive and above the coordinates' resolution")
+            raise ArgumentError(f"`accuracy` {accuracy!r} must be positive and above the coordinates' resolution")
         counts = np.maximum(np.ceil(chord_counts(self.paths, accuracy)), 1.0).astype(np.intp)
         lines = chords(self.paths, counts)
         return np.split(lines.start, lines.offsets[1:-1]) if len(self) else []

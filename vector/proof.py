@@ -21,7 +21,7 @@ from voronoi_tiles.base.components import components
 from voronoi_tiles.base.errors import ProofError
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.base.tolerance import PROOF_LIMIT
-from voronoi_tiles.designs.site import Site
+from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.vector.outline import Outline
 from voronoi_tiles.vector.tessellation import LocalTile, TileRecord, tessellate
@@ -35,7 +35,7 @@ _FEW = 256
 
 
 def proved_tiles(
-    sites: Sequence[Site], group: WallpaperGroup, lattice: Lattice
+    sites: Sequence[NodedSite], group: WallpaperGroup, lattice: Lattice
 ) -> tuple[list[TileRecord], ProofReport]:
     """The tile of each site, and the proof that they are right.
 

@@ -17,7 +17,7 @@ from voronoi_tiles.base.arrays import Complexes, Ints
 from voronoi_tiles.base.errors import ProofError
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.base.tolerance import SAME_POINT
-from voronoi_tiles.designs.site import Site
+from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.vector.arcs import Neighbour
 from voronoi_tiles.vector.cells.bisectors import TouchingElementsError
@@ -162,7 +162,7 @@ class Tessellation:
 
 
 def tessellate(
-    sites: Sequence[Site], group: WallpaperGroup, lattice: Lattice, *, without_short: bool = False
+    sites: Sequence[NodedSite], group: WallpaperGroup, lattice: Lattice, *, without_short: bool = False
 ) -> list[TileRecord]:
     """The tile of each site of a design: all that is nearer to it than to any other copy of any site.
 

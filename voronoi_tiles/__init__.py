@@ -12,78 +12,171 @@ from voronoi_tiles.base.version import __version__
 
 if TYPE_CHECKING:
     from voronoi_tiles.base.errors import (
+        ArgumentError,
         CheckError,
         DesignError,
+        MissingLibraryError,
         OutputError,
         ProofError,
         RenderError,
         TouchingCopiesError,
+        UnknownNameError,
         VoronoiTilesError,
     )
-    from voronoi_tiles.base.maps import Isometry
+    from voronoi_tiles.base.maps import Isometry, Placement
     from voronoi_tiles.base.operations import Operation
-    from voronoi_tiles.crosscheck import CheckReport
+    from voronoi_tiles.crosscheck.check_report import CheckReport, Figure, Marks
+    from voronoi_tiles.designs.art import Art
     from voronoi_tiles.designs.design import Design
-    from voronoi_tiles.designs.site import Site
-    from voronoi_tiles.fabrication import Job, JobError, Product
+    from voronoi_tiles.designs.drawn_site import Site
+    from voronoi_tiles.designs.drawn_strokes import (
+        Stroke,
+        bezier,
+        bspline,
+        catmull_rom,
+        circle,
+        hermite,
+        path,
+        point,
+        polyline,
+        segment,
+    )
+    from voronoi_tiles.designs.site import NodedSite
+    from voronoi_tiles.designs.starters import starter, starter_text
+    from voronoi_tiles.fabrication.coupon import coupon
+    from voronoi_tiles.fabrication.exporting import Exported
+    from voronoi_tiles.fabrication.inventory import Inventory
+    from voronoi_tiles.fabrication.job import Job
+    from voronoi_tiles.fabrication.job_options import JobError
+    from voronoi_tiles.fabrication.product import Product
+    from voronoi_tiles.formats.page import Drawing, Layer
+    from voronoi_tiles.formats.shapes import DrawingError, ReadDrawing, Shape
     from voronoi_tiles.groups.wallpaper import GROUPS, Lattice, WallpaperGroup
-    from voronoi_tiles.pictures.rendering import render
-    from voronoi_tiles.tiling import Tile, Tiling
+    from voronoi_tiles.paths.paths import Paths
+    from voronoi_tiles.pictures.rendered import Rendering
+    from voronoi_tiles.pictures.rendering import RenderOptions, render
+    from voronoi_tiles.preflight import preflight
+    from voronoi_tiles.preflight.findings import Finding, LayerUse, Limits, PreflightReport
+    from voronoi_tiles.raster.frame import Frame
+    from voronoi_tiles.raster.renderer import Provenance
+    from voronoi_tiles.tile import Tile, TileCopy
+    from voronoi_tiles.tiling import Tiling
     from voronoi_tiles.vector.arcs import Arc, LineArc, Neighbour, ParabolaArc
     from voronoi_tiles.vector.outline import Outline
+    from voronoi_tiles.vector.proof import ProofReport
 
 
 __all__ = [
     "GROUPS",
     "Arc",
+    "ArgumentError",
+    "Art",
     "CheckError",
     "CheckReport",
     "Design",
     "DesignError",
+    "Drawing",
+    "DrawingError",
+    "Exported",
+    "Figure",
+    "Finding",
+    "Frame",
+    "Inventory",
     "Isometry",
     "Job",
     "JobError",
     "Lattice",
+    "Layer",
+    "LayerUse",
+    "Limits",
     "LineArc",
+    "Marks",
+    "MissingLibraryError",
     "Neighbour",
+    "NodedSite",
     "Operation",
     "Outline",
     "OutputError",
     "ParabolaArc",
+    "Paths",
+    "Placement",
+    "PreflightReport",
     "Product",
     "ProofError",
+    "ProofReport",
+    "Provenance",
+    "ReadDrawing",
     "RenderError",
+    "RenderOptions",
+    "Rendering",
+    "Shape",
     "Site",
+    "Stroke",
     "Tile",
+    "TileCopy",
     "Tiling",
     "TouchingCopiesError",
+    "UnknownNameError",
     "VoronoiTilesError",
     "WallpaperGroup",
     "__version__",
+    "bezier",
+    "bspline",
+    "catmull_rom",
+    "circle",
+    "coupon",
+    "hermite",
+    "path",
+    "point",
+    "polyline",
+    "preflight",
     "render",
+    "segment",
+    "starter",
+    "starter_text",
 ]
 
 _HOMES = {
-    "voronoi_tiles.crosscheck": ("CheckReport",),
-    "voronoi_tiles.designs.design": ("Design",),
     "voronoi_tiles.base.errors": (
-        "CheckError",
-        "DesignError",
-        "OutputError",
-        "ProofError",
-        "RenderError",
-        "TouchingCopiesError",
-        "VoronoiTilesError",
+        "ArgumentError CheckError DesignError MissingLibraryError OutputError ProofError RenderError "
+        "TouchingCopiesError UnknownNameError VoronoiTilesError"
     ),
-    "voronoi_tiles.fabrication": ("Job", "JobError", "Product"),
-    "voronoi_tiles.pictures.rendering": ("render",),
-    "voronoi_tiles.designs.site": ("Site",),
-    "voronoi_tiles.tiling": ("Tile", "Tiling"),
-    "voronoi_tiles.vector.arcs": ("Arc", "LineArc", "Neighbour", "ParabolaArc"),
-    "voronoi_tiles.vector.outline": ("Outline",),
-    "voronoi_tiles.groups.wallpaper": ("GROUPS", "Isometry", "Lattice", "Operation", "WallpaperGroup"),
+    "voronoi_tiles.base.maps": "Isometry Placement",
+    "voronoi_tiles.base.operations": "Operation",
+    "voronoi_tiles.crosscheck.check_report": "CheckReport Figure Marks",
+    "voronoi_tiles.designs.art": "Art",
+    "voronoi_tiles.designs.design": "Design",
+    "voronoi_tiles.designs.drawn_site": "Site",
+    "voronoi_tiles.designs.drawn_strokes": (
+        "Stroke bezier bspline catmull_rom circle hermite path point polyline segment"
+    ),
+    "voronoi_tiles.designs.site": "NodedSite",
+    "voronoi_tiles.designs.starters": "starter starter_text",
+    "voronoi_tiles.fabrication.coupon": "coupon",
+    "voronoi_tiles.fabrication.exporting": "Exported",
+    "voronoi_tiles.fabrication.inventory": "Inventory",
+    "voronoi_tiles.fabrication.job": "Job",
+    "voronoi_tiles.fabrication.job_options": "JobError",
+    "voronoi_tiles.fabrication.product": "Product",
+    "voronoi_tiles.formats.page": "Drawing Layer",
+    "voronoi_tiles.formats.shapes": "DrawingError ReadDrawing Shape",
+    "voronoi_tiles.groups.wallpaper": "GROUPS Lattice WallpaperGroup",
+    "voronoi_tiles.paths.paths": "Paths",
+    "voronoi_tiles.pictures.rendered": "Rendering",
+    "voronoi_tiles.pictures.rendering": "RenderOptions render",
+    "voronoi_tiles.preflight": "preflight",
+    "voronoi_tiles.preflight.findings": "Finding LayerUse Limits PreflightReport",
+    "voronoi_tiles.raster.frame": "Frame",
+    "voronoi_tiles.raster.renderer": "Provenance",
+    "voronoi_tiles.tile": "Tile TileCopy",
+    "voronoi_tiles.tiling": "Tiling",
+    "voronoi_tiles.vector.arcs": "Arc LineArc Neighbour ParabolaArc",
+    "voronoi_tiles.vector.outline": "Outline",
+    "voronoi_tiles.vector.proof": "ProofReport",
 }
-_HOME_OF = {name: home for home, names in _HOMES.items() for name in names}
+"""Where the public names are defined."""
+
+_HOME_OF = {name: home for home, names in _HOMES.items() for name in names.split()}
 
 
 def __getattr__(name: str) -> object:
@@ -91,7 +184,9 @@ def __getattr__(name: str) -> object:
     home = _HOME_OF.get(name)
     if home is None:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value: object = getattr(import_module(home), name)
+    module = import_module(home)
+    # The import of a subpackage binds its name here: the one that has a function's name stands for it, and is called.
+    value: object = module if home == f"{__name__}.{name}" else getattr(module, name)
     globals()[name] = value
     return value
 

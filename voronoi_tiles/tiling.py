@@ -1,90 +1,49 @@
-"""The pipeline: from a design to its tiles, proved, and on to files."""
+"""The pipeline: from a design to its tiles, proved, and on to files and pictures."""
 
 from __future__ import annotations
 
 import io
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from pathlib import Path
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Unpack, get_args, overload
 
 import numpy as np
 
-from voronoi_tiles.base.errors import CheckError, OutputError
-from voronoi_tiles.base.files import write_whole, writing
-from voronoi_tiles.designs.site import Site
+from voronoi_tiles.base.errors import ArgumentError, CheckError, UnknownNameError
+from voronoi_tiles.base.files import write_whole
+from voronoi_tiles.designs.design import Design
+from voronoi_tiles.tile import Tile, TileCopy
+from voronoi_tiles.vector.proof import ProofReport
+from voronoi_tiles.vector.tessellation import Tessellation
 
 if TYPE_CHECKING:
-    from shapely import MultiPolygon, Polygon
+    from voronoi_tiles.crosscheck.check_report import CheckReport
+    from voronoi_tiles.designs.art import Art
+    from voronoi_tiles.fabrication.exporting import Exported
+    from voronoi_tiles.fabrication.job import Edges, Job
+    from voronoi_tiles.fabrication.product import Product
+    from voronoi_tiles.pictures.rendered import Rendering
+    from voronoi_tiles.pictures.rendering import RenderOptions
+    from voronoi_tiles.raster.renderer import Choice, Method, Provenance
 
-    from voronoi_tiles.base.operations import Operation
-    from voronoi_tiles.crosscheck import CheckReport
-    from voronoi_tiles.designs.design import Design
-    from voronoi_tiles.fabrication import Job, Product
-    from voronoi_tiles.vector.outline import Outline
-    from voronoi_tiles.vector.proof import ProofReport
-    from voronoi_tiles.vector.tessellation import Tessellation, TileRecord
-
-FORMATS = ("svg", "json", "dxf", "pdf", "lbrn2")
-
-
-@dataclass(frozen=True, eq=False)
-class Tile:
-    """The tile of one site: every point that is nearer to this site than to any other copy.
-
-    Lengths are in the design's units. `symmetry` holds the operations that map the site, and so the tile, onto itself,
-    the identity first; `copies_per_cell` is the group's order divided by their number.
-    """
-
-    site: Site
-    outline: Outline
-    copies_per_cell: int
-    symmetry: tuple[Operation, ...]
-    _record: TileRecord
-
-    def __repr__(self) -> str:
-        return f"<Tile {self.site.name!r}: {len(self.outline)} edges, {self.copies_per_cell} copies per cell>"
-
-    @property
-    def area(self) -> float:
-        """The area in square units."""
-        return self.outline.area
-
-    @property
-    def perimeter(self) -> float:
-        """The length of the outline, holes included, in units."""
-        return self.outline.perimeter
-
-    def copy(self, operation: Operation) -> Outline:
-        """Give the outline of a copy, the image under an operation of the group.
-
-        An edge that two copies share has the same numbers in both, bit for bit.
-        """
-        return self._record.copy(operation)
-
-    def to_shapely(self, *, accuracy: float) -> Polygon | MultiPolygon:
-        """Give the tile as a shapely polygon whose chords stay within `accuracy` (in units) of the outline."""
-        return self.outline.to_shapely(accuracy=accuracy)
-
-    def svg_path(self) -> str:
-        """Write the outline as exact SVG path data in units about the design's origin, y turned to run down."""
-        from voronoi_tiles.formats.svg.path_text import path_data
-
-        return path_data(self.outline.paths)
-
-    def _repr_svg_(self) -> str:
-        """Draw the tile and its site: notebooks show this."""
-        from voronoi_tiles.pictures.notebook import tile_picture
-
-        return tile_picture(self.outline, self.site.elements)
+FileFormat = Literal["svg", "json", "dxf", "pdf", "lbrn2"]
+FORMATS: tuple[FileFormat, ...] = get_args(FileFormat)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Tiling:
-    """The proved result of a design: its tiles, one for each site in the design's order, and their proof.
+    """The tiles of a design, one for each site in the design's order, with the proof that they are right.
 
-    `tessellation` is the engine's result that they are taken from, without the proof.
+    A tiling is a sequence of its tiles, which are found by their sites' names as well. `tessellation` is the engine's
+    result that they are taken from, without the proof.
+
+    >>> import voronoi_tiles as vt
+    >>> tiling = vt.starter("p4m").tessellate()
+    >>> tiling
+    <Tiling 'p4m': p4m, 2 tiles>
+    >>> [tile.name for tile in tiling], tiling["leaf"] is tiling[1], tiling.proof.passed
+    (['star', 'leaf'], True, True)
     """
 
     design: Design
@@ -92,15 +51,65 @@ class Tiling:
     proof: ProofReport
 
     def __repr__(self) -> str:
-        return f"<Tiling {self.design.name!r}: {self.design.group.name}, {len(self.tiles)} tiles>"
+        many = "tile" if len(self) == 1 else "tiles"
+        return f"<Tiling {self.design.name!r}: {self.design.group.name}, {len(self)} {many}>"
+
+    def __len__(self) -> int:
+        """Count the tiles."""
+        return len(self.tiles)
+
+    def __iter__(self) -> Iterator[Tile]:
+        return iter(self.tiles)
+
+    def __getitem__(self, key: int | str) -> Tile:
+        """The tile of a number, or of the name of its site. Raises UnknownNameError, IndexError."""
+        if not isinstance(key, str):
+            return self.tiles[key]
+        for tile in self.tiles:
+            if tile.name == key:
+                return tile
+        names = ", ".join(tile.name for tile in self.tiles)
+        raise UnknownNameError(f'there is no site "{key}"', remedy=f"Sites are {names}.")
 
     @property
     def tessellation(self) -> Tessellation:
         """All tiles in terms of exact motions: what sheets are made from."""
         return self.tiles[0]._record.tessellation  # noqa: SLF001 - the tiling owns its tiles
 
+    @property
+    def __geo_interface__(self) -> dict[str, Any]:
+        """The tiles as a FeatureCollection of GeoJSON, each within its `outline.display_accuracy`."""
+        features = [
+            {
+                "type": "Feature",
+                "geometry": tile.__geo_interface__,
+                "properties": {"site": tile.name, "area": tile.area, "copies_per_cell": tile.copies_per_cell},
+            }
+            for tile in self.tiles
+        ]
+        return {"type": "FeatureCollection", "features": features}
+
+    def copies(self, region: Any) -> list[TileCopy]:
+        """The copies of all tiles that meet a region: a rectangle (x0, y0, x1, y1), or a geometry of shapely's.
+
+        Copies that miss it by less than their `outline.display_accuracy` are among them; none that meets it is left
+        out. Operations are those that outlines name neighbours by. Raises ArgumentError for what is no region.
+
+        >>> import voronoi_tiles as vt
+        >>> tiling = vt.starter("p4").tessellate()
+        >>> copies = tiling.copies((0, 0, 60, 60))
+        >>> len(copies), copies[0]
+        (16, TileCopy(site='bird', operation=Operation.parse('x,y'), outline=<Outline: 223 edges in 1 ring>))
+        """
+        from voronoi_tiles.vector.region_copies import copies_in_region, read_region
+
+        found = copies_in_region(self.tessellation, read_region(region))
+        return [
+            TileCopy(self.tiles[tile].name, operation, self.tiles[tile].copy(operation)) for tile, operation in found
+        ]
+
     def figures(self) -> dict[str, Any]:
-        """Give what there is to know about the tiles in numbers, as `voronoi-tiles info --json` prints it."""
+        """What there is to know about the tiles in numbers, as `voronoi-tiles info --json` prints it."""
         lattice, group = self.design.lattice, self.design.group
         return {
             "design": self.design.name,
@@ -112,7 +121,7 @@ class Tiling:
                 "b": [lattice.b.real, lattice.b.imag],
                 "area": lattice.det,
             },
-            "tiles": [_tile_figures(tile) for tile in self.tiles],
+            "tiles": [tile.figures() for tile in self.tiles],
             "proof": self._proof_rows(),
         }
 
@@ -120,14 +129,14 @@ class Tiling:
         self,
         *,
         samples: int | None = None,
-        renderer: Literal["auto", "gl", "cpu"] = "auto",
+        renderer: Choice = "auto",
         device: int | None = None,
-        method: Literal["exact", "hoff"] = "exact",
+        method: Method = "exact",
         notice: Callable[[str], None] | None = None,
     ) -> CheckReport:
         """Compare the outlines with an image that the raster stage renders of the same design.
 
-        See `voronoi_tiles.crosscheck.crosscheck`; `samples` None is its default. Raises RenderError.
+        `samples` along the side of the cell, None for 1024; the others are those of `render`. Raises RenderError.
         """
         from voronoi_tiles.crosscheck import DEFAULT_SAMPLES, crosscheck
 
@@ -137,15 +146,21 @@ class Tiling:
             self.design, outlines, samples=count, renderer=renderer, device=device, method=method, notice=notice
         )
 
+    def difference(self, check: CheckReport) -> Rendering:
+        """The picture of where a cross-check has found differences, and by how much: white where they agree."""
+        from voronoi_tiles.pictures.rendering import difference
+
+        return difference(self.design, [tile.outline for tile in self.tiles], check)
+
     def _proof_rows(self) -> list[dict[str, Any]]:
-        """Give the figures of the proof in the types of JSON."""
+        """The figures of the proof in the types of JSON."""
         return [
             {"name": name, "value": value, "limit": limit, "passed": passed}
             for name, value, limit, passed in self.proof.rows()
         ]
 
     def evidence(self, check: CheckReport) -> dict[str, Any]:
-        """Give what was proved and checked, in the types of JSON, as `voronoi-tiles check --json` prints it."""
+        """What was proved and checked, in the types of JSON, as `voronoi-tiles check --json` prints it."""
         return {
             "design": self.design.name,
             "group": self.design.group.name,
@@ -154,7 +169,7 @@ class Tiling:
         }
 
     def document(self, check: CheckReport | None = None) -> dict[str, Any]:
-        """Give the outline document (schema 1): coordinates in the design's units, y up.
+        """The outline document (schema 1): coordinates in the design's units, y up.
 
         With a cross-check's report a last key, "evidence", holds what was proved and checked.
         """
@@ -165,27 +180,27 @@ class Tiling:
             self.design.group.name,
             self.design.lattice,
             (
-                tile_record(tile.site.name, tile.site.elements, tile.outline, tile.copies_per_cell, tile.symmetry)
+                tile_record(tile.name, tile.site.elements, tile.outline, tile.copies_per_cell, tile.symmetry)
                 for tile in self.tiles
             ),
         )
         return document if check is None else {**document, "evidence": self.evidence(check)}
 
     def json(self, check: CheckReport | None = None) -> str:
-        """Write the outline document as JSON text, floats with 17 significant digits."""
+        """The outline document as JSON text, floats with 17 significant digits."""
         from voronoi_tiles.vector.document import document_text
 
         return document_text(self.document(check))
 
     def svg(self, check: CheckReport | None = None) -> str:
-        """Write the tiles, where they lie in the plane, as an SVG file in millimetres: one path per tile.
+        """The tiles, where they lie in the plane, as an SVG file in millimetres: one path per tile.
 
         With a cross-check's report the metadata hold what was proved and checked.
         """
         from voronoi_tiles.fabrication.exact import design_recipe, exact_drawing
         from voronoi_tiles.formats.svg.writer import write_svg
 
-        tiles = [(tile.site.name, tile.outline) for tile in self.tiles]
+        tiles = [(tile.name, tile.outline) for tile in self.tiles]
         drawing = exact_drawing(tiles, self.design.unit_mm, design_recipe(self.design))
         if check is not None:
             drawing = drawing.with_evidence(self.evidence(check))
@@ -194,106 +209,144 @@ class Tiling:
         return buffer.getvalue().decode()
 
     def text(self, file_format: str, check: CheckReport | None = None) -> str:
-        """Give the exact tiles as a text, "svg" or "json". Raises ValueError for another format."""
+        """The exact tiles as a text, "svg" or "json". Raises ArgumentError for another format."""
         match file_format:
             case "svg":
                 return self.svg(check)
             case "json":
                 return self.json(check)
             case _:
-                raise ValueError(f"unknown format {file_format!r}: use svg or json")
+                raise ArgumentError(f"no text can be made as {file_format!r}", remedy="Use svg or json.")
 
-    def make(self, job: Job, file_format: str = "svg") -> Product:
-        """Make the drawing of a job for a format of files ("svg", "dxf", "pdf", "lbrn2").
+    def make(self, job: Job | None = None, file_format: str = "svg") -> Product:
+        """The drawing of a job for a format of files ("svg", "dxf", "pdf", "lbrn2").
 
         Raises JobError where the job cannot be done.
+
+        >>> import voronoi_tiles as vt
+        >>> vt.starter("p4").tessellate().make(vt.Job(sheet="300x200mm", margin=5, kerf=0.15))
+        <Product svg: 43 pieces, 64.5% of 300 x 200 mm, 5.26 m of cuts in 43 paths>
         """
-        from voronoi_tiles.fabrication import make
+        from voronoi_tiles.fabrication.job import Job
+        from voronoi_tiles.fabrication.product import make
 
-        return make(self.design, self.tessellation, job, file_format)
+        return make(self.design, self.tessellation, Job() if job is None else job, file_format)
 
-    def write(
-        self, path: str | os.PathLike[str], file_format: str, *, job: Job | None, check: CheckReport | None = None
-    ) -> Product | None:
-        """Write a file whole or not at all; give the product that was written.
+    def report(
+        self, job: Job | None = None, *, speeds: Mapping[str, float] | None = None, pierce_s: float | None = None
+    ) -> dict[str, Any]:
+        """What a job comes to, as `voronoi-tiles report --json` prints it: pieces, sheet use, cut length, time.
 
-        Without a job SVG and JSON hold the exact tiles where they lie in the plane, and there is no product. Raises
-        JobError for a job that cannot be done, or that comes with JSON.
+        Lengths are millimetres, times seconds. `speeds` are those of "cut", "score", "engrave" and "travel" in mm/s,
+        and `pierce_s` the seconds of a pierce. Raises JobError where the job cannot be done, ArgumentError for speeds
+        that are none.
+
+        >>> import voronoi_tiles as vt
+        >>> report = vt.starter("p4").tessellate().report(vt.Job(sheet=(300, 200), margin=5))
+        >>> report["pieces"]["count"], round(report["cut"]["length"]), report["cut"]["pierces"]
+        (54, 3769, 34)
         """
-        from voronoi_tiles.fabrication import Job, JobError
+        from voronoi_tiles.fabrication.job import Job
+        from voronoi_tiles.fabrication.job_report import report_figures
 
-        if check is not None:
-            require(check)
-        drawn = any(art is not None for art in self.design.art)
-        if job is None and (file_format == "json" or (file_format == "svg" and not drawn)):
-            write_whole(path, self.text(file_format, check).encode())
-            return None
-        if file_format == "json":
-            raise JobError(
-                "a JSON document holds the exact outlines of one of each tile, and no sheet",
-                remedy="Write svg, dxf, pdf or lbrn2, or leave the other options out.",
-            )
-        product = self.make(job or Job(), file_format)
-        if check is not None:
-            product = product.with_evidence(self.evidence(check))
-        with writing(path) as file:
-            product.write(file)
-        return product
+        job = Job() if job is None else job
+        # What goes into a file of its own is on a layer of its own in the one drawing that is reported of.
+        product = self.make(replace(job, colours="layers") if job.colours == "files" else job)
+        return report_figures(self.design, product, speeds=speeds, pierce_s=pierce_s)
+
+    def template(self, path: str | os.PathLike[str], site: str | None = None) -> Art:
+        """Write a page to draw a site's art on, an SVG file, and give the art that the site gets when it is drawn.
+
+        The tile and the site's strokes are on a layer "guide"; draw in the layer "engrave", or in one called "score".
+        `site` is a name, None the first. Raises OutputError where the file is there already, or cannot be written.
+        """
+        from voronoi_tiles.fabrication.art_template import write_template
+
+        tile = self[0 if site is None else site]
+        return write_template(path, self.design.folder, tile.site, tile.outline, self.design.unit_mm)
+
+    @overload
+    def render(self, path: None = None, **options: Unpack[RenderOptions]) -> Rendering: ...
+    @overload
+    def render(self, path: str | os.PathLike[str], **options: Unpack[RenderOptions]) -> Provenance: ...
+    def render(
+        self, path: str | os.PathLike[str] | None = None, **options: Unpack[RenderOptions]
+    ) -> Rendering | Provenance:
+        """Render the coloured tessellation, into memory or as a PNG file: see `render`, whose options it takes."""
+        from voronoi_tiles.pictures.rendering import paint
+
+        return paint(self.design, path, outlines=[tile.outline for tile in self.tiles], **options)
+
+    def plot(self, ax: Any = None, *, region: Any = None) -> Any:
+        """Draw the tiles and their sites on axes of matplotlib (None: the current ones), which it gives back.
+
+        With a region, as in `copies`, all copies that meet it are drawn. Raises MissingLibraryError where matplotlib is
+        not installed.
+        """
+        from voronoi_tiles.groups.periodic_colouring import palette
+        from voronoi_tiles.pictures.plotting import axes_of, plot_tiles
+
+        ax = axes_of(ax)
+        colours = dict(zip((tile.name for tile in self), palette(len(self)) / 255, strict=True))
+        if region is not None:
+            copies = self.copies(region)
+            plot_tiles(ax, [(copy.outline, None) for copy in copies], [colours[copy.site] for copy in copies])
+        plot_tiles(ax, [(tile.outline, tile.site.elements) for tile in self], colours.values())
+        return ax
+
+    def _repr_svg_(self) -> str:
+        """Draw the tiles over the copies about them: notebooks show this."""
+        from voronoi_tiles.pictures.notebook import tiling_picture
+
+        bounds = np.array([tile.outline.bounds for tile in self])
+        copies = self.copies((*bounds[:, :2].min(axis=0), *bounds[:, 2:].max(axis=0)))
+        return tiling_picture([(tile.outline, tile.site.elements) for tile in self], [copy.outline for copy in copies])
 
     def export(
         self,
         path: str | os.PathLike[str],
         *,
-        edges: Literal["once", "pieces"] | None = None,
+        edges: Edges | None = None,
         job: Job | None = None,
         check: CheckReport | None = None,
-    ) -> None:
-        """Write a file whole or not at all, its format by its suffix (.svg, .dxf, .pdf, .lbrn2, .json).
+        file_format: FileFormat | None = None,
+    ) -> tuple[Exported, ...]:
+        """Write a file whole or not at all, and say what was written.
 
         `job` says what is to be made of the tiles (sheet, kerf, ...), `edges` is a short way to a job that says only
-        this. A cross-check's report goes into the file. Raises OutputError where the suffix is another, or the file
-        cannot be written, JobError for a job that cannot be done, and CheckError, before anything is written, where the
-        report has failures.
-        """
-        from voronoi_tiles.fabrication import Job
+        this; with neither, SVG and JSON hold the exact tiles where they lie in the plane. The format is that of the
+        suffix (.svg, .dxf, .pdf, .lbrn2, .json), or `file_format`. With `colours="files"` there is a file for each
+        colour: name-1.svg, name-2.svg, ... A cross-check's report goes into the file.
 
+        Raises OutputError where the suffix is another, the file cannot be written, or is one that the job reads;
+        JobError for a job that cannot be done, or that comes with JSON; and CheckError, before anything is written,
+        where the report has failures.
+        """
+        from voronoi_tiles.fabrication.exporting import Exported, format_of, refuse_overwriting, write_products
+        from voronoi_tiles.fabrication.job import Job
+        from voronoi_tiles.fabrication.job_options import JobError
+
+        name = os.fspath(path)
+        form = format_of(path, FORMATS) if file_format is None else file_format
+        if check is not None:
+            require(check)
         if edges is not None:
             job = Job(edges=edges) if job is None else replace(job, edges=edges)
-        self.write(path, format_of(path), job=job, check=check)
+        drawn = any(art is not None for art in self.design.art)
+        if job is None and (form == "json" or (form == "svg" and not drawn)):
+            refuse_overwriting(self.design, None, [name])
+            write_whole(path, self.text(form, check).encode())
+            return (Exported(name, None),)
+        if form == "json":
+            raise JobError(
+                "a JSON document holds the exact outlines of one of each tile, and no sheet",
+                remedy="Write svg, dxf, pdf or lbrn2, or leave the other options out.",
+            )
 
+        def finished(product: Product) -> Product:
+            return product if check is None else product.with_evidence(self.evidence(check))
 
-def _tile_figures(tile: Tile) -> dict[str, Any]:
-    """Give one tile's figures: lengths in units; the neighbours by the length of the shared edges, longest first."""
-    outline = tile.outline
-    count = len(outline.neighbours)
-    edges = np.bincount(outline.neighbour, minlength=count).tolist()
-    lengths = np.bincount(outline.neighbour, weights=outline.lengths, minlength=count).tolist()
-    neighbours = [
-        {"site": site, "operation": str(operation), "edges": edges[k], "length": lengths[k]}
-        for k, (site, operation) in enumerate(outline.neighbours)
-    ]
-    curved = int(outline.curved.sum())
-    return {
-        "site": tile.site.name,
-        "elements": len(tile.site.elements),
-        "area": tile.area,
-        "perimeter": tile.perimeter,
-        "rings": len(outline.ring_offsets) - 1,
-        "edges": {"line": len(outline) - curved, "parabola": curved},
-        "curved_share": outline.curved_length / tile.perimeter,
-        "copies_per_cell": tile.copies_per_cell,
-        "symmetry": [str(operation) for operation in tile.symmetry],
-        "neighbours": sorted(neighbours, key=lambda row: -float(row["length"])),
-    }
-
-
-def format_of(path: str | os.PathLike[str]) -> str:
-    """Give the format that a file's suffix names. Raises OutputError where it names none."""
-    suffix = Path(path).suffix.lower().removeprefix(".")
-    if suffix not in FORMATS:
-        suffixes = " or ".join(f".{name}" for name in FORMATS)
-        raise OutputError(f"cannot tell the format of {os.fspath(path)!r}: give it the suffix {suffixes}", path=path)
-    return suffix
+        return write_products(self.design, self.tessellation, name, form, job or Job(), finished)
 
 
 def require(check: CheckReport) -> None:
@@ -309,9 +362,9 @@ def tessellate(design: Design) -> Tiling:
     """
     from voronoi_tiles.vector.proof import proved_tiles
 
-    records, proof = proved_tiles(design.sites, design.group, design.lattice)
+    records, proof = proved_tiles(design.noded, design.group, design.lattice)
     tiles = tuple(
         Tile(site, record.outline, design.group.order // len(record.symmetry), record.symmetry, record)
-        for site, record in zip(design.sites, records, strict=True)
+        for site, record in zip(design.noded, records, strict=True)
     )
     return Tiling(design, tiles, proof)

@@ -110,7 +110,7 @@ def census(group: str, sites: int, cell: dict[str, float] | None = None) -> Cens
     shapes, points = _Shapes(), _Points()
     while len(result.tiles) < sites:
         design = vt.Design.from_dict(random_design(group, len(result.tiles), rng, result.cell))
-        site = design.sites[0]
+        site = design.noded[0]
         where = chamber_numbers(row, design.lattice, site.nodes)
         try:
             if np.any(where[site.segments[:, 0]] != where[site.segments[:, 1]]):
@@ -182,7 +182,7 @@ class _Points:
         here = self._points[alive]
         middle = complex(here.mean())
         radius = float(np.abs(here - middle).max())
-        scene = gather(Pattern(design.sites, design.group, design.lattice), 0j, middle, radius)
+        scene = gather(Pattern(design.noded, design.group, design.lattice), 0j, middle, radius)
         away = distances(here[:, None], scene.middle, scene.half)
         away = np.partition(np.minimum.reduceat(away, scene.copy_start, axis=1), 1, axis=1)
         self._alive[alive] = away[:, 1] - away[:, 0] <= NEAR * abs(design.lattice.a)

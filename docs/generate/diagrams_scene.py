@@ -96,7 +96,7 @@ def lone_scene(sites: Sequence[tuple[Complexes, Ints]]) -> Scene:
 def group_scene(design: Design) -> Scene:
     """A scene of a design's first site among all copies near it."""
     action = Action(design.group, design.lattice)
-    placed = [place(action, site.nodes, site.segments) for site in design.sites]
+    placed = [place(action, site.nodes, site.segments) for site in design.noded]
     contours = [trace_contour(site.nodes, site.segments) for site in placed]
     around = [
         surround(contour, copies_near(action, placed[0], other), own=k == 0)

@@ -42,7 +42,7 @@ _DOTS = 200
 
 def perspective(design: Design, region: Region, output: Path) -> None:
     """Draw the surface over a region as a PNG of 480 x 360 pixels, each the mean of 2 x 2."""
-    pattern = Pattern(design.sites, design.group, design.lattice)
+    pattern = Pattern(design.noded, design.group, design.lattice)
     frame = rectangle_frame(region, SAMPLES, SAMPLES)
     image = Renderer("cpu", method="hoff").render(pattern, frame)
     figure = Figure(figsize=_INCHES, dpi=_DOTS)
@@ -60,7 +60,7 @@ def perspective(design: Design, region: Region, output: Path) -> None:
         shade=False,
     )
     ink = tuple(part / 255 for part in INK)
-    for site in design.sites:
+    for site in design.noded:
         ends = site.nodes[site.segments]
         axes.plot(site.nodes.real, site.nodes.imag, "o", zs=0.0, color=ink, markersize=3.5)
         for p, q in ends.tolist():

@@ -148,7 +148,7 @@ def test_a_file_for_each_colour(here: Path, call: Call) -> None:
     assert sorted(pieces[:2]) == [8, 8]
     before = set(here.rglob("*"))
     result = call("export", "squares.toml", "-o", "-", "--sheet", "90x90", "--colours", "files")
-    check_refused(result, here, before, "Several files need a name")
+    check_refused(result, here, before, "several files need a name")
     result = call(
         "export", WAVE, "-o", "v.svg", "--sheet", "200x200", "--colours", "files", "--tabs", "60", "--gap", "1"
     )
@@ -179,9 +179,9 @@ def test_a_folder_of_sheets(here: Path, call: Call) -> None:
         (["--sheet", "90x90", "--margin", "45"], "leaves nothing"),
         (["--kerf", "0.2furlong"], "furlong"),
         (["--kerf=-0.2"], "negative"),
-        (["--kerf", "0.2", "--edges", "once"], "--kerf needs pieces"),
-        (["--fillet", "1", "--edges", "once"], "--fillet needs pieces"),
-        (["--colours", "files", "--edges", "once"], "--colours needs pieces"),
+        (["--kerf", "0.2", "--edges", "once"], "--kerf needs --edges pieces"),
+        (["--fillet", "1", "--edges", "once"], "--fillet needs --edges pieces"),
+        (["--colours", "files", "--edges", "once"], "--colours needs --edges pieces"),
         (["--fillet", "11"], "too much"),
         (["--fit", "clip"], "about a sheet"),
         (["--marks"], "about a sheet"),
@@ -191,11 +191,11 @@ def test_a_folder_of_sheets(here: Path, call: Call) -> None:
         (["--preset", "laserjet"], "laserjet"),
         (["--preset", "none.toml"], "none.toml"),
         (["--curves", "nurbs"], "nurbs"),
-        (["--accuracy", "0"], "accuracy of 0 mm"),
+        (["--accuracy", "0"], "--accuracy 0 mm cannot be"),
         (["--accuracy", "5m"], "5m"),
         (["--offset", "3"], "3"),
         (["--offset", "1,2,3"], "1,2,3"),
-        (["--label-height", "0mm"], "labels of 0 mm"),
+        (["--label-height", "0mm"], "--label-height 0 mm cannot be"),
         (["--sheet", "90x90", "--bar"], "no room"),
         (["--format", "dxf"], "contradict"),
     ],
@@ -313,7 +313,7 @@ def test_broken_oracle_of_refusals(here: Path, call: Call) -> None:
         (("--sheet", "1e-9x1e-9"), "0.1 to 100,000 mm"),
         (("--sheet", "far.svg", "--fit", "clip"), "far.svg are 200 x 200 mm, from (1e+09"),
         (("--sheet", "dot.svg", "--fit", "clip"), "0.1 to 100,000 mm"),
-        (("--label-height", "0.1mm"), "0.5 to 1000 mm"),
+        (("--label-height", "0.1mm"), "0.5 to 1,000 mm"),
         (("--sheet", "20x20", "--fit", "clip", "--kerf", "8"), "no tile fits on the sheet"),
     ],
 )

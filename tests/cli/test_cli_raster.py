@@ -161,7 +161,7 @@ def test_render_to_standard_output(command: str, design: Path) -> None:
         (["check", "bird.toml", "--renderer", "tea"], "tea"),
         (["check", "bird.toml", "--device", "-1"], "--device"),
         (["check", "bird.toml", "-o", "diff.svg"], ".png"),
-        (["check", "bird.toml", "-o", "-"], "diff.png"),
+        (["check", "bird.toml", "-o", "-"], "FILE.png"),
         (["check", "bird.toml", "-o", ""], "is empty"),
         (["check", "bird.toml", "-o", "missing/diff.png", "--size", "32"], "cannot write"),
         (["check", "touching.toml"], "touches"),

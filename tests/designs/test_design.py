@@ -102,7 +102,7 @@ def test_the_bird() -> None:
     assert bird.group is GROUPS["p4"]
     assert (bird.lattice.a, bird.lattice.b) == (60 + 0j, 60j)
     assert (bird.units, bird.unit_mm, bird.name) == ("mm", 1.0, "design")
-    (site,) = bird.sites
+    (site,) = bird.noded
     assert site.name == "bird"
     assert site.nodes.tolist() == [5 + 3j, 25 + 11j]
     assert site.segments.tolist() == [[0, 1]]
@@ -122,21 +122,21 @@ def test_every_group_reads_its_cell(group: str) -> None:
 @pytest.mark.parametrize("stroke", STROKES, ids=["-".join(stroke) for stroke in STROKES])
 def test_every_kind_of_stroke(stroke: dict[str, Any]) -> None:
     """Each is read, flattened and placed; its canonical source reads as the same design."""
-    plain = Design.from_dict(design(stroke)).sites[0]
+    plain = Design.from_dict(design(stroke)).noded[0]
     placed = Design.from_dict(design({**stroke, "scale": 2, "rotate": 90, "translate": [1, -4]}, tolerance=0.02))
     if "circle" not in stroke:
-        assert np.abs(placed.sites[0].nodes - (2j * plain.nodes + 1 - 4j)).max() < 1e-14
-        assert placed.sites[0].segments.tolist() == plain.segments.tolist()
+        assert np.abs(placed.noded[0].nodes - (2j * plain.nodes + 1 - 4j)).max() < 1e-14
+        assert placed.noded[0].segments.tolist() == plain.segments.tolist()
     again = Design.loads(placed.source, format="json")
     assert again.source == placed.source
-    assert again.sites[0].nodes.tolist() == placed.sites[0].nodes.tolist()
+    assert again.noded[0].nodes.tolist() == placed.noded[0].nodes.tolist()
 
 
 def test_strokes_are_where_they_are_drawn() -> None:
     """One value of each kind, in closed form."""
 
     def ends(stroke: dict[str, Any]) -> set[complex]:
-        nodes = Design.from_dict(design(stroke, tolerance=10.0)).sites[0].nodes
+        nodes = Design.from_dict(design(stroke, tolerance=10.0)).noded[0].nodes
         return {complex(round(z.real, 9), round(z.imag, 9)) for z in nodes.tolist()}
 
     assert ends(STROKES[0]) == {5 + 3j}
@@ -156,7 +156,7 @@ def test_tolerance_is_in_units() -> None:
     stroke = {"circle": [0, 0], "radius": 1}
 
     def sides(units: str, **site: Any) -> int:
-        return len(Design.from_dict({**design(stroke, **site), "units": units}).sites[0].segments)
+        return len(Design.from_dict({**design(stroke, **site), "units": units}).noded[0].segments)
 
     assert sides("mm") == sides("cm", tolerance=0.01) == 24
     assert sides("cm") == sides("mm", tolerance=0.001) == 72
@@ -166,7 +166,7 @@ def test_tolerance_is_in_units() -> None:
 
 def test_strokes_of_a_site_are_noded() -> None:
     """Strokes of one site may cross: they share a node."""
-    cross = Design.from_dict(design({"segment": [[0, 0], [4, 4]]}, {"segment": [[0, 4], [4, 0]]})).sites[0]
+    cross = Design.from_dict(design({"segment": [[0, 0], [4, 4]]}, {"segment": [[0, 4], [4, 0]]})).noded[0]
     assert len(cross.segments) == 4
     assert 2 + 2j in cross.nodes.tolist()
 
@@ -179,7 +179,7 @@ def test_names_and_numpy() -> None:
         {"strokes": [{"point": (np.int64(7), 9)}]},
     ]
     read = Design.from_dict(base)
-    assert [site.name for site in read.sites] == ["site1", "site2"]
+    assert [site.name for site in read.noded] == ["site1", "site2"]
     assert Design.loads(read.source, format="json").source == read.source
 
 
@@ -456,7 +456,7 @@ def test_unreadable_files(tmp_path: Path) -> None:
 
 def test_the_largest_site() -> None:
     """A hundred times the cell is read, more is refused."""
-    assert Design.from_dict(changed(LINE, {"segment": [[0, 0], [5990, 0]]})).sites
+    assert Design.from_dict(changed(LINE, {"segment": [[0, 0], [5990, 0]]})).noded
     assert refusal(changed(LINE, {"segment": [[0, 0], [6010, 0]]})).key == "site[0]"
 
 
@@ -626,7 +626,7 @@ def test_extreme_numbers(strokes: list[dict[str, Any]], tolerance: float) -> Non
     read = attempt(base)
     if read is None:
         return
-    (site,) = read.sites
+    (site,) = read.noded
     assert np.isfinite(site.elements).all()
     assert len(site.elements)
     lengths = np.abs(site.nodes[site.segments[:, 0]] - site.nodes[site.segments[:, 1]])

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.tolerance import NODE_MERGE
-from voronoi_tiles.designs.site import Site, build_site
+from voronoi_tiles.designs.site import NodedSite, build_site
 
 Complexes = NDArray[np.complex128]
 
@@ -24,7 +24,7 @@ fine = st.builds(lambda x, y: complex(x, y) / 2**16, *[st.integers(-(2**16), 2**
 grid_lines = st.lists(st.lists(grid, min_size=1, max_size=4), min_size=1, max_size=8)
 
 
-def site_of(*lines: list[complex]) -> Site:
+def site_of(*lines: list[complex]) -> NodedSite:
     """A site of polylines given as lists; repeated neighbouring points are taken out."""
     cleaned = [[z for k, z in enumerate(line) if k == 0 or z != line[k - 1]] for line in lines]
     return build_site("bird", [np.array(line, dtype=complex) for line in cleaned])
@@ -44,7 +44,7 @@ def side(a: complex, b: complex, c: complex) -> int:
     return (turn > 0) - (turn < 0)
 
 
-def faults(site: Site) -> list[str]:
+def faults(site: NodedSite) -> list[str]:
     """What is wrong with a site by brute force over all pairs: the oracle of this module."""
     found = []
     near = NODE_MERGE * max(site.extent, 1e-300) * 0.999
@@ -86,7 +86,7 @@ def as_shapely(lines: list[list[complex]]) -> shapely.Geometry:
     return shapely.union_all(parts)
 
 
-def site_shapely(site: Site) -> shapely.Geometry:
+def site_shapely(site: NodedSite) -> shapely.Geometry:
     """The elements of a site in shapely."""
     return as_shapely([[complex(x0, y0), complex(x1, y1)] for x0, y0, x1, y1 in site.elements.tolist()])
 
@@ -128,7 +128,7 @@ def test_the_oracle_sees_faults() -> None:
     def broken(*segments: tuple[int, int]) -> list[str]:
         used = sorted({k for segment in segments for k in segment})
         index = {k: n for n, k in enumerate(used)}
-        return faults(Site("bird", nodes[used], np.array([[index[i], index[j]] for i, j in segments])))
+        return faults(NodedSite("bird", nodes[used], np.array([[index[i], index[j]] for i, j in segments])))
 
     assert "a crossing" in broken((0, 1), (2, 3))
     assert "a node on a segment" in broken((0, 1), (4, 2))

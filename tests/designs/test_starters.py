@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 import voronoi_tiles as vt
-from voronoi_tiles import Design, Operation, OutputError
-from voronoi_tiles.designs.starters import GROUP_NAMES, starter_text
+from voronoi_tiles import Design, DesignError, Operation, OutputError
+from voronoi_tiles.designs.starters import GROUP_NAMES, starter, starter_text
 from voronoi_tiles.groups.wallpaper import GROUPS
 
 
@@ -62,7 +62,7 @@ def test_a_tile_has_the_interfaces_of_scripts(tmp_path: Path) -> None:
     assert tiling.document()["tiles"][0]["site"] == tiling.figures()["tiles"][0]["site"] == "bird"
     with pytest.raises(OutputError, match=r"\.svg or \.json"):
         tiling.export(tmp_path / "bird.png")
-    with pytest.raises(ValueError, match="unknown format"):
+    with pytest.raises(ValueError, match="no text can be made as 'png'"):
         tiling.text("png")
     assert list(tmp_path.iterdir()) == []
 
@@ -72,7 +72,7 @@ def test_tiles_show_themselves_in_a_line() -> None:
     tiling = Design.loads(starter_text("p4"), name="p4").tessellate()
     (tile,) = tiling.tiles
     assert repr(tile) == f"<Tile 'bird': {len(tile.outline)} edges, 4 copies per cell>"
-    assert repr(tiling) == "<Tiling 'p4': p4, 1 tiles>"
+    assert repr(tiling) == "<Tiling 'p4': p4, 1 tile>"
 
 
 @pytest.mark.parametrize(
@@ -101,6 +101,16 @@ def test_the_public_names_are_loaded_on_first_use() -> None:
 
 
 def test_unknown_groups_have_none() -> None:
-    """A KeyError, for callers to explain."""
-    with pytest.raises(KeyError):
-        starter_text("p5")
+    """The error names the group, and those that there are."""
+    for make in (starter, starter_text):
+        with pytest.raises(DesignError, match=r"unknown wallpaper group 'p5'.*p1, p2"):
+            make("p5")
+        with pytest.raises(DesignError, match='Did you mean "p4m"'):
+            make("p4mm")
+
+
+@pytest.mark.parametrize("group", GROUP_NAMES)
+def test_a_starter_is_the_design_of_its_text(group: str) -> None:
+    """By the name of its group."""
+    assert starter(group) == Design.loads(starter_text(group))
+    assert (starter(group).name, starter(group).group) == (group, GROUPS[group])

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from voronoi_tiles.fabrication import Job
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
+from voronoi_tiles.fabrication.job import Job
 
 
 @pytest.mark.parametrize("accuracy", [1e-5, 0.005, 1.0])

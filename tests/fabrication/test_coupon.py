@@ -10,7 +10,7 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from voronoi_tiles.fabrication.coupon import KERFS_MAX, STRIP_MM, STRIPS, coupon, kerf_range
+from voronoi_tiles.fabrication.coupon import KERFS_MAX, STRIP_MM, STRIPS, coupon_drawing, kerf_range
 from voronoi_tiles.formats.page import Drawing
 from voronoi_tiles.paths.paths import ARC, Paths
 
@@ -99,7 +99,7 @@ def fits(plug: shapely.Polygon, hole: shapely.Polygon, from_: complex, to: compl
 @pytest.mark.parametrize("true", [0.05, 0.2, 0.4])
 def test_the_plug_for_the_true_kerf_fits_exactly(true: float) -> None:
     """Cut with kerf K, plug and hole for K have the nominal size and one outline; the others differ by 2 (K - k)."""
-    drawing = coupon(KERFS, thickness=3.0, plug=12.0)
+    drawing = coupon_drawing(KERFS, thickness=3.0, plug=12.0)
     found = pieces(drawing, true)
     holes, plugs = holes_and_plugs(drawing)
     assert len(holes) == 2 * len(KERFS)
@@ -129,7 +129,7 @@ def test_the_plug_for_the_true_kerf_fits_exactly(true: float) -> None:
 
 def test_the_fit_is_sensitive() -> None:
     """A kerf that is 1 micrometre off shows in the same figures."""
-    drawing = coupon((0.2,), thickness=3.0)
+    drawing = coupon_drawing((0.2,), thickness=3.0)
     holes, plugs = holes_and_plugs(drawing)
     found = pieces(drawing, 0.201)
     plate = at(found, holes[0] - 1j * 7)
@@ -140,7 +140,7 @@ def test_the_fit_is_sensitive() -> None:
 
 def test_slots_take_the_sheet() -> None:
     """The slot for the true kerf is as wide as the sheet is thick, the others differ by K - k."""
-    drawing = coupon(KERFS, thickness=4.0)
+    drawing = coupon_drawing(KERFS, thickness=4.0)
     true = 0.15
     found = pieces(drawing, true)
     holes, _ = holes_and_plugs(drawing)
@@ -158,7 +158,7 @@ def test_slots_take_the_sheet() -> None:
 @pytest.mark.parametrize("true", [0.08, 0.31])
 def test_strips_measure_the_kerf(true: float) -> None:
     """The kerf is what is missing from the strips side by side, divided by their number."""
-    drawing = coupon(KERFS, thickness=3.0)
+    drawing = coupon_drawing(KERFS, thickness=3.0)
     found = pieces(drawing, true)
     strips = [at(found, place) for place in middles(drawing.layers[2].paths)[:STRIPS]]
     total = sum(sides(strip)[0] for strip in strips)
@@ -174,7 +174,7 @@ def test_strips_measure_the_kerf(true: float) -> None:
 def test_every_coupon_is_sound(steps: list[int], thickness: float, plug: float) -> None:
     """Closed cuts that neither meet nor leave the page, gaps of half the thickness, letters on their pieces."""
     kerfs = [step / 1000 for step in steps]
-    drawing = coupon(kerfs, thickness=thickness, plug=plug)
+    drawing = coupon_drawing(kerfs, thickness=thickness, plug=plug)
     engrave, inside, outside = drawing.layers
     assert [layer.work for layer in drawing.layers] == ["engrave", "cut", "cut"]
     assert inside.paths.closed.all()
@@ -216,7 +216,7 @@ def bands(intervals: list[tuple[float, float]]) -> list[tuple[float, float]]:
 @pytest.mark.parametrize("plug", [8.0, 10.0, 25.0])
 def test_the_lines_of_text_keep_apart(plug: float) -> None:
     """On the plate are numbers, the bar and three captions, and between any two neighbours there is room."""
-    drawing = coupon([0.101 + 0.011 * k for k in range(KERFS_MAX)], thickness=1.0, plug=plug)
+    drawing = coupon_drawing([0.101 + 0.011 * k for k in range(KERFS_MAX)], thickness=1.0, plug=plug)
     engraved = [line.bounds for line in rings(drawing.layers[0].paths)]
     holes, _ = holes_and_plugs(drawing)
     above = [bounds for bounds in engraved if bounds[1] > holes[0].imag]
@@ -237,7 +237,7 @@ def test_the_lines_of_text_keep_apart(plug: float) -> None:
 
 def test_any_order_gives_the_same_coupon() -> None:
     """Kerfs are sorted, and the same ones give the same arrays and recipe."""
-    first, second = coupon((0.1, 0.3, 0.2), thickness=3), coupon((0.3, 0.2, 0.1), thickness=3)
+    first, second = coupon_drawing((0.1, 0.3, 0.2), thickness=3), coupon_drawing((0.3, 0.2, 0.1), thickness=3)
     assert first.recipe == second.recipe
     for a, b in zip(first.layers, second.layers, strict=True):
         assert np.array_equal(a.paths.start, b.paths.start)
@@ -246,7 +246,7 @@ def test_any_order_gives_the_same_coupon() -> None:
 
 def test_no_cut_is_made_twice() -> None:
     """No two cut pieces share a stretch."""
-    lines = cut_lines(coupon(KERFS, thickness=3))
+    lines = cut_lines(coupon_drawing(KERFS, thickness=3))
     assert all(a.disjoint(b) for a, b in combinations(lines, 2))
 
 
@@ -323,6 +323,6 @@ def test_ranges_that_are_none(text: str, message: str) -> None:
 def test_coupons_that_cannot_be(kerfs: tuple[float, ...], thickness: float, plug: float, message: str) -> None:
     """Each is refused with what is wrong and a remedy."""
     with pytest.raises(ValueError, match=message) as caught:
-        coupon(kerfs, thickness=thickness, plug=plug)
+        coupon_drawing(kerfs, thickness=thickness, plug=plug)
     assert ". " in str(caught.value)
     assert str(caught.value).endswith(".")

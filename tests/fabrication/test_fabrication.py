@@ -33,9 +33,10 @@ from helpers.examples import tiling
 from svgelements import SVG
 from svgelements import Path as SvgPath
 
-from voronoi_tiles.fabrication import Job, JobError, Product, colour_names, make_colours
+from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.job_report import report_figures
 from voronoi_tiles.fabrication.layout import FRAME
+from voronoi_tiles.fabrication.product import Product, colour_names, make_colours
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
 
 
@@ -52,10 +53,10 @@ def written(product: Product) -> bytes:
 @pytest.mark.parametrize(
     ("job", "message"),
     [
-        ({"kerf": 0.2, "edges": "once"}, "--kerf needs pieces"),
-        ({"gap": 1.0, "edges": "once"}, "--gap needs pieces"),
-        ({"fillet": 1.0, "edges": "once"}, "--fillet needs pieces"),
-        ({"colours": "layers", "edges": "once"}, "--colours needs pieces"),
+        ({"kerf": 0.2, "edges": "once"}, "`kerf` needs `edges='pieces'`"),
+        ({"gap": 1.0, "edges": "once"}, "`gap` needs `edges='pieces'`"),
+        ({"fillet": 1.0, "edges": "once"}, "`fillet` needs `edges='pieces'`"),
+        ({"colours": "layers", "edges": "once"}, "`colours` needs `edges='pieces'`"),
         ({"sheet": (100.0, 100.0), "fit": "frame", "kerf": 0.2}, "no room"),
         ({"sheet": (100.0, 100.0), "fit": "frame", "gap": 1.0}, "no room"),
         ({"sheet": (0.0, 100.0)}, "0 x 100 mm cannot be"),
@@ -63,28 +64,29 @@ def written(product: Product) -> bytes:
         ({"sheet": (float("nan"), 100.0)}, "nan x 100 mm cannot be"),
         ({"sheet": (1e9, 100.0)}, "cannot be"),
         ({"sheet": (100.0, 100.0), "margin": 50.0}, "leaves nothing"),
-        ({"kerf": -0.1}, "kerf -0.1 mm cannot be"),
-        ({"kerf": float("nan")}, "kerf nan mm cannot be"),
-        ({"tabs": float("inf")}, "tabs inf mm cannot be"),
-        ({"accuracy": 0.0}, "accuracy of 0 mm"),
-        ({"accuracy": 1e-7}, "accuracy of 1e-07 mm"),
+        ({"kerf": -0.1}, "`kerf` -0.1 mm cannot be"),
+        ({"kerf": float("nan")}, "`kerf` nan mm cannot be"),
+        ({"tabs": float("inf")}, "`tabs` inf mm cannot be"),
+        ({"accuracy": 0.0}, "`accuracy` 0 mm cannot be"),
+        ({"accuracy": 1e-7}, "`accuracy` 1e-07 mm cannot be"),
         ({"rotate": float("nan")}, "not a number"),
         ({"offset": complex(float("inf"), 0)}, "not a number"),
-        ({"label_height": 0.0}, "labels of 0 mm"),
-        ({"fit": "clip"}, "--fit is about a sheet"),
-        ({"marks": True}, "--marks is about a sheet"),
-        ({"fit": "half", "sheet": (100.0, 100.0)}, "fit 'half' is unknown"),
-        ({"edges": "twice"}, "edges 'twice' is unknown"),
-        ({"curves": "nurbs"}, "curves 'nurbs' is unknown"),
-        ({"labels": "names"}, "labels 'names' is unknown"),
-        ({"colours": "red"}, "colours 'red' is unknown"),
-        ({"art": "some"}, "art 'some' is unknown"),
+        ({"label_height": 0.0}, "`label_height` 0 mm cannot be"),
+        ({"fit": "clip"}, "`fit` is about a sheet"),
+        ({"marks": True}, "`marks` is about a sheet"),
+        ({"fit": "half", "sheet": (100.0, 100.0)}, "`fit` 'half' is unknown"),
+        ({"edges": "twice"}, "`edges` 'twice' is unknown"),
+        ({"curves": "nurbs"}, "`curves` 'nurbs' is unknown"),
+        ({"labels": "names"}, "`labels` 'names' is unknown"),
+        ({"colours": "red"}, "`colours` 'red' is unknown"),
+        ({"art": "some"}, "`art` 'some' is unknown"),
     ],
 )
 def test_jobs_that_cannot_be(job: dict[str, Any], message: str) -> None:
     """Each is refused with one message and a remedy."""
     with pytest.raises(JobError, match=message) as caught:
         Job(**job)
+    assert caught.value.remedy
     assert caught.value.remedy.endswith(".")
     assert "\n" not in str(caught.value)
 
@@ -94,7 +96,7 @@ def test_jobs_that_cannot_be(job: dict[str, Any], message: str) -> None:
     [
         ({"sheet": (15.0, 100.0)}, "no whole tile fits on the sheet: one takes 20 x 20 mm"),
         ({"sheet": (15.0, 15.0), "fit": "frame"}, "no whole tile fits"),
-        ({"sheet": (100.0, 100.0), "marks": True}, "--marks need room"),
+        ({"sheet": (100.0, 100.0), "marks": True}, "`marks` need room"),
         ({"sheet": (100.0, 100.0), "bar": True, "margin": 8.0}, "no room at the sheet's edge"),
         ({"sheet": (200.0, 100.0), "bar": True}, "no room at the sheet's edge"),
         ({"sheet": (100.0, 100.0), "colours": "files"}, "several drawings"),
@@ -106,6 +108,7 @@ def test_jobs_that_a_tiling_cannot_do(job: dict[str, Any], message: str) -> None
     """Each is refused with one message and a remedy."""
     with pytest.raises(JobError, match=message) as caught:
         squares().make(Job(**job))
+    assert caught.value.remedy
     assert caught.value.remedy.endswith(".")
     with pytest.raises(JobError, match="no drawing can be made as 'stl'"):
         squares().make(Job(), "stl")

@@ -27,9 +27,10 @@ from helpers.examples import tiling
 from helpers.sheets import check_apart, shape
 
 from voronoi_tiles.designs.design import Design
-from voronoi_tiles.fabrication import Job, JobError, Product
-from voronoi_tiles.fabrication.job import Fit
+from voronoi_tiles.fabrication.job import Fit, Job
+from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.layout import FRAME_MM
+from voronoi_tiles.fabrication.product import Product
 from voronoi_tiles.paths.paths import LINE, Paths
 
 DESIGNS = ["p4-hook", "pg-wave", "cmm-scroll", "pmm", "p31m"]
@@ -201,6 +202,7 @@ def test_drawings_that_are_no_sheet(tmp_path: Any, body: str, message: str) -> N
     name = write_svg(tmp_path / "sheet.svg", body)
     with pytest.raises(JobError, match=message) as caught:
         squares().make(Job(sheet=name))
+    assert caught.value.remedy
     assert caught.value.remedy.endswith(".")
 
 

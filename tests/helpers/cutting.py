@@ -16,7 +16,8 @@ from helpers.sheets import flattened, points_on, xy
 from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.designs.design import Design
-from voronoi_tiles.fabrication import Job, Product
+from voronoi_tiles.fabrication.job import Job
+from voronoi_tiles.fabrication.product import Product
 from voronoi_tiles.paths.paths import ARC, LINE, Paths
 from voronoi_tiles.tiling import Tiling
 from voronoi_tiles.vector.outline import Outline

@@ -26,7 +26,7 @@ import shapely
 from helpers import brute, strategies
 from voronoi_tiles.base.errors import TouchingCopiesError
 from voronoi_tiles.designs.design import Design
-from voronoi_tiles.designs.site import Site
+from voronoi_tiles.designs.site import NodedSite
 
 TOUCHING = 1e-11
 """Copies nearer than this, relative to the cell, may be refused: ten times the accuracy that is promised."""
@@ -79,7 +79,7 @@ def try_design(design: dict[str, Any], rng: np.random.Generator, points: int = 6
 
 def _refusal(read: Design, error: TouchingCopiesError) -> str:
     """Confirm that copies touch where the error says so."""
-    sites: dict[str, Site] = {site.name: site for site in read.sites}
+    sites: dict[str, NodedSite] = {site.name: site for site in read.noded}
     elements = {name: site.elements for name, site in sites.items()}
     plane = brute.Plane(read.group.name, read.lattice.a, read.lattice.b, elements)
     here, there = plane.names.index(error.site), plane.names.index(error.other)

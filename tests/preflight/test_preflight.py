@@ -341,7 +341,7 @@ def test_tabs_are_no_gaps(tmp_path: Path) -> None:
     sides = "<path d='M10.2 10H30'/><path d='M30 10.4V30'/><path d='M30 30H10V10.4'/>"
     gaps = judged(sides)
     assert not gaps.passed
-    assert any("--tabs 0.4mm" in finding.remedy for finding in gaps.findings)
+    assert any("`tabs=0.4`" in finding.remedy for finding in gaps.findings)
     tabbed = judged(sides, limits=Limits(tabs=0.4))
     kinds = {finding.kind: finding.severity for finding in tabbed.findings}
     assert kinds["tab"] == "info"
@@ -389,8 +389,8 @@ TANGLE = "".join(f"<path d='M{k} 0 {20 - k} 20'/>" for k in range(20))
             Limits(),
             r"so densely that more than 50 pairs of them",
         ),
-        ("necks.FOUND_MAX", "<path d='M1 1h1v1zm9 0h1v1z'/>" + TANGLE, Limits(neck=30.0), r"--neck 0\.$"),
-        ("necks._WAYS_MAX", "<path d='M0 0H9V3H5.1V3.2H9V7H0V3.2H4.9V3H0Z'/>", Limits(neck=8.0), r"--neck 0\.$"),
+        ("necks.FOUND_MAX", "<path d='M1 1h1v1zm9 0h1v1z'/>" + TANGLE, Limits(neck=30.0), r"`neck=0`\.$"),
+        ("necks._WAYS_MAX", "<path d='M0 0H9V3H5.1V3.2H9V7H0V3.2H4.9V3H0Z'/>", Limits(neck=8.0), r"`neck=0`\.$"),
     ],
 )
 def test_dense_drawings_are_refused(

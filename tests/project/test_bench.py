@@ -25,7 +25,7 @@ import peer
 import report
 
 from voronoi_tiles.base.operations import Operation
-from voronoi_tiles.designs.site import Site
+from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.groups.wallpaper import GROUPS
 from voronoi_tiles.vector.outline import Outline
 
@@ -65,7 +65,7 @@ def row_of(score: accuracy.Score) -> accuracy.Row:
 
 def two_segments() -> exact.Plane:
     """A segment from 0 to 1, and its copy from 2i to 1 + 2.5i, which is none: the arithmetic does not care."""
-    site = Site("s", np.array([0, 1], dtype=complex), np.array([[0, 1]]))
+    site = NodedSite("s", np.array([0, 1], dtype=complex), np.array([[0, 1]]))
     return exact.as_given(site, np.array([[0, 1], [2j, 1 + 2.5j]]), 1.0)
 
 

@@ -13,6 +13,7 @@ commands run in order, in an empty folder of the page's own, with a copy of exam
 
 from __future__ import annotations
 
+import json
 import os
 import random
 import re
@@ -30,13 +31,16 @@ import pytest
 from helpers.outlines import CommandLine
 
 import voronoi_tiles as vt
-from voronoi_tiles.cli.main import cli
+from voronoi_tiles.cli.main import COMMANDS, cli
 from voronoi_tiles.designs import schema as reading
 from voronoi_tiles.groups.symmetry_elements import symmetry_elements
 
 ROOT = Path(__file__).parents[2]
 DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
+
+OURS = {name: command for name in COMMANDS if (command := cli.get_command(click.Context(cli), name))}
+"""The commands of the command line."""
 
 NOT_RUN = {
     "pip install -e .": "needs the index for the dependencies; the tests run in such an environment already",
@@ -224,10 +228,10 @@ def read(command: str) -> None:
         return
     if is_make(command):
         return
-    if program != "voronoi-tiles" or not words or words[0] not in cli.commands:
+    if program != "voronoi-tiles" or not words or words[0] not in OURS:
         raise PageError(f"{command}\nno command of ours")
     try:
-        cli.commands[words[0]].make_context(words[0], words[1:])
+        OURS[words[0]].make_context(words[0], words[1:])
     except click.ClickException as error:
         raise PageError(f"{command}\n{error.format_message()}") from error
     for word in words[1:]:
@@ -383,6 +387,22 @@ def test_every_key_is_documented(path: tuple[str, ...]) -> None:
     assert set(keys) <= rows
 
 
+def keys_of(value: object) -> Iterator[str]:
+    """All keys of a JSON value."""
+    if isinstance(value, dict):
+        yield from value
+    for item in value.values() if isinstance(value, dict) else value if isinstance(value, list) else ():
+        yield from keys_of(item)
+
+
+def test_every_key_of_the_outline_document_is_documented() -> None:
+    """Each key of a document with evidence begins a row of a table, and no row is about another."""
+    tiling = vt.starter("p4m").tessellate()
+    keys = set(keys_of(json.loads(tiling.json(tiling.check(samples=64, renderer="cpu")))))
+    assert len(keys) > 30
+    assert set(re.findall(r"^\| `(\w+)`", text_of("outline-document.md"), re.MULTILINE)) == keys
+
+
 def test_every_stroke_has_a_picture() -> None:
     """Each kind of stroke is drawn in an example of the reference, and the picture is shown."""
     text = text_of("design-file.md")
@@ -408,7 +428,7 @@ def test_every_command_and_option_is_documented() -> None:
     texts = [page.read_text(encoding="utf-8") for page in PAGES]
     missing = [
         f"{name} {flag}"
-        for name, command in cli.commands.items()
+        for name, command in OURS.items()
         for parameter in command.params
         if isinstance(parameter, click.Option)
         for flag in ["|".join(parameter.opts)]
@@ -417,12 +437,12 @@ def test_every_command_and_option_is_documented() -> None:
         )
     ]
     assert not missing
-    assert not [name for name in cli.commands if not any(f"voronoi-tiles {name}" in text for text in texts)]
+    assert not [name for name in OURS if not any(f"voronoi-tiles {name}" in text for text in texts)]
 
 
 def test_no_option_is_invented() -> None:
     """Each option in the pages is one of some command."""
-    known = {flag for command in cli.commands.values() for parameter in command.params for flag in parameter.opts}
+    known = {flag for command in OURS.values() for parameter in command.params for flag in parameter.opts}
     foreign = {"--help", "--version", "--strict", "--cov", "--sites", "--even"}  # the last of docs/generate/census.py
     for page in PAGES:
         named = set(re.findall(r"(?<![\w-])--[a-z][a-z-]+", page.read_text(encoding="utf-8")))

@@ -18,6 +18,7 @@ RANKS = (
     ("designs",),
     ("vector", "raster"),
     ("fabrication", "preflight", "crosscheck", "pictures"),
+    ("tile",),
     ("tiling",),
     ("cli",),
 )
@@ -30,9 +31,11 @@ FACE = ("__init__", "__main__")
 """The modules of the root package itself: they hand on what users ask for, and may import anything."""
 
 UPWARDS = {
-    ("voronoi_tiles.designs.design", scope, "voronoi_tiles.tiling") for scope in ("Design.tessellate", "TYPE_CHECKING")
+    ("voronoi_tiles.designs.design", "Design.tessellate", "voronoi_tiles.tiling"),
+    ("voronoi_tiles.designs.design", "TYPE_CHECKING", "voronoi_tiles.tiling"),
+    ("voronoi_tiles.designs.design", "Design._repr_svg_", "voronoi_tiles.pictures"),
 }
-"""(module, scope, what is imported): a convenience for users, deferred; its result needs a type."""
+"""(module, scope, what is imported): conveniences for users, deferred; the type of a result."""
 
 RANK = {name: rank for rank, names in enumerate(RANKS) for name in names}
 STAGES = ("vector", "raster")
@@ -238,7 +241,10 @@ def test_a_violation_is_caught(module: str, source: str) -> None:
             "voronoi_tiles.designs.design",
             "class Design:\n    def tessellate(self):\n        from voronoi_tiles.tiling import f",
         ),
-        ("voronoi_tiles.vector.scan", "from . import arcs\nfrom voronoi_tiles.designs.site import Site\nimport numpy"),
+        (
+            "voronoi_tiles.vector.scan",
+            "from . import arcs\nfrom voronoi_tiles.designs.site import NodedSite\nimport numpy",
+        ),
         ("voronoi_tiles.raster.frame", "from voronoi_tiles.base.arrays import Floats"),
         ("voronoi_tiles.tiling", "from voronoi_tiles.vector.outline import Outline"),
         ("voronoi_tiles.cli.main", "from voronoi_tiles.tiling import Tiling"),

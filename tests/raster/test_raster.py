@@ -48,7 +48,7 @@ KINDS = ("plain", "grid", "polygon", "special", "points", "several", "parallel",
 def pattern_of(design: dict[str, Any]) -> Pattern:
     """The sites of a design, whether their copies touch or not."""
     read = Design.from_dict(design)
-    return Pattern(read.sites, read.group, read.lattice)
+    return Pattern(read.noded, read.group, read.lattice)
 
 
 def one(group: str, *strokes: dict[str, Any], **cell: float) -> Pattern:

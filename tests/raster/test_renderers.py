@@ -713,9 +713,9 @@ def test_the_spot_check_looks_everywhere(monkeypatch: pytest.MonkeyPatch) -> Non
 def test_unknown_choices_are_refused() -> None:
     """Before anything is looked for."""
     unknown: Any = "vulkan"
-    with pytest.raises(ValueError, match="unknown renderer 'vulkan'"):
+    with pytest.raises(ValueError, match="`renderer` 'vulkan' is unknown"):
         Renderer(unknown)
-    with pytest.raises(ValueError, match="unknown method 'vulkan'"):
+    with pytest.raises(ValueError, match="`method` 'vulkan' is unknown"):
         Renderer("cpu", method=unknown)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import copy
-import dataclasses
 from collections.abc import Callable
 from typing import Any
 
@@ -11,6 +10,7 @@ import numpy as np
 import pytest
 import shapely
 from helpers import boost, brute, fuzz, strategies
+from helpers.designs import tampered
 
 from voronoi_tiles.base.errors import TouchingCopiesError
 from voronoi_tiles.base.operations import Operation
@@ -379,8 +379,8 @@ def test_the_fuzz_sees_a_refusal_without_reason(monkeypatch: pytest.MonkeyPatch)
     assert "apart" in fuzz.try_design(SEGMENT, rng)
     monkeypatch.setattr(Tiling, "document", refuse("x,y", 5 + 3j))
     assert "onto itself" in fuzz.try_design(SEGMENT, rng)
-    touching = dataclasses.replace(
-        Design.from_dict(SEGMENT), sites=Design.from_dict(_design("p4", [{"segment": [[0, 0], [25, 11]]}])).sites
+    touching = tampered(
+        Design.from_dict(SEGMENT), noded=Design.from_dict(_design("p4", [{"segment": [[0, 0], [25, 11]]}])).noded
     )
     for place, expected in ((0j, "refused"), (25 + 11j, "apart")):
         error = TouchingCopiesError("site1", "site1", Operation.parse("-x,-y"), place)

@@ -88,7 +88,7 @@ class _Tampered:
 def _report(change: Change, design: dict[str, Any] | None = None, tiles: Sequence[int] = (0, 1)) -> ProofReport:
     """The proof's report of a design some of whose tiles are changed."""
     read = Design.from_dict(design or DESIGN)
-    records: list[Any] = list(tessellate(read.sites, read.group, read.lattice))
+    records: list[Any] = list(tessellate(read.noded, read.group, read.lattice))
     records = [_Tampered(record, change) if k in tiles else record for k, record in enumerate(records)]
     return prove(read.group, read.lattice, records)
 
@@ -285,7 +285,7 @@ def test_a_lost_island_is_a_stroke_that_strayed() -> None:
     strokes += [{"segment": [[0.5, 40], [7, 49]]}, {"point": [-2.5, 44]}]
     design = {"schema": 1, "group": "pm", "cell": {"a": 60, "b": 80}, "site": [{"strokes": strokes}]}
     read = Design.from_dict(design)
-    (record,) = tessellate(read.sites, read.group, read.lattice)
+    (record,) = tessellate(read.noded, read.group, read.lattice)
     assert len(record.local().outline.ring_offsets) == 4
     assert prove(read.group, read.lattice, [record]).passed
     assert "strayed strokes" in _failed(_report(partial(_rings, chosen=[0, 1]), design))
@@ -302,7 +302,7 @@ def test_a_far_site_is_proved_where_it_was_computed() -> None:
 def test_a_tile_with_bite_and_island() -> None:
     """A site across a mirror is proved with all its rings; without some of them it is not."""
     read = Design.from_dict(BEYOND_THE_MIRROR)
-    (record,) = tessellate(read.sites, read.group, read.lattice)
+    (record,) = tessellate(read.noded, read.group, read.lattice)
     outline = record.local().outline
     assert prove(read.group, read.lattice, [record]).passed
     for k in range(len(outline.ring_offsets) - 1):

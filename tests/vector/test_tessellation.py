@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 import pytest
 from helpers import brute, fuzz, strategies
+from helpers.designs import tampered
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
@@ -22,7 +23,7 @@ from voronoi_tiles.base.errors import TouchingCopiesError
 from voronoi_tiles.base.maps import Isometry
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.designs.design import Design
-from voronoi_tiles.designs.site import Site
+from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.groups.wallpaper import GROUPS, Lattice
 from voronoi_tiles.tiling import Tiling
 from voronoi_tiles.vector.outline import Outline
@@ -65,8 +66,8 @@ def one(group: str, *strokes: dict[str, Any], **cell: float) -> dict[str, Any]:
 
 def moved(design: Design, change: Callable[[Complexes], Complexes], **others: Any) -> Design:
     """A design with all sites mapped, and whatever else changes with them."""
-    sites = tuple(Site(site.name, change(site.nodes), site.segments) for site in design.sites)
-    return replace(design, sites=sites, **others)
+    sites = tuple(NodedSite(site.name, change(site.nodes), site.segments) for site in design.noded)
+    return tampered(design, noded=sites, **others)
 
 
 def marks(outline: Outline, least: float) -> Complexes:
@@ -207,9 +208,9 @@ def test_given_through_an_equivalent_site(design: dict[str, Any], choice: int) -
     tiling = tile(design)
     operations = tiling.design.group.operations
     isometry = tiling.design.lattice.isometry(operations[choice % len(operations)].translated(1, -2))
-    first, *rest = tiling.design.sites
-    image = Site(first.name, isometry(first.nodes), first.segments)
-    other = tile(replace(tiling.design, sites=(image, *rest)))
+    first, *rest = tiling.design.noded
+    image = NodedSite(first.name, isometry(first.nodes), first.segments)
+    other = tile(tampered(tiling.design, noded=(image, *rest)))
     assert_same(tiling.tiles[0].outline.transformed(isometry), other.tiles[0].outline, size(tiling.design))
     for before, after in zip(tiling.tiles[1:], other.tiles[1:], strict=True):
         assert_same(before.outline, after.outline, size(tiling.design))
@@ -281,7 +282,7 @@ def test_another_basis(design: dict[str, Any], skew: int) -> None:
     """The same lattice given by a skew cell gives the same tiles."""
     tiling = tile(design)
     lattice = tiling.design.lattice
-    other = tile(replace(tiling.design, lattice=Lattice(lattice.a, lattice.b + skew * lattice.a)))
+    other = tile(tampered(tiling.design, lattice=Lattice(lattice.a, lattice.b + skew * lattice.a)))
     for before, after in zip(tiling.tiles, other.tiles, strict=True):
         assert_same(before.outline, after.outline, size(other.design))
 

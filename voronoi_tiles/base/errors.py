@@ -1,16 +1,15 @@
 """The errors of voronoi_tiles: one root, and leaves that carry what went wrong as data.
 
 Every leaf also inherits the built-in error that a caller would expect (ValueError, ArithmeticError,
-OSError), and `exit_code` is what the command line returns for it.
+OSError), and `exit_code` is what the command line returns for it. Messages name arguments in backquotes, with the
+value to give them where they advise one: "`kerf` needs `edges='pieces'`". The command line makes options of these.
 """
 
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING, Any, ClassVar, Self
-
-if TYPE_CHECKING:
-    from voronoi_tiles.base.operations import Operation
+import re
+from typing import Any, ClassVar, Self
 
 
 class VoronoiTilesError(Exception):
@@ -58,23 +57,24 @@ class DesignError(VoronoiTilesError, ValueError):
         """A copy of this error that names `file`; a file that is already named stays."""
         return type(self)(self.message, file=self.file or file, key=self.key, line=self.line, remedy=self.remedy)
 
+    def with_key(self, key: str) -> Self:
+        """A copy of this error that names another key."""
+        return type(self)(self.message, file=self.file, key=key or None, line=self.line, remedy=self.remedy)
+
     def under(self, key: str) -> Self:
         """A copy of this error with `key` before its own: "segment[1]" under "site[0]" is "site[0].segment[1]"."""
         own = self.key or ""
-        path = f"{key}.{own}" if own and not own.startswith("[") else key + own
-        return type(self)(self.message, file=self.file, key=path, line=self.line, remedy=self.remedy)
+        return self.with_key(f"{key}.{own}" if own and not own.startswith("[") else key + own)
 
 
 class TouchingCopiesError(VoronoiTilesError, ValueError):
     """Two different copies of sites touch or cross, so that a region would belong to nobody.
 
     `site` is the site of the base cell, `other` the site whose image under `operation` touches it at `place`
-    (in the units of the design).
+    (in the units of the design). The operation is an Operation.
     """
 
-    def __init__(
-        self, site: str, other: str, operation: Operation | str, place: complex, *, file: str | None = None
-    ) -> None:
+    def __init__(self, site: str, other: str, operation: Any, place: complex, *, file: str | None = None) -> None:
         super().__init__(site, other, operation, place)
         self.site = site
         self.other = other
@@ -118,6 +118,9 @@ class CheckError(_ResultError):
     """A result that failed its cross-check: `message`, without a full stop; `report` is the CheckReport."""
 
 
+_ARGUMENT = re.compile(r"`(\w+)(?:=[^`]*)?`")
+
+
 class _RemediedError(VoronoiTilesError):
     """What cannot be done; `message` and `remedy` are those of DesignError."""
 
@@ -128,6 +131,23 @@ class _RemediedError(VoronoiTilesError):
 
     def __str__(self) -> str:
         return f"{self.message}. {self.remedy}" if self.remedy else f"{self.message}."
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """The names of the arguments that the message is about, in its order."""
+        return tuple(dict.fromkeys(_ARGUMENT.findall(self.message)))
+
+
+class ArgumentError(_RemediedError, ValueError):
+    """An argument that cannot be; `message` and `remedy` are those of DesignError, `fields` names it."""
+
+
+class UnknownNameError(_RemediedError, KeyError):
+    """A name that nothing has; `message` and `remedy` are those of DesignError."""
+
+
+class MissingLibraryError(_RemediedError, ImportError):
+    """A library that is not installed, and needed; `message` and `remedy` are those of DesignError."""
 
 
 class RenderError(_RemediedError, RuntimeError):

@@ -64,7 +64,7 @@ def write_whole(path: str | os.PathLike[str], data: bytes) -> None:
 
 @contextmanager
 def writing(path: str | os.PathLike[str]) -> Iterator[io.RawIOBase]:
-    """Give a binary file to write, in any number of portions, that is as whole as one of `write_whole`.
+    """A binary file to write, in any number of portions, that is as whole as one of `write_whole`.
 
     The file takes its place when the block ends, and is gone when an exception leaves it. What goes to standard output,
     a device or a pipe is kept in a temporary file until then, so that nothing half done is sent. Each write takes all
@@ -97,8 +97,15 @@ def output_error(path: str, error: Exception) -> OutputError:
     )
 
 
+def refuse_existing(path: str | os.PathLike[str]) -> None:
+    """Refuse to overwrite a file that people work on. Raises OutputError."""
+    name = os.fspath(path)
+    if name != STDOUT and not is_special(name) and os.path.lexists(name):
+        raise OutputError(f"{name} exists already", path=name, remedy="Choose another name, or remove it first.")
+
+
 def is_special(name: str) -> bool:
-    """Tell whether a file is a device, a pipe or an open descriptor, which writing does not replace."""
+    """Whether a file is a device, a pipe or an open descriptor, which writing does not replace."""
     try:
         old = _status(name)
     except (OSError, ValueError):
@@ -111,13 +118,13 @@ def is_special(name: str) -> bool:
 
 
 def _descriptor(name: str) -> int | None:
-    """Give the open descriptor that a name stands for, None for other files."""
+    """The open descriptor that a name stands for, None for other files."""
     numbered = _DESCRIPTOR.fullmatch(name)
     return int(numbered[1]) if numbered else _DESCRIPTORS.get(name)
 
 
 def _status(name: str) -> os.stat_result | None:
-    """Give the status of a file, None when there is none."""
+    """The status of a file, None when there is none."""
     try:
         return os.stat(name)  # noqa: PTH116 - Path takes an empty name for the folder
     except FileNotFoundError:
@@ -125,14 +132,14 @@ def _status(name: str) -> os.stat_result | None:
 
 
 def _target(name: str) -> Path:
-    """Give the file that a name leads to through symbolic links."""
+    """The file that a name leads to through symbolic links."""
     if not name:
         raise ValueError("the name is empty")
     return Path(os.path.realpath(name))
 
 
 def _is_replaced(name: str) -> bool:
-    """Tell whether a file is written beside its place and renamed, as plain and new files are."""
+    """Whether a file is written beside its place and renamed, as plain and new files are."""
     if name in _STDOUTS or _descriptor(name) is not None:
         return False
     old = _status(name)
@@ -140,7 +147,7 @@ def _is_replaced(name: str) -> bool:
 
 
 def _label(name: str) -> str:
-    """Give what messages call a file."""
+    """What messages call a file."""
     return "standard output" if name in _STDOUTS else name
 
 

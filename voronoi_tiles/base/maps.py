@@ -40,7 +40,7 @@ def unit_at(degrees: float) -> complex:
 
 
 def move(z: Complexes, unit: complex | Complexes, shift: complex | Complexes, conj: bool | Bools = False) -> Complexes:
-    """Return unit * z + shift, or unit * conj(z) + shift where `conj`; all arguments broadcast.
+    """The image unit * z + shift, or unit * conj(z) + shift where `conj`; all arguments broadcast.
 
     The arithmetic is spelt out in real numbers: numpy's complex product may round an element differently with
     its place in the array, and the same point must have the same bits from wherever it is reached.
@@ -109,6 +109,16 @@ class Placement:
         image.real = (unit.real * x - unit.imag * y) + self.translate.real
         image.imag = (unit.imag * x + unit.real * y) + self.translate.imag
         return image
+
+    def __matmul__(self, inner: Placement) -> Placement:
+        """First `inner`, then this one."""
+        shift = complex(self(np.array([inner.translate], dtype=np.complex128))[0])
+        return Placement(self.scale * inner.scale, self.rotate + inner.rotate, shift)
+
+    @property
+    def mirrored(self) -> Placement:
+        """The placement P' with which mirroring (x -> -x) and then P' is this one and then mirroring."""
+        return Placement(self.scale, -self.rotate, -self.translate.conjugate())
 
 
 SIMILAR: Final = 1e-9

@@ -7,10 +7,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
 
+from voronoi_tiles.base.errors import ArgumentError
+
+_REMEDY = "Write one such as -y,x+1/2."
+
 _TERM = re.compile(r"([+-])(?:(\d*)([xy])|(\d+)(?:/(\d+))?)")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Operation:
     """A symmetry operation in fractional coordinates: x' = W0 x + W1 y + t0, y' = W2 x + W3 y + t1.
 
@@ -25,9 +29,12 @@ class Operation:
     def parse(cls, text: str) -> Operation:
         """Read a coordinate triplet such as "-y,x-y", "-x+1/2,y+1" or "x-y+3/2,-y".
 
-        Raises ValueError where the text is no triplet, or where the determinant is neither 1 nor -1.
+        Raises ArgumentError where the text is no triplet, or where the determinant is neither 1 nor -1.
         """
         return _parse(text)
+
+    def __repr__(self) -> str:
+        return f"Operation.parse({str(self)!r})"
 
     def __str__(self) -> str:
         a, b, c, d = self.linear
@@ -76,11 +83,11 @@ class Operation:
 def _parse(text: str) -> Operation:
     rows = text.split(",")
     if len(rows) != 2:
-        raise ValueError(f"not a coordinate triplet: {text!r}")
+        raise ArgumentError(f"not a coordinate triplet: {text!r}", remedy=_REMEDY)
     (a, b, t0), (c, d, t1) = (_parse_row(row, text) for row in rows)
     operation = Operation((a, b, c, d), (t0, t1))
     if operation.determinant not in (1, -1):
-        raise ValueError(f"not an operation of a lattice (its determinant is not 1 or -1): {text!r}")
+        raise ArgumentError(f"not an operation of a lattice (its determinant is not 1 or -1): {text!r}", remedy=_REMEDY)
     return operation
 
 
@@ -104,7 +111,7 @@ def _parse_row(row: str, text: str) -> tuple[int, int, Fraction]:
             shift += Fraction(sign * int(match[4]), int(match[5] or 1))
         position = match.end()
     if not row or position < len(row):
-        raise ValueError(f"not a coordinate triplet: {text!r}")
+        raise ArgumentError(f"not a coordinate triplet: {text!r}", remedy=_REMEDY)
     return coefficients["x"], coefficients["y"], shift
 
 

@@ -32,7 +32,7 @@ def within(key: str) -> Iterator[None]:
 
 
 def shown(value: object) -> str:
-    """Give a short form of any value, for messages."""
+    """A short form of any value, for messages."""
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, Mapping):
@@ -60,7 +60,7 @@ def table(value: object, known: Collection[str], remedy: str) -> Table:
 
 
 def closest(word: object, known: Collection[str]) -> str | None:
-    """Find the known word that was probably meant; None where nothing is near."""
+    """The known word that was probably meant; None where nothing is near."""
     if not isinstance(word, str) or len(word) > 40:
         return None
     import difflib
@@ -69,7 +69,7 @@ def closest(word: object, known: Collection[str]) -> str | None:
 
 
 def required(of: Table, name: str, remedy: str) -> Any:
-    """Get the value of a key that has to be there."""
+    """The value of a key that has to be there."""
     if name not in of:
         raise DesignError("is missing", key=name, remedy=remedy)
     return of[name]

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
 import os
-from contextlib import suppress
-from typing import TYPE_CHECKING
+import re
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from voronoi_tiles.base.errors import OutputError, VoronoiTilesError
+from voronoi_tiles.base.errors import VoronoiTilesError
 
 if TYPE_CHECKING:
     from voronoi_tiles.tiling import Tiling
@@ -25,6 +28,11 @@ DEBUG_VARIABLE = "VORONOI_TILES_DEBUG"
 # Whether a file can be read shows when it is read: click's own check would lose a whole batch for one of them.
 PATH = click.Path(allow_dash=True, readable=False)
 
+_ARGUMENT = re.compile(r"`(\w+)(?:=([^`]*))?`")
+
+# Arguments that are options of another name.
+_OPTIONS = {"layers": "layer"}
+
 
 def tessellate(design: str) -> Tiling:
     """Load a design and compute its tiles."""
@@ -33,12 +41,24 @@ def tessellate(design: str) -> Tiling:
     return Design.load(design).tessellate()
 
 
+def as_options(text: str) -> str:
+    """A message with options in the place of the arguments of Python that it names in backquotes."""
+
+    def option(found: re.Match[str]) -> str:
+        name, value = found.groups()
+        flag = f"--{_OPTIONS.get(name, name).replace('_', '-')}"
+        return flag if value in {None, "True"} else f"{flag} {value.strip(chr(39) + '[]')}"
+
+    return _ARGUMENT.sub(option, text)
+
+
 def explain(error: BaseException, design: str | None = None) -> tuple[int, str]:
-    """Give the exit code and the message for an error, which begins with the name of the design if there is one."""
+    """The exit code and the message for an error, which begins with the name of the design if there is one."""
     start = f"Error: {design}: " if design is not None else "Error: "
     match error:
         case VoronoiTilesError():
-            code, message = error.exit_code, f"{'Error: ' if error.file is not None else start}{error}"
+            text = as_options(str(error))
+            code, message = error.exit_code, f"{'Error: ' if error.file is not None else start}{text}"
         case click.UsageError():
             text = error.format_message().rstrip()
             if isinstance(error, click.MissingParameter):
@@ -70,11 +90,38 @@ def report_error(design: str, error: Exception) -> int:
     return code
 
 
-def refuse_output(source: str, output: str | None, suffixes: tuple[str, ...]) -> None:
-    """Refuse a file whose name has none of the suffixes, or that would overwrite the source."""
-    from voronoi_tiles.base.files import is_special
+@contextmanager
+def reporting(design: str) -> Iterator[None]:
+    """Exit with one message that names the design where the block raises an error."""
+    try:
+        yield
+    except (click.exceptions.Exit, click.ClickException):
+        raise
+    except Exception as error:
+        raise click.exceptions.Exit(report_error(design, error)) from error
 
-    if output is None or output == "-":
+
+def print_figures(figures: Mapping[str, Any], as_text: Callable[[Any], str], *, as_json: bool) -> None:
+    """Print figures on standard output, as JSON or as a text for people."""
+    from voronoi_tiles.base.files import STDOUT, write_whole
+
+    write_whole(STDOUT, (json.dumps(figures, indent=2) + "\n" if as_json else as_text(figures)).encode())
+
+
+def refuse_output(source: str, output: str | None, suffixes: tuple[str, ...], *, stream: bool = True) -> None:
+    """Refuse a file whose name has none of the suffixes, or that would overwrite the source.
+
+    Without `stream` standard output is refused too, to which the report goes.
+    """
+    from voronoi_tiles.base.files import STDOUT, is_special
+
+    if output is None:
+        return
+    if output == STDOUT:
+        if not stream:
+            raise click.UsageError(
+                f"The report goes to standard output: give the picture a file, -o FILE{suffixes[0]}."
+            )
         return
     if not output:
         raise click.UsageError("The name of the file to write is empty: -o FILE.")
@@ -84,16 +131,8 @@ def refuse_output(source: str, output: str | None, suffixes: tuple[str, ...]) ->
         raise click.UsageError(f"{output} is what is read, and would be overwritten.")
 
 
-def refuse_existing(output: str) -> None:
-    """Refuse to overwrite a file that people work on."""
-    from voronoi_tiles.base.files import STDOUT, is_special
-
-    if output != STDOUT and not is_special(output) and os.path.lexists(output):
-        raise OutputError(f"{output} exists already", path=output, remedy="Choose another name, or remove it first.")
-
-
 def shown(design: str) -> str:
-    """Give what messages call a design."""
+    """What messages call a design."""
     return "standard input" if design == "-" else design
 
 
@@ -103,3 +142,9 @@ def say(message: str, *, lines: bool = False) -> None:
 
     with suppress(OSError):
         click.echo(message if lines else printable(message), err=True)
+
+
+def say_written(path: str, what: object = None) -> None:
+    """Say that a file was written, and what is in it, unless it is standard output."""
+    if path != "-":
+        say(f"wrote {path}" if what is None else f"wrote {path}: {what}")

@@ -1,15 +1,15 @@
-"""Options that several commands share: the renderer, and what is to be made of a design."""
+"""Options that several commands share: the renderer and its method, lengths, and what is to be made of a design."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from functools import wraps
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import click
 
-if TYPE_CHECKING:
-    from voronoi_tiles.fabrication.job import Job
+from voronoi_tiles.cli.common import as_options
+from voronoi_tiles.fabrication.job import Job
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -24,6 +24,16 @@ def with_renderer(command: Command) -> Command:
         type=click.Choice(("auto", "gl", "cpu")),
         default="auto",
         help="OpenGL or the processor; auto takes OpenGL where there is any [default: auto].",
+    )(command)
+
+
+def with_method(command: Command) -> Command:
+    """Add the option that chooses the method."""
+    return click.option(
+        "--method",
+        type=click.Choice(("exact", "hoff")),
+        default="exact",
+        help="Exact distances, or the cones and tents of Hoff et al. with a depth test [default: exact].",
     )(command)
 
 
@@ -56,132 +66,32 @@ class Length(click.ParamType[float]):
 
 LENGTH = Length()
 
+_TYPES: dict[str, click.ParamType[Any] | type] = {"length": LENGTH, "angle": float, "text": str}
 
-def _read_sheet(
-    _context: click.Context, _parameter: click.Parameter, text: str | None
-) -> tuple[float, float] | str | None:
-    """Read a size, or leave the name of a file as it is."""
-    from voronoi_tiles.base.errors import DesignError
-    from voronoi_tiles.base.units import parse_size
-
-    if text is None:
-        return None
-    if text.lower().endswith((".svg", ".dxf")):
-        return text
-    try:
-        return parse_size(text)
-    except DesignError as error:
-        raise click.BadParameter(f"{error} Or name an .svg file whose closed paths bound the sheet.") from None
+# A second spelling, and an option that is for the program's own use.
+_SPELLINGS = {"colours": ("--colours", "--colors")}
+_HIDDEN = ("only_colour",)
 
 
-def _read_offset(_context: click.Context, _parameter: click.Parameter, text: str | None) -> complex | None:
-    """Read two lengths: "3mm,-2mm"."""
-    from voronoi_tiles.base.errors import DesignError
-    from voronoi_tiles.base.units import parse_length
+def _job_options() -> dict[str, tuple[tuple[str, ...], dict[str, Any]]]:
+    """The flags and settings of each option of a job, in the order of its fields."""
+    found: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {}
+    for name, option in Job.options().items():
+        settings: dict[str, Any] = {"help": as_options(option.help)}
+        match option.kind:
+            case "word":
+                # "none" is what the option means when it is left out; for art it is what one may want.
+                settings["type"] = click.Choice([w for w in option.words if w != option.default or w != "none"])
+            case "flag":
+                settings |= {"is_flag": True, "default": None}
+            case kind:
+                settings |= {"type": _TYPES.get(kind), "metavar": option.shown}
+        if name not in _HIDDEN:
+            found[name] = (_SPELLINGS.get(name, (f"--{name.replace('_', '-')}",)), settings)
+    return found
 
-    if text is None:
-        return None
-    try:
-        x, y = (parse_length(part) for part in text.split(","))
-    except (ValueError, DesignError):
-        raise click.BadParameter(f"{text!r} is no offset. Write X,Y, such as 3mm,-2mm.") from None
-    return complex(x, y)
 
-
-_OPTIONS: tuple[tuple[tuple[str, ...], dict[str, Any]], ...] = (
-    (
-        ("--sheet",),
-        {
-            "metavar": "WxH|FILE",
-            "callback": _read_sheet,
-            "help": "Fill a sheet, 600x300mm, or the closed paths of an SVG or DXF file [default: one of each tile].",
-        },
-    ),
-    (("--margin",), {"type": LENGTH, "metavar": "LENGTH", "help": "What stays free inside the sheet's edge."}),
-    (
-        ("--fit",),
-        {
-            "type": click.Choice(("whole", "clip", "frame")),
-            "help": "Whole tiles only, tiles clipped at the edge, or whole tiles and the frame around them "
-            "[default: whole].",
-        },
-    ),
-    (("--rotate",), {"type": float, "metavar": "DEGREES", "help": "Turn the tiles counter-clockwise."}),
-    (
-        ("--offset",),
-        {
-            "metavar": "X,Y",
-            "callback": _read_offset,
-            "help": "Move the design's origin from the middle of the sheet [default: to where most whole tiles fit, "
-            "or not at all with --fit clip].",
-        },
-    ),
-    (
-        ("--edges",),
-        {
-            "type": click.Choice(("once", "pieces")),
-            "help": "Cut every shared edge once, or every tile as a closed piece [default: once on a sheet, unless an "
-            "option needs pieces].",
-        },
-    ),
-    (("--gap",), {"type": LENGTH, "metavar": "LENGTH", "help": "Pull pieces apart until they keep this distance."}),
-    (
-        ("--kerf",),
-        {
-            "type": LENGTH,
-            "metavar": "LENGTH",
-            "help": "The width of the cut: contours keep half of it from the pieces, which then have their true size.",
-        },
-    ),
-    (("--fillet",), {"type": LENGTH, "metavar": "RADIUS", "help": "Round the corners of pieces."}),
-    (("--tabs",), {"type": LENGTH, "metavar": "LENGTH", "help": "Leave bridges of this width, two a piece or more."}),
-    (
-        ("--accuracy",),
-        {
-            "type": LENGTH,
-            "metavar": "LENGTH",
-            "help": "How far approximated curves may be from the exact ones [default: 0.005mm].",
-        },
-    ),
-    (
-        ("--curves",),
-        {
-            "type": click.Choice(("exact", "arc", "spline", "polyline")),
-            "help": "Exact curves, circular arcs, cubic splines or chords [default: as the preset says].",
-        },
-    ),
-    (
-        ("--preset",),
-        {
-            "metavar": "NAME|FILE",
-            "help": "Colours, layers and curves for a target: plain, lightburn, redcut, ponoko, boxes, glowforge, cnc, "
-            "or a .toml file [default: plain].",
-        },
-    ),
-    (("--labels",), {"type": click.Choice(("number", "site")), "help": "Engrave a label on every piece."}),
-    (
-        ("--label-height",),
-        {"type": LENGTH, "metavar": "LENGTH", "help": "The height of labels, at most [default: 3mm]."},
-    ),
-    (("--marks",), {"is_flag": True, "default": None, "help": "Engrave marks for aligning at the sheet's corners."}),
-    (("--bar",), {"is_flag": True, "default": None, "help": "Engrave a bar of 100 mm, to measure the scale by."}),
-    (
-        ("--colours", "--colors"),
-        {
-            "type": click.Choice(("layers", "files")),
-            "help": "Colour the tiles so that no neighbours are alike: a layer, or a file, for each colour.",
-        },
-    ),
-    (
-        ("--art",),
-        {
-            "type": click.Choice(("whole", "clip", "none")),
-            "help": "The art of the design's sites: whole, clipped to the tiles, or left out [default: whole].",
-        },
-    ),
-)
-
-_NAMES = tuple(flags[0].removeprefix("--").replace("-", "_") for flags, _ in _OPTIONS)
+_OPTIONS = _job_options()
 
 
 def with_job(command: Command) -> Command:
@@ -189,16 +99,9 @@ def with_job(command: Command) -> Command:
 
     @wraps(command)
     def run(**arguments: Any) -> Any:
-        given = {name: value for name in _NAMES if (value := arguments.pop(name)) is not None}
-        return command(job=_job(given) if given else None, **arguments)
+        given = {name: value for name in _OPTIONS if (value := arguments.pop(name)) is not None}
+        return command(job=Job(**given) if given else None, **arguments)
 
-    for flags, settings in reversed(_OPTIONS):
+    for flags, settings in reversed(_OPTIONS.values()):
         run = click.option(*flags, **settings)(run)
     return run  # type: ignore[return-value]
-
-
-def _job(given: dict[str, Any]) -> Job:
-    """Make a job of the options that were given."""
-    from voronoi_tiles.fabrication.job import Job
-
-    return Job(**given)

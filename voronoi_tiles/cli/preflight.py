@@ -2,13 +2,25 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import click
 
-from voronoi_tiles.cli.common import EXIT_USAGE, PATH, refuse_output, report_error, say, shown
+from voronoi_tiles.cli.common import (
+    EXIT_USAGE,
+    PATH,
+    as_options,
+    print_figures,
+    refuse_output,
+    report_error,
+    say,
+    say_written,
+    shown,
+)
 from voronoi_tiles.cli.options import LENGTH, Length
 
 _APART = Length(least=1e-6)
-"""A length from a nanometre on."""
+"""A length from a nanometre on: preflight's LENGTH_MIN, without importing it."""
 
 
 @click.command()
@@ -71,27 +83,26 @@ def preflight(
     Places are in millimetres as the file's own program shows them: SVG from the upper left corner, y down; DXF y up.
     The exit code is 1 where something would spoil the cut, 2 where the file cannot be read.
     """
-    from voronoi_tiles.base.files import STDOUT, write_whole
+    from voronoi_tiles.base.files import write_whole
     from voronoi_tiles.preflight import Limits, report_text
     from voronoi_tiles.preflight import preflight as find
 
-    refuse_output(file, output, (".svg",))
-    if output == STDOUT:
-        raise click.UsageError("The report goes to standard output: give the picture a file, -o marked.svg.")
+    refuse_output(file, output, (".svg",), stream=False)
     try:
         limits = Limits(tolerance=tolerance, neck=neck, feature=feature, tabs=tabs)
         report = find(file, limits=limits, layers=layers)
+        report = replace(report, findings=tuple(replace(one, remedy=as_options(one.remedy)) for one in report.findings))
         if output is not None:
             from voronoi_tiles.preflight.annotated import marked_svg
 
             write_whole(output, marked_svg(report).encode())
-            say(f"wrote {output}")
+            say_written(output)
     except MemoryError as error:
         say(f"Error: {shown(file)}: there is not enough memory for this drawing. Split it, or simplify its curves.")
         raise click.exceptions.Exit(EXIT_USAGE) from error
     except Exception as error:
         raise click.exceptions.Exit(report_error(file, error)) from error
-    write_whole(STDOUT, (report.json() if as_json else report_text(report)).encode())
+    print_figures(report.document(), lambda _: report_text(report), as_json=as_json)
     if not report.passed:
         errors = sum(finding.severity == "error" for finding in report.findings)
         findings = "1 finding" if errors == 1 else f"{errors:,} findings"

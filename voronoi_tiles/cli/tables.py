@@ -194,7 +194,7 @@ class _TextTable:
         self._console.print(table)
 
     def text(self) -> str:
-        """Give the page."""
+        """The page."""
         return "\n".join(line.rstrip() for line in self._output.getvalue().splitlines()) + "\n"
 
 

@@ -27,7 +27,7 @@ _FEW = 1000
 
 
 def compare_crossings(subject: Subject, owned: Owners) -> list[Figure]:
-    """Give the figures "crossings", "neighbours" and "edges"."""
+    """The figures "crossings", "neighbours" and "edges"."""
     found = _certified(subject, owned)
     # Every crossing lies on an edge of either tile; each is looked at from its own copy.
     own = np.concatenate((found.before, found.after))
@@ -80,7 +80,7 @@ def compare_crossings(subject: Subject, owned: Owners) -> list[Figure]:
 
 
 def compare_points(subject: Subject) -> Figure:
-    """Give the figure "equidistance": points of every exact edge, by the raster stage's distances."""
+    """The figure "equidistance": points of every exact edge, by the raster stage's distances."""
     frame, pattern = subject.frame, subject.pattern
     place, codes, own = [], [], []
     identity = pattern.group.operations[0]

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, Floats
+from voronoi_tiles.base.errors import UnknownNameError
 from voronoi_tiles.raster.frame import Frame
 from voronoi_tiles.raster.renderer import Provenance
 
@@ -18,6 +19,9 @@ class Marks(NamedTuple):
 
     place: Complexes
     excess: Floats
+
+    def __repr__(self) -> str:
+        return f"<Marks: {len(self.place)} places>"
 
 
 NO_MARKS = Marks(np.zeros(0, complex), np.zeros(0))
@@ -48,7 +52,7 @@ class Figure:
         return self.wrong == 0
 
     def document(self) -> dict[str, Any]:
-        """Give the figure in the types of JSON, with the ten worst places."""
+        """The figure in the types of JSON, with the ten worst places."""
         order = np.argsort(-self.marks.excess, kind="stable")[:10]
         return {
             "name": self.name,
@@ -64,7 +68,7 @@ class Figure:
         }
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class CheckReport:
     """The figures of a cross-check, and who made the image. `frame` is the image's, over one cell."""
 
@@ -72,6 +76,9 @@ class CheckReport:
     frame: Frame
     units: str
     figures: tuple[Figure, ...]
+
+    def __repr__(self) -> str:
+        return f"<CheckReport: {'passed' if self.passed else 'failed ' + ', '.join(self.failures)}; {self.provenance}>"
 
     @property
     def passed(self) -> bool:
@@ -84,14 +91,15 @@ class CheckReport:
         return tuple(figure.name for figure in self.figures if not figure.passed)
 
     def figure(self, name: str) -> Figure:
-        """Give the figure of a name. Raises KeyError."""
+        """The figure of a name. Raises UnknownNameError."""
         for figure in self.figures:
             if figure.name == name:
                 return figure
-        raise KeyError(name)
+        names = ", ".join(figure.name for figure in self.figures)
+        raise UnknownNameError(f"there is no figure {name!r}", remedy=f"Figures are {names}.")
 
     def document(self) -> dict[str, Any]:
-        """Give the report in the types of JSON, as `voronoi-tiles check --json` prints it."""
+        """The report in the types of JSON, as `voronoi-tiles check --json` prints it."""
         return {
             "passed": self.passed,
             "samples": [self.frame.width, self.frame.height],

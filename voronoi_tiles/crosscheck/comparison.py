@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.crosscheck.borders import compare_crossings, compare_points
 from voronoi_tiles.crosscheck.check_report import CheckReport
 from voronoi_tiles.crosscheck.labels import compare_labels
@@ -17,6 +18,9 @@ from voronoi_tiles.raster.frame import cell_frame
 from voronoi_tiles.raster.renderer import Choice, Method, Renderer
 from voronoi_tiles.raster.scene import Pattern
 from voronoi_tiles.vector.outline import Outline
+
+SAMPLES_MAX = 8192
+"""Most samples along the side of a cell; a count. They take 4 GB."""
 
 DEFAULT_SAMPLES = 1024
 """Samples along the side of a cell where the caller names no number."""
@@ -35,10 +39,13 @@ def crosscheck(
     """Compare the outlines of a design's tiles with an image of it over one cell, which stands for the whole plane.
 
     The image has about samples x samples samples. `renderer`, `device`, `method` and `notice` are those of Renderer.
-    Raises RenderError where there is no image to be had, ValueError where an outline is open (which the proof refuses).
+    Raises RenderError where there is no image to be had, ArgumentError for fewer than one sample, or more than
+    SAMPLES_MAX, and ValueError where an outline is open (which the proof refuses).
     """
-    pattern = Pattern(design.sites, design.group, design.lattice)
-    frame = cell_frame(design.lattice, samples, centre=complex(design.sites[0].nodes.mean()))
+    if not 1 <= samples <= SAMPLES_MAX:
+        raise ArgumentError(f"`samples` {samples!r} cannot be", remedy=f"Give a number from 1 to {SAMPLES_MAX:,}.")
+    pattern = Pattern(design.noded, design.group, design.lattice)
+    frame = cell_frame(design.lattice, samples, centre=complex(design.noded[0].nodes.mean()))
     image = Renderer(renderer, device=device, method=method, notice=notice).render(pattern, frame)
     subject = Subject(design.units, tuple(outlines), pattern, image)
     owned, figures = compare_labels(subject)

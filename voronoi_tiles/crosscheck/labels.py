@@ -25,7 +25,7 @@ class Owners(NamedTuple):
 
 
 def compare_labels(subject: Subject) -> tuple[Owners, list[Figure]]:
-    """Give the owners by distance, and the figures "labels", "coverage" and "area"."""
+    """The owners by distance, and the figures "labels", "coverage" and "area"."""
     image, pattern = subject.image, subject.pattern
     placed = [(subject.outlines[row.site], row.isometry) for row in pattern.placements]
     scanned = owners(placed, subject.grid)

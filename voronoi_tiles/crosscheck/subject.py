@@ -84,7 +84,7 @@ class Subject:
         return tuple(Judge(self.pattern, window.frame, window.candidates) for window in self.image.windows)
 
     def split(self, column: Floats | Ints, row: Floats | Ints) -> Iterator[tuple[Judge, Ints]]:
-        """Give for each window its judge, and the indices of those places, in sample coordinates, that lie in it."""
+        """For each window its judge, and the indices of those places, in sample coordinates, that lie in it."""
         for judge in self.judges:
             window = judge.frame
             inside = (column >= window.column) & (column < window.column + window.width)
@@ -108,7 +108,7 @@ class Subject:
         return site[inverse], code[inverse]
 
     def pull_back(self, place: Complexes, copy: Codes) -> Complexes:
-        """Give the points of the base site that copies take to places (from the frame's origin)."""
+        """The points of the base site that copies take to places (from the frame's origin)."""
         k, i, j = decode(copy).T
         isometries = [placement.isometry for placement in self.pattern.placements]
         unit = np.array([isometry.a for isometry in isometries])[k]

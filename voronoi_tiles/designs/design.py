@@ -1,81 +1,136 @@
-"""A design: the wallpaper group, the cell and the sites, read from a TOML or JSON file and checked by hand.
-
-Checked by hand because the import of a validation library costs more than most commands; every message
-names the file, the path of the key and the remedy, and whatever the input is, only DesignError comes out.
-"""
+"""A design: the wallpaper group, the cell and the sites, from a TOML or JSON file or from Python."""
 
 from __future__ import annotations
 
 import json
-import math
 import os
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any, TypeAlias, get_args
 
 from voronoi_tiles.base import values
-from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.errors import DesignError
-from voronoi_tiles.base.maps import Placement
-from voronoi_tiles.base.tolerance import ANGLE_MIN, CELL_ASPECT_MAX, CELL_MIN, FLATTENING_MM, SITE_EXTENT_MAX
+from voronoi_tiles.base.files import write_whole
 from voronoi_tiles.base.units import UNIT_MM, Units
-from voronoi_tiles.designs import schema
-from voronoi_tiles.designs.load import STARTER, parse, read_text
-from voronoi_tiles.designs.site import Site, build_site
-from voronoi_tiles.designs.strokes import ARC_SHARE, polylines
-from voronoi_tiles.groups.wallpaper import GROUPS, Lattice, WallpaperGroup
+from voronoi_tiles.designs.art import Art
+from voronoi_tiles.designs.checking import CheckedDesign, checked
+from voronoi_tiles.designs.coordinates import PointLike
+from voronoi_tiles.designs.drawn_site import Site, site_of
+from voronoi_tiles.designs.drawn_strokes import ARGUMENTS, StrokeKind
+from voronoi_tiles.designs.load import parse, read_text
+from voronoi_tiles.designs.site import NodedSite
+from voronoi_tiles.designs.toml_text import toml_text
+from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 
 if TYPE_CHECKING:
     from voronoi_tiles.tiling import Tiling
 
-
-# The full symbols of the International Tables, for those who write them.
-_FULL_SYMBOLS = {"p1m1": "pm", "p11m": "pm", "p1g1": "pg", "p11g": "pg", "c1m1": "cm", "p2mm": "pmm", "p2mg": "pmg"}
-_FULL_SYMBOLS |= {"p2gg": "pgg", "c2mm": "cmm", "p4mm": "p4m", "p4gm": "p4g", "p6mm": "p6m", "p211": "p2", "p111": "p1"}
+Cell: TypeAlias = float | Sequence[float] | Mapping[str, float]
+"""The conventional cell: the side a, (a, b), (a, b, angle), or a mapping of those that the group leaves free."""
 
 
-@dataclass(frozen=True)
-class Art:
-    """A drawing that belongs to a site: its strokes are engraved or scored on every copy of the tile.
-
-    `file` is its path as written in the design; `placement` moves it, after its lower left corner has been laid
-    on the design's origin and its millimetres have become the design's units.
-    """
-
-    file: str
-    placement: Placement
-
-
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, init=False, eq=False, repr=False)
 class Design:
-    """A design that has been read and checked.
+    """A wallpaper group, its cell and its sites, checked: what is refused in a file is refused here.
 
-    Lengths are in `units`; `source` is the design as canonical JSON (ASCII, sorted keys), which `loads` reads
-    again; `name` is the stem of the file it came from, or "design". `art` has an entry for each site, None where it has
-    none; files are looked for in `folder`, that of the design.
+    `cell` is the side along x; or (a, b) or (a, b, angle) where the group leaves them free, the angle from a to b in
+    degrees; or a mapping {"a": 60, "b": 50, "angle": 75}. `sites` are Site objects, or one. Lengths are in `units`,
+    "mm", "cm" or "in"; the origin is the group's, x runs along a, y up. `name` is what files say of the design, and
+    `folder` is where the drawings of art are looked for.
+
+    Derived are the `lattice`; `noded`, the geometry of each site that tiles are computed from; `art`, the drawing of
+    each site or None; and `source`, the design as canonical JSON (ASCII, sorted keys), which files hold as their recipe
+    and `loads` reads again.
+
+    Designs are equal, and hash alike, where the group, the cell, the units and the sites are equal, whatever their
+    names and folders. Raises DesignError, which names the argument: "sites[0].strokes[1].points[2]".
+
+    >>> import voronoi_tiles as vt
+    >>> bird = vt.Site([vt.segment(5 + 3j, 25 + 11j), vt.catmull_rom([6 + 9j, 22 + 5j, 27 + 17j])], name="bird")
+    >>> design = vt.Design("p4", cell=60, sites=[bird])
+    >>> design
+    <Design 'design': p4, 1 site (bird)>
+    >>> design == vt.Design.loads(design.to_toml())
+    True
+    >>> vt.Design("p4", 60, [vt.Site([vt.polyline([1j, 1j])])])
+    Traceback (most recent call last):
+    voronoi_tiles.base.errors.DesignError: sites[0].strokes[0].points[1]: zero length: the point is the same as the one
+    before. Take it out, or draw an isolated point, a stroke of the kind "point".
     """
 
     group: WallpaperGroup
     lattice: Lattice
     units: Units
-    sites: tuple[Site, ...]
+    noded: tuple[NodedSite, ...]
+    art: tuple[Art | None, ...]
     source: str
-    art: tuple[Art | None, ...] = ()
-    name: str = "design"
-    folder: str = ""
+    name: str
+    folder: str
+
+    def __init__(
+        self,
+        group: str | WallpaperGroup,
+        cell: Cell,
+        sites: Site | Iterable[Site],
+        *,
+        units: Units = "mm",
+        name: str = "design",
+        folder: str | os.PathLike[str] = "",
+    ) -> None:
+        _check_name(name)
+        table = {
+            "schema": 1,
+            "group": group.name if isinstance(group, WallpaperGroup) else group,
+            "units": units,
+            "cell": _cell_table(cell),
+            "site": [site.table for site in _listed(sites)],
+        }
+        try:
+            parts = checked(table)
+        except DesignError as error:
+            raise error.with_key(_argument(error.key or "")) from None
+        _fill(self, parts, name, os.fspath(folder))
 
     def __repr__(self) -> str:
-        sites = ", ".join(site.name for site in self.sites[:3]) + (", ..." if len(self.sites) > 3 else "")
-        many = "site" if len(self.sites) == 1 else "sites"
-        return f"<Design {self.name!r}: {self.group.name}, {len(self.sites)} {many} ({sites})>"
+        sites = ", ".join(site.name for site in self.noded[:3]) + (", ..." if len(self.noded) > 3 else "")
+        many = "site" if len(self.noded) == 1 else "sites"
+        return f"<Design {self.name!r}: {self.group.name}, {len(self.noded)} {many} ({sites})>"
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Design) and self._content == other._content
+
+    def __hash__(self) -> int:
+        return hash(self._content)
+
+    @property
+    def _content(self) -> tuple[object, ...]:
+        return self.group.name, self.lattice, self.units, self.sites
+
+    def _repr_svg_(self) -> str:
+        """Draw the cell and the sites with their copies: notebooks show this."""
+        from voronoi_tiles.pictures.notebook import design_picture
+
+        return design_picture(self)
 
     @property
     def unit_mm(self) -> float:
         """One unit of the design in millimetres."""
         return UNIT_MM[self.units]
+
+    @cached_property
+    def sites(self) -> tuple[Site, ...]:
+        """The sites as they are drawn, each with its name; `noded` has their geometry."""
+        listed = json.loads(self.source)["site"]
+        return tuple(site_of(table, noded.name) for table, noded in zip(listed, self.noded, strict=True))
+
+    @property
+    def cell(self) -> dict[str, float]:
+        """The cell as it was given: the side a, and b and the angle where the group leaves them free."""
+        cell: dict[str, float] = json.loads(self.source)["cell"]
+        return cell
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> Design:
@@ -89,10 +144,8 @@ class Design:
         suffix = Path(file).suffix.lower()
         if suffix not in (".toml", ".json"):
             suffix = ".json" if text.lstrip()[:1] == "{" else ".toml"
-        if file == "-":
-            return cls.loads(text, format=suffix[1:], file=shown)
-        design = cls.loads(text, format=suffix[1:], file=shown, name=Path(file).stem)
-        return replace(design, folder=str(Path(file).parent))
+        read = cls.loads(text, format=suffix[1:], file=shown)
+        return read if file == "-" else read.replace(name=Path(file).stem, folder=str(Path(file).parent))
 
     @classmethod
     def loads(
@@ -110,9 +163,87 @@ class Design:
     def from_dict(cls, mapping: Mapping[str, Any], *, file: str | None = None, name: str = "design") -> Design:
         """Read a design from nested mappings and sequences, as TOML and JSON give them. Raises DesignError."""
         try:
-            return cls(*_read_design(mapping), name=name or "design")
+            return _fill(cls.__new__(cls), checked(mapping), name, "")
         except DesignError as error:
             raise error.with_file(file) from None
+
+    def to_dict(self) -> dict[str, Any]:
+        """The design as nested dictionaries, in the keys of a design file: what `from_dict` reads as an equal one."""
+        return {
+            "schema": 1,
+            "group": self.group.name,
+            "units": self.units,
+            "cell": self.cell,
+            "site": [site.table for site in self.sites],
+        }
+
+    def to_toml(self) -> str:
+        """The design as a design file, which is read as an equal one.
+
+        Raises DesignError where the name of a drawing is no text that can be written.
+        """
+        return toml_text(self.to_dict())
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the design file whole or not at all; the drawings of art are named as seen from its folder.
+
+        Raises OutputError where the file cannot be written.
+        """
+        table = self.to_dict()
+        folder = os.path.dirname(os.path.abspath(path))  # noqa: PTH100, PTH120 - the name may be any
+        for site in table["site"]:
+            if "art" in site:
+                file = site["art"]["file"]
+                if not os.path.isabs(file):  # noqa: PTH117 - same
+                    site["art"]["file"] = os.path.relpath(os.path.join(self.folder, file), folder)  # noqa: PTH118
+        write_whole(path, toml_text(table).encode())
+
+    def replace(
+        self,
+        *,
+        group: str | WallpaperGroup | None = None,
+        cell: Cell | None = None,
+        sites: Site | Iterable[Site] | None = None,
+        units: Units | None = None,
+        name: str | None = None,
+        folder: str | os.PathLike[str] | None = None,
+    ) -> Design:
+        """The design with some of its parts changed, checked again; None leaves a part as it is. Raises DesignError."""
+        name = self.name if name is None else name
+        folder = self.folder if folder is None else folder
+        if group is None and cell is None and sites is None and units is None:
+            parts = CheckedDesign(*(getattr(self, field) for field in CheckedDesign._fields))
+            return _fill(Design.__new__(Design), parts, name, os.fspath(folder))
+        return Design(
+            group or self.group,
+            self.cell if cell is None else cell,
+            self.sites if sites is None else sites,
+            units=units or self.units,
+            name=name,
+            folder=folder,
+        )
+
+    def scaled(self, factor: float) -> Design:
+        """The design with its cell and strokes times a factor above 0; tolerances stay as they are.
+
+        Raises DesignError for another factor.
+        """
+        with values.within("factor"):
+            values.positive(factor)
+        cell = {name: value if name == "angle" else value * factor for name, value in self.cell.items()}
+        return self.replace(cell=cell, sites=[site.moved(scale=factor) for site in self.sites])
+
+    def moved(
+        self, *, mirror: bool = False, scale: float = 1.0, rotate: float = 0.0, translate: PointLike = 0j
+    ) -> Design:
+        """The design with all strokes and art moved in its cell, in the order of the arguments, about the origin.
+
+        `mirror` is x -> -x, `rotate` in degrees counter-clockwise. The group and its origin stay, so that the tiles
+        are others, but for the motions that map the group onto itself. Raises DesignError, also where a path or art is
+        to be mirrored.
+        """
+        sites = [site.moved(mirror=mirror, scale=scale, rotate=rotate, translate=translate) for site in self.sites]
+        return self.replace(sites=sites)
 
     def tessellate(self) -> Tiling:
         """Compute the tiles, proved.
@@ -124,194 +255,63 @@ class Design:
         return tessellate(self)
 
 
-# --- the design ---------------------------------------------------------------------------------------------
-
-_Parts = tuple[WallpaperGroup, Lattice, Units, tuple[Site, ...], str, tuple[Art | None, ...]]
-
-
-def _read_design(value: object) -> _Parts:
-    table = values.table(value, ("schema", "group", "units", "cell", "site"), STARTER)
-    version = values.required(table, "schema", "Write schema = 1.")
-    if isinstance(version, bool) or not isinstance(version, int) or version != 1:
-        raise DesignError(f"schema {values.shown(version)} is not supported", key="schema", remedy="Write schema = 1.")
-    group = _read_group(values.required(table, "group", f"Write one of {', '.join(GROUPS)}."))
-    units = _read_units(table.get("units", "mm"))
-    cell = values.required(table, "cell", "Write [cell] and, below it, a = 60.0 and what else the group leaves free.")
-    with values.within("cell"):
-        lattice = _read_cell(cell, group)
-    listed = values.required(table, "site", "Write [[site]] and, below it, its strokes.")
-    sites = _read_sites(listed, FLATTENING_MM / UNIT_MM[units], lattice)
-    art = _read_art(listed)
-    source = json.dumps(_canonical(table), sort_keys=True, separators=(",", ":"), allow_nan=False)
-    return group, lattice, units, sites, source, art
+def _fill(design: Design, parts: CheckedDesign, name: str, folder: str) -> Design:
+    """Fill an empty design with what was checked; the same design."""
+    for field, value in {**parts._asdict(), "name": name or "design", "folder": folder}.items():
+        object.__setattr__(design, field, value)
+    return design
 
 
-def _read_units(value: object) -> Units:
-    for units in UNIT_MM:
-        if isinstance(value, str) and value == units:
-            return units
-    raise DesignError(f"unknown units {values.shown(value)}", key="units", remedy='Write "mm", "cm" or "in".')
+def _check_name(name: object) -> None:
+    if not isinstance(name, str) or "\0" in name:
+        raise DesignError(f"{values.shown(name)} is no name", key="name", remedy="Write a text.")
 
 
-def _read_group(value: object) -> WallpaperGroup:
-    close = None
-    if isinstance(value, str):
-        if value in GROUPS:
-            return GROUPS[value]
-        close = _FULL_SYMBOLS.get(value.lower()) or values.closest(value, GROUPS)
-    remedy = f"Write one of {', '.join(GROUPS)}."
+def _cell_table(cell: object) -> object:
+    """A cell as a design file has it."""
+    if isinstance(cell, Mapping):
+        return cell
+    sides = getattr(cell, "tolist", lambda: cell)()
+    if isinstance(sides, int | float):
+        sides = [sides]
+    if isinstance(sides, list | tuple) and 1 <= len(sides) <= 3:
+        return dict(zip(("a", "b", "angle"), sides, strict=False))
     raise DesignError(
-        f"unknown wallpaper group {values.shown(value)}",
-        key="group",
-        remedy=f'Did you mean "{close}"? {remedy}' if close else remedy,
+        f"must be a side, (a, b), (a, b, angle) or a mapping, not {values.shown(cell)}",
+        key="cell",
+        remedy="Write cell=60, or what else the group leaves free.",
     )
 
 
-def _read_cell(value: object, group: WallpaperGroup) -> Lattice:
-    table = values.table(value, ("a", "b", "angle"), "Write [cell] and, below it, a = 60.0.")
-    needs = f"{group.name} needs the cell's"
-    a = _read_side(table, "a", f"{needs} side along x: write a = 60.0.")
-    b = None
-    angle = None
-    if group.fixes_b:
-        _refuse_other(table, "b", a, f"{group.name} has a {group.system} cell: b is as long as a")
-    else:
-        b = _read_side(table, "b", f"{needs} second side: write b = 50.0.")
-    fixed = group.fixed_angle
-    if fixed is not None:
-        what = f"{group.name} has a {group.system} cell: its angle is {fixed:g} degrees"
-        _refuse_other(table, "angle", fixed, what)
-    else:
-        given = values.required(table, "angle", f"{needs} angle from a to b: write angle = 75.0.")
-        with values.within("angle"):
-            angle = values.number(given)
-            if not ANGLE_MIN <= angle <= 180.0 - ANGLE_MIN:
-                raise DesignError(
-                    f"must be between 0 and 180 degrees, not {angle:g}",
-                    remedy="Write the angle from a to b, such as 75.0.",
-                )
-    lattice = group.lattice(a, b, angle)
-    short, long = lattice.reduced_basis
-    if not abs(long) <= CELL_ASPECT_MAX * abs(short):
-        raise DesignError(
-            f"the cell is more than {CELL_ASPECT_MAX:,.0f} times longer than wide",
-            remedy="Choose sides, and an angle, that are nearer to a square.",
-        )
-    return lattice
+def _listed(sites: object) -> list[Site]:
+    """The sites that a design is given."""
+    remedy = "Write sites=[Site([segment(5+3j, 25+11j)])]."
+    if isinstance(sites, Site):
+        sites = [sites]
+    if isinstance(sites, str | Mapping) or not isinstance(sites, Iterable):
+        raise DesignError(f"must be Site objects, not {values.shown(sites)}", key="sites", remedy=remedy)
+    listed = list(sites)
+    if not listed:
+        raise DesignError("there is no site", key="sites", remedy=remedy)
+    for k, site in enumerate(listed):
+        if not isinstance(site, Site):
+            raise DesignError(f"must be a Site, not {values.shown(site)}", key=f"sites[{k}]", remedy=remedy)
+        if not site.strokes:
+            raise DesignError("there is no stroke", key=f"sites[{k}].strokes", remedy=remedy)
+    return listed
 
 
-def _read_side(table: values.Table, name: str, remedy: str) -> float:
-    value = values.required(table, name, remedy)
-    with values.within(name):
-        side = values.positive(value)
-        if side < CELL_MIN:
-            raise DesignError(f"the cell is smaller than {CELL_MIN:g}", remedy="Use smaller units.")
-        return side
+_OWN = re.compile(rf"(site\[\d+\]\.strokes\[\d+\])\.({'|'.join(get_args(StrokeKind))})\b(?:\[([01])\])?")
 
 
-def _refuse_other(table: values.Table, name: str, fixed: float, what: str) -> None:
-    """Refuse a value other than the one that the group fixes."""
-    with values.within(name):
-        if name in table and values.number(table[name]) != fixed:
-            raise DesignError(what, remedy=f"Leave {name} out.")
+def _argument(key: str) -> str:
+    """The argument of Design that a key of the table came from: "sites[0].strokes[1].points[2]"."""
 
+    def own(found: re.Match[str]) -> str:
+        stroke, kind, index = found.groups()
+        names = ARGUMENTS.get(kind, ("points",))
+        if len(names) == 2 and index is not None:
+            return f"{stroke}.{names[int(index)]}"
+        return f"{stroke}.{names[0]}{'' if index is None else f'[{index}]'}"
 
-def _read_sites(value: object, accuracy: float, lattice: Lattice) -> tuple[Site, ...]:
-    remedy = "Write [[site]], in double brackets, above the keys of each site."
-    with values.within("site"):
-        listed = values.sequence(value, remedy)
-        if not listed:
-            raise DesignError("there is no site", remedy=remedy)
-    taken: dict[str, int] = {}
-    sites = []
-    for k, item in enumerate(listed):
-        with values.within(f"site[{k}]"):
-            table = values.table(item, ("name", "tolerance", "strokes", "art"), remedy)
-            name = table.get("name", f"site{k + 1}")
-            with values.within("name"):
-                _check_name(name, taken)
-            taken[name] = k
-            sites.append(_read_site(table, name, accuracy, lattice))
-    return tuple(sites)
-
-
-def _read_art(listed: Sequence[Any]) -> tuple[Art | None, ...]:
-    """The art of sites that have been read."""
-    result: list[Art | None] = []
-    for k, item in enumerate(listed):
-        if "art" not in item:
-            result.append(None)
-            continue
-        with values.within(f"site[{k}]"), values.within("art"):
-            result.append(_one_art(item["art"]))
-    return tuple(result)
-
-
-def _one_art(value: object) -> Art:
-    remedy = 'Write art = "face.svg", or art = { file = "face.svg", translate = [5, 3] }.'
-    if isinstance(value, str):
-        value = {"file": value}
-    if not isinstance(value, Mapping):
-        raise DesignError(f"must be a file's name or a table, not {values.shown(value)}", remedy=remedy)
-    table = values.table(value, ("file", *schema.PLACEMENT), remedy)
-    file = values.required(table, "file", remedy)
-    with values.within("file"):
-        if not isinstance(file, str) or not file or "\0" in file:
-            raise DesignError(f"must be a file's name, not {values.shown(file)}", remedy=remedy)
-    return Art(file, schema.placement(table))
-
-
-def _check_name(name: object, taken: Mapping[str, int]) -> None:
-    if not isinstance(name, str):
-        raise DesignError(f"must be a text, not {values.shown(name)}", remedy='Write name = "bird".')
-    if not 0 < len(name) <= 100 or not name.isprintable() or name != name.strip():
-        raise DesignError(
-            f"{values.shown(name)} is no name",
-            remedy="Use 1 to 100 printable characters, without spaces at the ends.",
-        )
-    if name in taken:
-        raise DesignError(
-            f'"{name}" is already the name of site[{taken[name]}]', remedy="Give each site a name of its own."
-        )
-
-
-def _read_site(table: values.Table, name: str, accuracy: float, lattice: Lattice) -> Site:
-    if "tolerance" in table:
-        with values.within("tolerance"):
-            accuracy = values.positive(table["tolerance"])
-    remedy = "Write strokes = [{ segment = [[5, 3], [25, 11]] }]."
-    listed = values.required(table, "strokes", remedy)
-    with values.within("strokes"):
-        listed = values.sequence(listed, remedy)
-        if not listed:
-            raise DesignError("there is no stroke", remedy=remedy)
-    lines: list[Complexes] = []
-    pieces: list[Complexes] = []
-    for k, item in enumerate(listed):
-        with values.within(f"strokes[{k}]"):
-            drawn, curved = schema.stroke(item, accuracy)
-        (pieces if curved else lines).append(drawn)
-    if pieces:
-        # What the step from arcs to cubics may have used is taken off.
-        lines += polylines(np.concatenate(pieces), accuracy * (1.0 - ARC_SHARE))
-    site = build_site(name, lines)
-    if not site.extent <= SITE_EXTENT_MAX * math.sqrt(lattice.det):
-        raise DesignError(
-            f"the site is more than {SITE_EXTENT_MAX:,.0f} times larger than the cell",
-            remedy="Make the cell larger, or the strokes smaller.",
-        )
-    return site
-
-
-def _canonical(value: Any) -> Any:
-    """A checked value in the types of JSON; whole numbers without a fraction, so that 60 and 60.0 are one design."""
-    if isinstance(value, Mapping):
-        return {name: _canonical(item) for name, item in value.items()}
-    if isinstance(value, np.ndarray):
-        value = value.tolist()
-    if isinstance(value, list | tuple):
-        return [_canonical(item) for item in value]
-    if isinstance(value, str | bool):
-        return value
-    number = float(value)
-    return int(number) if number.is_integer() else number
+    return re.sub(r"^site\b", "sites", _OWN.sub(own, key))

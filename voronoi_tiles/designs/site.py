@@ -15,8 +15,8 @@ from voronoi_tiles.base.tolerance import EPSILON, NODE_MERGE, NODE_MERGE_ULPS, S
 from voronoi_tiles.designs.noding import noded
 
 
-@dataclass(frozen=True, eq=False)
-class Site:
+@dataclass(frozen=True, eq=False, repr=False)
+class NodedSite:
     """A noded union of segments and points, in the units of the design.
 
     `nodes` is complex128 of shape (m,), no two of them equal; `segments` is intp of shape (n, 2), the
@@ -27,6 +27,9 @@ class Site:
     name: str
     nodes: Complexes
     segments: Ints
+
+    def __repr__(self) -> str:
+        return f"<NodedSite {self.name!r}: {len(self.nodes)} nodes, {len(self.segments)} segments>"
 
     @cached_property
     def isolated(self) -> Ints:
@@ -51,7 +54,7 @@ class Site:
         return _extent(self.nodes)
 
 
-def build_site(name: str, polylines: Sequence[Complexes]) -> Site:
+def build_site(name: str, polylines: Sequence[Complexes]) -> NodedSite:
     """Node the strokes of a site: crossings, T-junctions, overlaps, repeated strokes, points on segments.
 
     `polylines` are complex128 arrays of finite points; one of length 1 is a point. Nodes nearer than
@@ -64,7 +67,7 @@ def build_site(name: str, polylines: Sequence[Complexes]) -> Site:
     if not any(len(line) for line in polylines):
         raise DesignError(f'site "{name}" has no stroke', key="strokes", remedy="Give it at least one stroke.")
     if len(polylines) == 1 and len(polylines[0]) == 2 and polylines[0][0] != polylines[0][1]:
-        return Site(name, np.array(polylines[0], dtype=np.complex128), np.array([[0, 1]], dtype=np.intp))
+        return NodedSite(name, np.array(polylines[0], dtype=np.complex128), np.array([[0, 1]], dtype=np.intp))
 
     points = np.concatenate([np.asarray(line, dtype=np.complex128) for line in polylines])
     sizes = np.array([len(line) for line in polylines])
@@ -82,7 +85,7 @@ def build_site(name: str, polylines: Sequence[Complexes]) -> Site:
         NODE_MERGE * extent, NODE_MERGE_ULPS * EPSILON * float(max(abs(points.real).max(), abs(points.imag).max()))
     )
     if extent == 0.0:
-        return Site(name, points[:1].copy(), np.empty((0, 2), dtype=np.intp))
+        return NodedSite(name, points[:1].copy(), np.empty((0, 2), dtype=np.intp))
     if extent <= near:
         raise DesignError(
             "the strokes are no larger than the rounding of their coordinates",
@@ -98,10 +101,10 @@ def _extent(z: Complexes) -> float:
     return float(max(x.max() - x.min(), y.max() - y.min()))
 
 
-def _compact(name: str, nodes: Complexes, segments: Ints) -> Site:
+def _compact(name: str, nodes: Complexes, segments: Ints) -> NodedSite:
     """The site of these nodes and segments (points are segments from a node to itself), without unused nodes."""
     used = np.zeros(len(nodes), dtype=bool)
     used[segments.ravel()] = True
     index = np.cumsum(used) - 1
     real = segments[:, 0] != segments[:, 1]
-    return Site(name, nodes[used], index[segments[real]])
+    return NodedSite(name, nodes[used], index[segments[real]])

@@ -9,7 +9,10 @@ from __future__ import annotations
 import shlex
 from collections.abc import Mapping
 from pathlib import PurePath
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
+
+if TYPE_CHECKING:
+    from voronoi_tiles.designs.design import Design
 
 
 class StarterStroke(NamedTuple):
@@ -182,11 +185,27 @@ _MIRRORED = ("pm", "cm", "pmm", "pmg", "cmm", "p4m", "p4g", "p3m1", "p31m", "p6m
 _TURNED = ("p2", "pmm", "pmg", "pgg", "cmm", "p4", "p4m", "p4g", "p3", "p3m1", "p31m", "p6", "p6m")
 
 
-def starter_text(group: str, file: str | None = None) -> str:
-    """Write the starter design of a group as TOML, with the command that exports it from `file` (default: GROUP.toml).
+def starter(group: str) -> Design:
+    """The starter design of a group, which exports as it is; `starter_text` is its file. Raises DesignError.
 
-    Raises KeyError for an unknown group.
+    >>> import voronoi_tiles as vt
+    >>> vt.starter("p4m")
+    <Design 'p4m': p4m, 2 sites (star, leaf)>
     """
+    from voronoi_tiles.designs.design import Design
+
+    return Design.loads(starter_text(group), name=group)
+
+
+def starter_text(group: str, file: str | None = None) -> str:
+    """The commented design file of a group's starter, with the command that exports it from `file` (GROUP.toml).
+
+    Raises DesignError for an unknown group.
+    """
+    if group not in _TABLE:
+        from voronoi_tiles.designs.checking import read_group
+
+        read_group(group)
     starter = _TABLE[group]
     path = PurePath(file or "")
     if not (path.name and path.name.isprintable()):  # a comment cannot show it

@@ -18,9 +18,6 @@ from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import unit_at
 from voronoi_tiles.base.tolerance import PIECES_MAX
-from voronoi_tiles.formats.pen import PathPen
-from voronoi_tiles.formats.shapes import DrawingError
-from voronoi_tiles.formats.svg.pathdata import draw_path
 from voronoi_tiles.paths.paths import LINE, QUAD, halves
 
 ARC_SHARE = 1e-3
@@ -124,6 +121,10 @@ def path_pieces(data: str, accuracy: float) -> Complexes:
     curves are raised exactly; elliptical arcs are replaced by cubics within ARC_SHARE * `accuracy` of them. Raises
     DesignError, naming the character, where the data break the grammar, and where nothing is drawn.
     """
+    from voronoi_tiles.formats.pen import PathPen
+    from voronoi_tiles.formats.shapes import DrawingError
+    from voronoi_tiles.formats.svg.pathdata import draw_path
+
     pen = PathPen(ARC_SHARE * accuracy)
     try:
         draw_path(pen, data, remedy=f"{_PATH_REMEDY}.")
@@ -207,7 +208,7 @@ def refuse_repeats(points: Complexes, closed: bool, key: str) -> None:
 
 def _zero_length(key: str, why: str) -> DesignError:
     return DesignError(
-        f"zero length: {why}", key=key, remedy="Take it out, or draw an isolated point as { point = [x, y] }."
+        f"zero length: {why}", key=key, remedy='Take it out, or draw an isolated point, a stroke of the kind "point".'
     )
 
 

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import Path
 from typing import Final
 
 import numpy as np
 
-from voronoi_tiles.designs.site import Site
+from voronoi_tiles.base.files import refuse_existing
+from voronoi_tiles.designs.art import Art
+from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.fabrication.artwork import GUIDE
+from voronoi_tiles.fabrication.exporting import format_of, save_drawing
 from voronoi_tiles.formats.page import Drawing, Layer
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.vector.outline import Outline
@@ -18,8 +23,21 @@ MARGIN_MM: Final = 5.0
 _ENGRAVE: Final = "engrave"
 
 
-def art_template(site: Site, outline: Outline, unit_mm: float) -> tuple[Drawing, complex]:
-    """Give a page with a site's tile and strokes on the layer "guide", which is no art, and an empty layer "engrave".
+def write_template(path: str | os.PathLike[str], folder: str, site: NodedSite, outline: Outline, unit_mm: float) -> Art:
+    """Write the page of `art_template` as an SVG file; give the art, as a design in `folder` names it.
+
+    Raises OutputError where there is such a file already, or it cannot be written.
+    """
+    if Path(path).suffix:
+        format_of(path, ("svg",))
+    refuse_existing(path)
+    drawing, corner = art_template(site, outline, unit_mm)
+    save_drawing(drawing, path)
+    return Art(os.path.relpath(path, folder or os.curdir), translate=corner)
+
+
+def art_template(site: NodedSite, outline: Outline, unit_mm: float) -> tuple[Drawing, complex]:
+    """A page with a site's tile and strokes on the layer "guide", which is no art, and an empty layer "engrave".
 
     Also gives what `translate` the art needs in the design, in its units, to lie where it was drawn.
     """

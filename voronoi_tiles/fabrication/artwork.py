@@ -12,7 +12,7 @@ import numpy as np
 from voronoi_tiles.base.arrays import Bools, Complexes, Ints
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import unit_at
-from voronoi_tiles.designs.design import Art
+from voronoi_tiles.designs.art import Art
 from voronoi_tiles.fabrication.arc_fitting import edge_arcs
 from voronoi_tiles.fabrication.clipping import OUTSIDE, Strands, inner_runs, outer_strands
 from voronoi_tiles.fabrication.contours import clipped_pieces
@@ -108,7 +108,7 @@ def draw_art(layout: Layout, shown: Bools, *, fills: bool) -> Works:
                 f"the art cannot be clipped: {error}",
                 file=art.file,
                 key=f"site[{site}].art",
-                remedy="Unite its shapes (Path > Union in Inkscape), or use --art whole.",
+                remedy="Unite its shapes (Path > Union in Inkscape), or use `art='whole'`.",
             ) from error
     return Works.joined(parts)
 
@@ -125,7 +125,7 @@ def _refuse_excess(drawn: Works, layout: Layout, site: int, art: Art) -> None:
             f"the art {what}",
             file=art.file,
             key=f"site[{site}].art",
-            remedy=f"Draw at most {PIECES_MAX:,} lines in all, within {SHEET_MAX:,.0f} mm, or use --art none.",
+            remedy=f"Draw at most {PIECES_MAX:,} lines in all, within {SHEET_MAX:,.0f} mm, or use `art='none'`.",
         )
 
 

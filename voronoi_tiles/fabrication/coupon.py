@@ -9,6 +9,7 @@ n K shorter than drawn, which is the most precise measure.
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,11 +19,15 @@ from typing import Final
 import numpy as np
 
 from voronoi_tiles.base.arrays import Floats
+from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.units import UNIT_MM
 from voronoi_tiles.base.version import __version__
+from voronoi_tiles.fabrication.exporting import drawing_format, save_drawing
+from voronoi_tiles.fabrication.job_options import read_number
 from voronoi_tiles.fabrication.lettering import fitting_height, lettering, place_labels, text_width
 from voronoi_tiles.fabrication.marks import BAR_MM, bar_height, reference_bar, rounded_square
 from voronoi_tiles.formats.page import Drawing, Layer
+from voronoi_tiles.formats.writing import recoloured
 from voronoi_tiles.paths.paths import Paths
 
 KERFS_MAX: Final = 20
@@ -46,6 +51,8 @@ _INSIDE_COLOUR: Final = "#0000ff"
 _CUT_COLOUR: Final = "#000000"
 
 _LENGTH: Final = re.compile(rf"\s*([+-]?(?:\d+\.?\d*|\.\d+))\s*({'|'.join(UNIT_MM)})?\s*", re.ASCII)
+KERFS: Final = "0.05:0.4:0.05"
+"""The kerfs that are tested where the caller does not say; millimetres."""
 
 
 def kerf_range(text: str) -> tuple[float, ...]:
@@ -53,14 +60,14 @@ def kerf_range(text: str) -> tuple[float, ...]:
 
     Units are mm (default), cm and in; a number without one takes that of the last number. The last kerf of a
     range is in it when a whole number of steps leads there. The arithmetic is decimal: 0.15 is the float 0.15. Raises
-    ValueError for what is none of these, and for ranges that are empty or have more than KERFS_MAX kerfs.
+    ArgumentError for what is none of these, and for ranges that are empty or have more than KERFS_MAX kerfs.
     """
     ranged = ":" in text
     parts = [_LENGTH.fullmatch(part) for part in text.split(":" if ranged else ",")]
     matches = [match for match in parts if match]
     if len(matches) < len(parts) or (ranged and len(parts) != 3):
-        raise ValueError(
-            f'"{text[:60]}" is no range of kerfs. Write first:last:step, as in 0.05:0.4:0.05mm, or 0.1,0.15,0.2.'
+        raise ArgumentError(
+            f'"{text[:60]}" is no range of kerfs', remedy="Write first:last:step, 0.05:0.4:0.05mm, or 0.1,0.15,0.2."
         )
     default = matches[-1][2] or "mm"
     sizes: dict[str, Decimal] = {unit: Decimal(str(size)) for unit, size in UNIT_MM.items()}
@@ -68,8 +75,8 @@ def kerf_range(text: str) -> tuple[float, ...]:
     if ranged:
         first, last, step = values
         if step <= 0 or last < first:
-            raise ValueError(
-                f'the range of kerfs "{text[:60]}" is empty. Write the smallest kerf first and a step above 0.'
+            raise ArgumentError(
+                f'the range of kerfs "{text[:60]}" is empty', remedy="Write the smallest kerf first and a step above 0."
             )
         if last - first >= KERFS_MAX * step:
             raise _too_many()
@@ -77,12 +84,41 @@ def kerf_range(text: str) -> tuple[float, ...]:
     return tuple(float(value) for value in values)
 
 
-def coupon(kerfs: Sequence[float], *, thickness: float, plug: float = PLUG_MM) -> Drawing:
+def coupon(
+    path: str | os.PathLike[str] | None = None,
+    *,
+    thickness: float | str,
+    kerfs: str | Sequence[float] = KERFS,
+    plug: float | str = PLUG_MM,
+    preset: str = "plain",
+) -> Drawing:
+    """A test piece that shows the kerf: numbered plugs and holes for each of a range of kerfs, slots, and strips.
+
+    Cut it, and try which plug just holds in its hole: its number is the kerf. `thickness` is the sheet's and `plug` the
+    plugs' size, in millimetres or as texts with a unit; `kerfs` are a range, "0.05:0.4:0.05", or the kerfs. With a path
+    the drawing is written, in the format of its suffix and with the names and colours of the preset. Raises
+    ArgumentError for sizes that cannot be, DesignError for a preset that cannot be used, and OutputError.
+
+    >>> import voronoi_tiles as vt
+    >>> vt.coupon(thickness="3mm", kerfs=[0.1, 0.15, 0.2])
+    <Drawing 'kerf coupon, 3 mm': 138.8 x 126.5 mm, layers engrave, inner, cut>
+    """
+    sheet, width = read_number("thickness", thickness), read_number("plug", plug)
+    widths = kerf_range(kerfs) if isinstance(kerfs, str) else [read_number("kerfs", kerf) for kerf in kerfs]
+    drawing = coupon_drawing(widths, thickness=sheet, plug=width)
+    form = "svg" if path is None else drawing_format(path)
+    drawing = recoloured(drawing, preset, form)
+    if path is not None:
+        save_drawing(drawing, path)
+    return drawing
+
+
+def coupon_drawing(kerfs: Sequence[float], *, thickness: float, plug: float = PLUG_MM) -> Drawing:
     """The test piece for some kerfs, all lengths in millimetres, for a sheet of the given thickness.
 
     `plug` is the width of the square plugs and the diameter of the round ones. The layers are "engrave"; "inside", the
     holes; "cut", plugs, strips and, last, the plate. All cuts are closed, none meet, and pieces are at least half
-    the thickness apart. Raises ValueError, with a remedy, for no kerf or more than KERFS_MAX, kerfs that are
+    the thickness apart. Raises ArgumentError for no kerf or more than KERFS_MAX, kerfs that are
     alike to 0.001 mm, negative or too large for the plugs or slots, and sizes that are none.
     """
     values = np.sort(np.asarray(kerfs, np.float64))
@@ -246,27 +282,32 @@ def _plate(plan: _Coupon) -> Paths:
 def _check(kerfs: Floats, thickness: float, plug: float) -> None:
     """Refuse what cannot be drawn; `kerfs` are in rising order."""
     if not kerfs.size:
-        raise ValueError("there is no kerf to test. Give a range such as 0.05:0.4:0.05mm.")
+        raise ArgumentError("there is no kerf to test", remedy="Give `kerfs='0.05:0.4:0.05mm'`, or the like.")
     if kerfs.size > KERFS_MAX:
         raise _too_many()
     if not 0 < thickness <= THICKNESS_MAX_MM:
-        raise ValueError(
-            f"a sheet of {thickness:g} mm cannot be cut. Give its thickness, up to {THICKNESS_MAX_MM:g} mm, as in 3mm."
+        raise ArgumentError(
+            f"a sheet of {thickness:g} mm cannot be cut",
+            remedy=f"Give its `thickness`, up to {THICKNESS_MAX_MM:g} mm, as in 3mm.",
         )
     if not _PLUG_MIN_MM <= plug <= _PLUG_MAX_MM:
-        raise ValueError(f"plugs of {plug:g} mm are not drawn. Take {_PLUG_MIN_MM:g} to {_PLUG_MAX_MM:g} mm.")
+        raise ArgumentError(
+            f"plugs of {plug:g} mm are not drawn", remedy=f"Take `plug` from {_PLUG_MIN_MM:g} to {_PLUG_MAX_MM:g} mm."
+        )
     if not (np.isfinite(kerfs).all() and kerfs[0] >= 0):
-        raise ValueError(f"a kerf of {kerfs[0]:g} mm is none. Kerfs are 0 mm or more.")
+        raise ArgumentError(f"a kerf of {kerfs[0]:g} mm is none", remedy="Kerfs are 0 mm or more.")
     most = min(plug / 4, thickness)
     if not (kerfs[-1] <= plug / 4 and kerfs[-1] < thickness):
-        raise ValueError(
-            f"a kerf of {kerfs[-1]:g} mm is too much for slots of {thickness:g} mm and plugs of {plug:g} mm. "
-            f"Stay below {most:g} mm."
+        raise ArgumentError(
+            f"a kerf of {kerfs[-1]:g} mm is too much for slots of {thickness:g} mm and plugs of {plug:g} mm",
+            remedy=f"Stay below {most:g} mm.",
         )
     labels = _labels(kerfs)
     if len(set(labels)) < len(labels):
-        raise ValueError("two kerfs are alike to a thousandth of a millimetre. Take a larger step.")
+        raise ArgumentError("two kerfs are alike to a thousandth of a millimetre", remedy="Take a larger step.")
 
 
-def _too_many() -> ValueError:
-    return ValueError(f"more than {KERFS_MAX} kerfs are too many for a coupon. Take a larger step or a shorter range.")
+def _too_many() -> ArgumentError:
+    return ArgumentError(
+        f"more than {KERFS_MAX} kerfs are too many for a coupon", remedy="Take a larger step or a shorter range."
+    )

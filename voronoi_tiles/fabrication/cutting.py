@@ -72,7 +72,7 @@ def _tabbed(paths: Paths, width: float) -> Paths:
     try:
         tabbed = with_tabs(paths.take(np.flatnonzero(long)), width)
     except ValueError as error:
-        raise JobError(str(error), remedy="Use narrower --tabs.") from error
+        raise JobError(str(error), remedy="Use narrower `tabs`.") from error
     return Paths.concatenate([tabbed, paths.take(np.flatnonzero(~long))])
 
 

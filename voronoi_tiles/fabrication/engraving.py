@@ -78,7 +78,7 @@ def _labels(layout: Layout, contours: Contours) -> tuple[Paths, int]:
     pieces = np.flatnonzero(contours.copy >= 0)
     line = np.round(-place[pieces].imag / (0.5 * float(np.sqrt(np.median(layout.tile_areas)))))
     pieces = pieces[np.lexsort((place[pieces].real, line))]
-    names = [printable(site.name) for site in layout.design.sites]
+    names = [printable(site.name) for site in layout.design.noded]
     sites = layout.site[contours.copy[pieces]]
     texts = [str(k + 1) if job.labels == "number" else names[sites[k]] for k in range(len(pieces))]
     unit = {text: fitting_height(text, 1.0, _WANTED) if text.strip() else 1.0 for text in set(texts)}
@@ -127,7 +127,7 @@ def _beside(layout: Layout, contours: Contours | None, sheet: Sheet) -> list[Pat
     if job.marks:
         size = min(_MARK_MM, job.margin)
         if size < 2.0:
-            raise JobError("--marks need room at the edge", remedy="Give the sheet a --margin of 6mm, at least 2mm.")
+            raise JobError("`marks` need room at the edge", remedy="Give the sheet a `margin` of 6mm, at least 2mm.")
         try:
             result.append(registration_marks(sheet.width, sheet.height, size=size, inset=job.margin / 2))
         except ValueError as error:
@@ -149,8 +149,8 @@ def _bar(layout: Layout, contours: Contours | None, sheet: Sheet) -> Paths:
     beside = 2 * (job.margin + _MARK_MM) if job.marks else 2 * _FREE_MM
     if letters < 1.0 or sheet.width < BAR_MM + beside or not sheet.region.is_rectangle:
         raise JobError(
-            "--bar, 100 mm long, has no room at the sheet's edge",
-            remedy="Give a rectangular sheet that is wide enough a --margin of 8mm, at least 4mm.",
+            "`bar`, 100 mm long, has no room at the sheet's edge",
+            remedy="Give a rectangular sheet that is wide enough a `margin` of 8mm, at least 4mm.",
         )
     place = complex(sheet.width / 2 - BAR_MM / 2, (job.margin - bar_height(letters)) / 2)
     return reference_bar(letters=letters).moved(1.0, place)

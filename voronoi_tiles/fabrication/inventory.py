@@ -22,6 +22,9 @@ class Inventory:
     colour: Ints
     area: Floats
 
+    def __repr__(self) -> str:
+        return f"<Inventory: {len(self.site)} pieces, {int(self.whole.sum())} of them whole tiles>"
+
     @property
     def tile_area(self) -> float:
         """The area of all pieces but those of a frame; square millimetres."""

@@ -2,135 +2,149 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import asdict, dataclass
-from typing import Any, Literal, get_args
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+from typing import Any, Final, Literal
 
-from voronoi_tiles.base.errors import DesignError, VoronoiTilesError
-from voronoi_tiles.base.units import parse_length, parse_size
+from voronoi_tiles.fabrication.job_options import (
+    SHEET_MAX,
+    SHEET_MIN,
+    Choice,
+    Flag,
+    JobError,
+    Length,
+    Offset,
+    Option,
+    SheetSize,
+    choice,
+    flag,
+    length,
+    read_angle,
+    read_colour,
+    read_offset,
+    read_sheet,
+    read_text,
+)
+
+__all__ = ["ACCURACY_MM", "LABEL_MIN", "SHEET_MAX", "SHEET_MIN", "Job", "JobError"]
 
 Fit = Literal["whole", "clip", "frame"]
 Edges = Literal["once", "pieces"]
 Curves = Literal["exact", "arc", "spline", "polyline"]
-Art = Literal["whole", "clip", "none"]
+ArtUse = Literal["whole", "clip", "none"]
 Labels = Literal["none", "number", "site"]
 Colours = Literal["none", "layers", "files"]
 
-ACCURACY_MM = 0.005
+ACCURACY_MM: Final = 0.005
 """How far approximated curves may be from the exact ones, where the caller does not say; a twentieth of a kerf."""
 
-ACCURACY_MIN = 1e-5
+ACCURACY_MIN: Final = 1e-5
 """Finest accuracy; millimetres. A hundredth of a micrometre; files hold nanometres."""
 
-APART_MM = 1.0
+APART_MM: Final = 1.0
 """How far contours with a kerf are kept apart where the caller does not say; millimetres: no sliver is left to burn."""
 
-SHEET_MAX = 100_000.0
-"""Largest side of a sheet, and largest length of an option; millimetres."""
-
-SHEET_MIN = 0.1
-"""Smallest side of a sheet; millimetres."""
-
-LABEL_MIN = 0.5
+LABEL_MIN: Final = 0.5
 """Smallest height of a label; millimetres. What is smaller nobody reads."""
 
 
-class JobError(VoronoiTilesError, ValueError):
-    """A job that cannot be done; `message` without a full stop, `remedy` a sentence."""
-
-    def __init__(self, message: str, *, remedy: str) -> None:
-        super().__init__(message)
-        self.message = message
-        self.remedy = remedy
-
-    def __str__(self) -> str:
-        return f"{self.message}. {self.remedy}"
-
-
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Job:
-    """What is to be made of a tiling; lengths in millimetres, angles in degrees.
+    """What is to be made of a tiling; lengths are numbers of millimetres or texts with a unit, "0.15mm".
 
-    `sheet` is its width and height, or the path of a drawing whose closed paths bound it; without it one of each tile
-    is made. `margin` stays free inside its edge (without a sheet, around the tiles). `fit`: whole tiles only, tiles
-    clipped at the edge, or whole tiles and the frame around them. The design's origin lies in the middle of
-    the sheet, turned by `rotate` counter-clockwise and moved by `offset`; None moves whole tiles to where most of them
-    fit, and clipped ones not at all. `edges`: every shared edge cut once,
-    or every tile a closed contour of its own; None takes once for sheets and pieces without, or where an option needs
-    them. `gap` is the least distance between contours, for which pieces are pulled apart (None: none, but
-    with a kerf APART_MM or twice the kerf, lest a cut hurts the next piece); `kerf` the width of the cut, half of which
-    contours keep from the pieces; `fillet` the radius of corners; `tabs` the width of the bridges that hold
-    pieces. `curves` (None: what the preset wants for the format) are the exact curves, or arcs, splines or
-    polylines within `accuracy` (SVG has arcs as cubic curves, a nanometre off). `preset` is the name of a fabrication
-    preset, or a TOML file. `labels` of `label_height` number the pieces; `marks` are for aligning, `bar` is 100 mm
-    long. `colours` puts each colour of a proper colouring on a layer, or into a file, of its own; `only_colour` leaves
-    out all others, -1 all but a frame.
-    `art` of sites is drawn whole, clipped to the tile, or not at all.
+    Without a `sheet`, one of each tile is made, as a closed contour. The design's origin lies in the middle of the
+    sheet, turned by `rotate` and moved by `offset`; whole tiles without an offset are moved to where most of them fit.
+    `edges` None is once for sheets, and pieces without, or where another option needs them. With a kerf, pieces are
+    pulled 1 mm or twice the kerf apart, unless `gap` says how far, lest a cut hurts the next piece. Raises JobError for
+    values that cannot be, and that contradict each other.
 
-    Lengths may also be texts with a unit, "0.15mm" or "600x300mm". Raises JobError for values that cannot be, and that
-    contradict each other.
+    >>> import voronoi_tiles as vt
+    >>> vt.Job(sheet="30x20cm", kerf="0.15mm")
+    Job(sheet=(300.0, 200.0), kerf=0.15)
+    >>> vt.Job(kerf=0.15, edges="once")
+    Traceback (most recent call last):
+    voronoi_tiles.fabrication.job_options.JobError: `kerf` needs `edges='pieces'`: an edge that is cut once belongs to
+    two of them. Use that, or leave `kerf` out.
     """
 
-    sheet: tuple[float, float] | str | None = None
-    margin: float = 0.0
-    fit: Fit = "whole"
-    rotate: float = 0.0
-    offset: complex | None = None
-    edges: Edges | None = None
-    gap: float | None = None
-    kerf: float = 0.0
-    fillet: float = 0.0
-    tabs: float = 0.0
-    accuracy: float = ACCURACY_MM
-    curves: Curves | None = None
-    preset: str = "plain"
-    labels: Labels = "none"
-    label_height: float = 3.0
-    marks: bool = False
-    bar: bool = False
-    colours: Colours = "none"
-    only_colour: int | None = None
-    art: Art = "whole"
+    sheet: Option[SheetSize, tuple[float, float] | str | None] = Option(
+        None,
+        read_sheet,
+        "Fill a sheet, 600x300mm, or the closed paths of an SVG or DXF file [default: one of each tile].",
+        kind="text",
+        shown="WxH|FILE",
+    )
+    margin: Length = length(0.0, "What stays free inside the sheet's edge; without a sheet, around the tiles.")
+    fit: Choice[Fit] = choice(
+        "whole",
+        Fit,
+        "Whole tiles only, tiles clipped at the edge, or whole tiles and the frame around them [default: whole].",
+    )
+    rotate: Option[float, float] = Option(
+        0.0, read_angle, "Turn the tiles counter-clockwise.", kind="angle", shown="DEGREES"
+    )
+    offset: Option[Offset, complex | None] = Option(
+        None,
+        read_offset,
+        "Move the design's origin from the middle of the sheet [default: to where most whole tiles fit, or not at all "
+        "with `fit='clip'`].",
+        kind="text",
+        shown="X,Y",
+    )
+    edges: Choice[Edges | None] = choice(
+        None,
+        Edges,
+        "Cut every shared edge once, or every tile as a closed piece [default: once on a sheet, unless an option needs "
+        "pieces].",
+    )
+    gap: Option[float | str | None, float | None] = length(None, "Pull pieces apart until they keep this distance.")
+    kerf: Length = length(
+        0.0, "The width of the cut: contours keep half of it from the pieces, which then have their true size."
+    )
+    fillet: Length = length(0.0, "Round the corners of pieces.", shown="RADIUS")
+    tabs: Length = length(0.0, "Leave bridges of this width, two a piece or more.")
+    accuracy: Length = length(
+        ACCURACY_MM,
+        "How far approximated curves may be from the exact ones [default: 0.005mm].",
+        least=ACCURACY_MIN,
+        most=1.0,
+    )
+    curves: Choice[Curves | None] = choice(
+        None, Curves, "Exact curves, circular arcs, cubic splines or chords [default: as the preset says]."
+    )
+    preset: Option[str, str] = Option(
+        "plain",
+        read_text,
+        "Colours, layers and curves for a target: plain, lightburn, redcut, ponoko, boxes, glowforge, cnc, or a .toml "
+        "file [default: plain].",
+        kind="text",
+        shown="NAME|FILE",
+    )
+    labels: Choice[Labels] = choice("none", Labels, "Engrave a label on every piece.")
+    label_height: Length = length(3.0, "The height of labels, at most [default: 3mm].", least=LABEL_MIN, most=1000.0)
+    marks: Flag = flag("Engrave marks for aligning at the sheet's corners.")
+    bar: Flag = flag("Engrave a bar of 100 mm, to measure the scale by.")
+    colours: Choice[Colours] = choice(
+        "none", Colours, "Colour the tiles so that no neighbours are alike: a layer, or a file, for each colour."
+    )
+    only_colour: Option[int | None, int | None] = Option(
+        None, read_colour, "Leave out all colours but this, from 0; -1 all but a frame.", kind="number"
+    )
+    art: Choice[ArtUse] = choice(
+        "whole", ArtUse, "The art of the design's sites: whole, clipped to the tiles, or left out [default: whole]."
+    )
 
     def __post_init__(self) -> None:
-        self._read_lengths()
-        for name, kind in (
-            ("fit", Fit),
-            ("art", Art),
-            ("labels", Labels),
-            ("colours", Colours),
-        ):
-            _require_one_of(name, getattr(self, name), get_args(kind))
-        if self.edges is not None:
-            _require_one_of("edges", self.edges, get_args(Edges))
-        if self.curves is not None:
-            _require_one_of("curves", self.curves, get_args(Curves))
-        for name in ("margin", "gap", "kerf", "fillet", "tabs"):
-            value = getattr(self, name) or 0.0
-            if not 0.0 <= value <= SHEET_MAX:
-                raise JobError(f"{name} {value:g} mm cannot be", remedy=f"Give a length from 0 to {SHEET_MAX:,.0f} mm.")
-        if not (math.isfinite(self.rotate) and abs(self.offset or 0j) <= SHEET_MAX):
-            raise JobError("the turn or the offset is not a number, or too large", remedy="Give finite numbers.")
-        if not ACCURACY_MIN <= self.accuracy <= 1.0:
-            raise JobError(
-                f"an accuracy of {self.accuracy:g} mm cannot be",
-                remedy=f"Give one from {ACCURACY_MIN:g} to 1 mm; the default is {ACCURACY_MM:g} mm.",
-            )
-        if not LABEL_MIN <= self.label_height <= 1000.0:
-            raise JobError(
-                f"labels of {self.label_height:g} mm cannot be", remedy=f"Give a height from {LABEL_MIN:g} to 1000 mm."
-            )
-        for name in ("marks", "bar"):
-            if not isinstance(getattr(self, name), bool):
-                raise JobError(f"{name} {getattr(self, name)!r} cannot be", remedy="Use True or False.")
-        if not isinstance(self.preset, str):
-            raise JobError(f"a preset {self.preset!r} cannot be", remedy="Give a name, or the path of a TOML file.")
-        if self.only_colour is not None and (
-            isinstance(self.only_colour, bool) or not isinstance(self.only_colour, int)
-        ):
-            raise JobError(f"a colour {self.only_colour!r} cannot be", remedy="Give its number, from 0.")
         self._check_sheet()
         self._check_edges()
+
+    def __repr__(self) -> str:
+        return f"Job({', '.join(f'{name}={value!r}' for name, value in self._said())})"
+
+    @classmethod
+    def options(cls) -> dict[str, Option[Any, Any]]:
+        """The options by their names, in the order of the fields."""
+        return {field.name: vars(cls)[field.name] for field in fields(cls)}
 
     @property
     def moves_contours(self) -> bool:
@@ -153,28 +167,21 @@ class Job:
 
     def recipe(self) -> dict[str, Any]:
         """What differs from the defaults, in the types of JSON."""
-        plain = asdict(Job())
-        mine = {key: value for key, value in asdict(self).items() if value != plain[key]}
         return {
-            key: [value.real, value.imag]
+            name: [value.real, value.imag]
             if isinstance(value, complex)
             else list(value)
             if isinstance(value, tuple)
             else value
-            for key, value in mine.items()
+            for name, value in self._said()
         }
 
-    def _read_lengths(self) -> None:
-        """Make numbers of lengths that are texts or whole numbers."""
-        for name in ("margin", "gap", "kerf", "fillet", "tabs", "accuracy", "label_height", "rotate"):
+    def _said(self) -> Iterator[tuple[str, Any]]:
+        """The options that differ from their defaults."""
+        for name, option in self.options().items():
             value = getattr(self, name)
-            if name != "gap" or value is not None:
-                object.__setattr__(self, name, _number(name, value))
-        if self.offset is not None:
-            if isinstance(self.offset, bool) or not isinstance(self.offset, int | float | complex):
-                raise JobError(f"an offset of {self.offset!r} cannot be", remedy="Give a number, 3 - 2j.")
-            object.__setattr__(self, "offset", complex(self.offset))
-        object.__setattr__(self, "sheet", _sheet(self.sheet))
+            if value != option.default:
+                yield name, value
 
     def _needs_pieces(self) -> str | None:
         """Name an option that needs closed pieces."""
@@ -187,68 +194,31 @@ class Job:
         name = self._needs_pieces()
         if self.edges == "once" and name is not None:
             raise JobError(
-                f"--{name} needs pieces: an edge that is cut once belongs to two of them",
-                remedy=f"Use --edges pieces, or leave --{name} out.",
+                f"`{name}` needs `edges='pieces'`: an edge that is cut once belongs to two of them",
+                remedy=f"Use that, or leave `{name}` out.",
             )
         if self.tabs > 0.0 and self.sheet is not None and self.pieces and self.apart is None:
             raise JobError(
-                "--tabs hold nothing where the contours of two pieces lie on each other",
-                remedy="Pull the pieces apart, --gap 1mm, or use --edges once.",
+                "`tabs` hold nothing where the contours of two pieces lie on each other",
+                remedy="Pull the pieces apart, `gap='1mm'`, or use `edges='once'`.",
             )
         if self.fit == "frame" and self.apart is not None:
             raise JobError(
-                f"--{'gap' if self.gap else 'kerf'} pulls the tiles apart, and --fit frame leaves them no room",
-                remedy="Cut the frame without it, or use --fit whole.",
+                f"`{'gap' if self.gap else 'kerf'}` pulls the tiles apart, and `fit='frame'` leaves them no room",
+                remedy="Cut the frame without it, or use `fit='whole'`.",
             )
 
     def _check_sheet(self) -> None:
         if self.sheet is None:
-            for name, default in (("fit", "whole"), ("offset", None), ("marks", False)):
-                if getattr(self, name) != default:
-                    raise JobError(f"--{name} is about a sheet, and there is none", remedy="Add --sheet 600x300mm.")
-            return
-        if isinstance(self.sheet, str):
-            return
-        width, height = self.sheet
-        if not (SHEET_MIN <= width <= SHEET_MAX and SHEET_MIN <= height <= SHEET_MAX):
+            for name in ("fit", "offset", "marks"):
+                if getattr(self, name) != self.options()[name].default:
+                    raise JobError(f"`{name}` is about a sheet, and there is none", remedy="Add `sheet='600x300mm'`.")
+        elif not isinstance(self.sheet, str) and 2.0 * self.margin >= min(self.sheet):
+            width, height = self.sheet
             raise JobError(
-                f"a sheet of {width:g} x {height:g} mm cannot be",
-                remedy=f"Write --sheet 600x300mm, with sides from {SHEET_MIN:g} to {SHEET_MAX:,.0f} mm.",
-            )
-        if 2.0 * self.margin >= min(width, height):
-            raise JobError(
-                f"a margin of {self.margin:g} mm leaves nothing of a sheet of {width:g} x {height:g} mm",
+                f"a `margin` of {self.margin:g} mm leaves nothing of a sheet of {width:g} x {height:g} mm",
                 remedy="Make the margin smaller, or the sheet larger.",
             )
 
 
-def _number(name: str, value: object) -> float:
-    """Read a length, or an angle, that is a number or a text. Raises JobError."""
-    try:
-        if isinstance(value, str):
-            return parse_length(value)
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise JobError(f"{name} {value!r} cannot be", remedy='Give a number of millimetres, or a text: "0.15mm".')
-        return float(value)
-    except (DesignError, OverflowError) as error:
-        raise JobError(f"{name} {value!r} cannot be", remedy='Give a number of millimetres, or "0.15mm".') from error
-
-
-def _sheet(value: Any) -> tuple[float, float] | str | None:
-    """Read a sheet: two numbers, the text of a size, or the name of a drawing. Raises JobError."""
-    remedy = 'Give two numbers of millimetres, "600x300mm", or the name of an SVG or DXF file.'
-    if value is None or (isinstance(value, str) and value.lower().endswith((".svg", ".svgz", ".dxf"))):
-        return value
-    try:
-        if isinstance(value, str):
-            return parse_size(value)
-        width, height = value
-    except (DesignError, TypeError, ValueError) as error:
-        raise JobError(f"a sheet of {value!r} cannot be", remedy=remedy) from error
-    return _number("sheet", width), _number("sheet", height)
-
-
-def _require_one_of(name: str, value: object, allowed: tuple[str, ...]) -> None:
-    """Raise JobError for a word that is none of those allowed."""
-    if value not in allowed:
-        raise JobError(f"{name} {value!r} is unknown", remedy=f"Use one of {', '.join(allowed)}.")
+Job.__doc__ = f"{Job.__doc__}\n" + "\n".join(f"    - `{name}`: {option.help}" for name, option in Job.options().items())

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
+from collections.abc import Mapping
 from math import fsum
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.layout import FRAME
 from voronoi_tiles.fabrication.trails import travel
@@ -23,13 +26,22 @@ PIERCE_S = 0.3
 
 
 def report_figures(
-    design: Design, product: Product, *, speeds: dict[str, float] | None = None, pierce_s: float = PIERCE_S
+    design: Design, product: Product, *, speeds: Mapping[str, float] | None = None, pierce_s: float | None = None
 ) -> dict[str, Any]:
-    """Give the figures of a product in the types of JSON: lengths in millimetres, areas in mm^2, times in seconds.
+    """The figures of a product in the types of JSON: lengths in millimetres, areas in mm^2, times in seconds.
 
-    `speeds` are those of "cut", "score", "engrave" and "travel" (mm/s). The time counts no acceleration.
+    `speeds` are those of "cut", "score", "engrave" and "travel" (mm/s). The time counts no acceleration. Raises
+    ArgumentError for speeds and times that are none.
     """
     speed = {**SPEEDS, **(speeds or {})}
+    pierce_s = PIERCE_S if pierce_s is None else pierce_s
+    for name, value in speed.items():
+        if name not in SPEEDS or not 0.0 < value < math.inf:
+            raise ArgumentError(
+                f"`speeds`: {name} {value!r} cannot be", remedy=f"Give mm/s above 0 for {', '.join(SPEEDS)}."
+            )
+    if not 0.0 <= pierce_s < math.inf:
+        raise ArgumentError(f"`pierce_s` {pierce_s!r} cannot be", remedy="Give seconds.")
     drawing, pieces = product.drawing, product.pieces
     layers: list[dict[str, Any]] = []
     before = 0j
@@ -55,7 +67,7 @@ def report_figures(
             }
         )
     cuts = [row for row in layers if row["work"] == "cut"]
-    names = [site.name for site in design.sites]
+    names = [site.name for site in design.noded]
     counted = Counter(
         zip(
             pieces.site.tolist(),

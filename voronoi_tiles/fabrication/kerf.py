@@ -71,18 +71,18 @@ class Compensation:
             result = change(rings, size)
         except OffsetError as error:
             raise JobError(
-                f"--{name} cannot be applied at ({error.place.real:.4g}, {error.place.imag:.4g}) mm of the page",
-                remedy=f"Change --{name} a little, and please report the design.",
+                f"`{name}` cannot be applied at ({error.place.real:.4g}, {error.place.imag:.4g}) mm of the page",
+                remedy=f"Change `{name}` a little, and please report the design.",
             ) from error
         given = getattr(self.job, name)
         for lost in result.lost:
             place = f"({lost.place.real:.4g}, {lost.place.imag:.4g}) mm"
             if whole and (lost.kind in ("ring", "neck") or len(result.paths) != len(rings)):
                 raise JobError(
-                    f"--{name} {given:g}mm is too much: {_LOSSES[lost.kind]} at {place} of the page",
-                    remedy=f"Use a smaller --{name}, or a larger design.",
+                    f"`{name}='{given:g}mm'` is too much: {_LOSSES[lost.kind]} at {place} of the page",
+                    remedy=f"Use a smaller `{name}`, or a larger design.",
                 )
-            self.losses.append(f"--{name} {given:g}mm: {_LOSSES[lost.kind]} at {place} of the page")
+            self.losses.append(f"`{name}='{given:g}mm'`: {_LOSSES[lost.kind]} at {place} of the page")
         return result.paths
 
 

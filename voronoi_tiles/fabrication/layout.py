@@ -255,7 +255,7 @@ def _stretch(tiles: DressedTiles, apart: float, accuracy: float) -> Stretch:
     try:
         return spread(contours, tiles.centres(), tiles.period.basis, apart + 2 * accuracy)
     except ValueError as error:
-        raise JobError(str(error), remedy="Use --edges once, or leave --sheet out: pieces lie in a row.") from error
+        raise JobError(str(error), remedy="Use `edges='once'`, or leave `sheet` out: pieces lie in a row.") from error
 
 
 def _one_of_each(period: Period, placed: Sequence[Placed]) -> TilePlacement:
@@ -273,10 +273,10 @@ def _placement(period: Period, field: Region, job: Job) -> TilePlacement:
         placement = TilePlacement(placement.tile[kept], placement.step[kept], placement.whole[kept])
     if not len(placement.tile):
         x0, y0, x1, y1 = item_boxes(*period.own_outlines)[0].tolist()
-        other = ", or --fit clip" if job.fit != "clip" else ""
+        other = ", or `fit='clip'`" if job.fit != "clip" else ""
         raise JobError(
             f"no {'whole ' if other else ''}tile fits on the sheet: one takes {x1 - x0:.4g} x {y1 - y0:.4g} mm",
-            remedy=f"Take a larger sheet, a smaller margin, another --offset or --rotate{other}.",
+            remedy=f"Take a larger sheet, a smaller margin, another `offset` or `rotate`{other}.",
         )
     return placement
 
@@ -315,10 +315,10 @@ def _inset(region: Region, width: float) -> Region:
         border = offset(region.border, -width).paths
     except OffsetError as error:
         raise JobError(
-            f"the sheet's outline leaves no frame of {width:g} mm: {error}", remedy="Use --fit whole or clip."
+            f"the sheet's outline leaves no frame of {width:g} mm: {error}", remedy="Use `fit='whole'` or `fit='clip'`."
         ) from error
     if not len(border):
         raise JobError(
-            f"the sheet is too small for a frame of {width:g} mm", remedy="Take a larger sheet, or --fit whole."
+            f"the sheet is too small for a frame of {width:g} mm", remedy="Take a larger sheet, or `fit='whole'`."
         )
     return Region(border)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from io import RawIOBase
+from io import BytesIO, RawIOBase
 from math import fsum
 from typing import Any, BinaryIO
 
@@ -34,7 +34,7 @@ from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.vector.tessellation import Tessellation
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Product:
     """What a job makes of a tiling, for a format of files.
 
@@ -48,6 +48,15 @@ class Product:
     notes: tuple[str, ...]
     curves: str
     accuracy: float
+
+    def __repr__(self) -> str:
+        return f"<Product {self.form}: {self.summary()}>"
+
+    def _repr_svg_(self) -> str:
+        """Draw it as an SVG file would have it: notebooks show this."""
+        buffer = BytesIO()
+        write_drawing(self.drawing, buffer, "svg", accuracy=self.accuracy)
+        return buffer.getvalue().decode()
 
     def with_evidence(self, evidence: Mapping[str, Any]) -> Product:
         """The same with what was proved and checked in the recipe."""
@@ -78,7 +87,7 @@ def make(design: Design, tessellation: Tessellation, job: Job, file_format: str 
     if job.colours == "files" and job.only_colour is None:
         raise JobError(
             "a file for each colour is several drawings, and one is asked for",
-            remedy="Use make_colours, or put the colours on layers.",
+            remedy="Export it to a file's name, or use `colours='layers'`.",
         )
     return _Plan.of(design, tessellation, job, form).product(job)
 
@@ -97,7 +106,7 @@ def make_colours(
 def colour_names(
     design: Design, tessellation: Tessellation, job: Job, file_format: str = "svg"
 ) -> list[tuple[int, str]]:
-    """Give the colours that a job has pieces of, each with a name for its file; FRAME for the frame."""
+    """The colours that a job has pieces of, each with a name for its file; FRAME for the frame."""
     return _Plan.of(design, tessellation, job, _format(file_format)).colours()
 
 
@@ -167,7 +176,7 @@ def _doubled(layout: Layout, job: Job) -> list[str]:
     """Say that neighbours' contours lie on each other, where they do."""
     if not job.pieces or job.apart is not None or len(layout.copies.tile) < 2 or job.sheet is None:
         return []
-    return ["neighbouring contours lie on each other, and are cut twice: --edges once, or --gap 1mm, avoids it"]
+    return ["neighbouring contours lie on each other, and are cut twice: `edges='once'`, or `gap='1mm'`, avoids it"]
 
 
 def _of_colour(contours: Contours, colouring: TileColouring, job: Job) -> Contours:
@@ -178,7 +187,7 @@ def _of_colour(contours: Contours, colouring: TileColouring, job: Job) -> Contou
     if not len(chosen):
         raise JobError(
             f"no piece has the colour {job.only_colour + 1}",
-            remedy=f"The tessellation has {colouring.count} colours; colour_names says which of them a job has.",
+            remedy=f"The tessellation has {colouring.count} colours, and a sheet perhaps not all of them.",
         )
     rings = ranges(contours.items[chosen], np.diff(contours.items)[chosen])
     items = np.append(0, np.cumsum(np.diff(contours.items)[chosen])).astype(np.intp)
@@ -186,7 +195,7 @@ def _of_colour(contours: Contours, colouring: TileColouring, job: Job) -> Contou
 
 
 def _shown(colouring: TileColouring, layout: Layout, job: Job) -> Bools:
-    """Tell which tiles on the page are drawn."""
+    """Which tiles on the page are drawn."""
     colour = colouring.of_copies(np.arange(len(layout.copies.tile)))
     return np.ones(len(colour), np.bool_) if job.only_colour is None else np.asarray(colour == job.only_colour)
 

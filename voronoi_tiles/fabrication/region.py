@@ -56,11 +56,11 @@ class Region:
         return _CLOSE * max(right - left, top - bottom)
 
     def contains(self, points: Complexes) -> Bools:
-        """Tell which points lie inside; of those on the border some count as inside."""
+        """Which points lie inside; of those on the border some count as inside."""
         return winding(self.border, points) > 0
 
     def meets_border(self, box: Floats, margin: float) -> Bools:
-        """Tell which boxes (n x 4, as `pieces.boxes` gives them) come within a margin of that of a border's piece."""
+        """Which boxes (n x 4, as `pieces.boxes` gives them) come within a margin of that of a border's piece."""
         import shapely
 
         grown = box + np.array([-margin, -margin, margin, margin])

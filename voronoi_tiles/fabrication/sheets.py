@@ -24,7 +24,7 @@ _RINGS_MAX = 1000
 
 
 def read_sheet(job: Job, budget: AccuracyBudget) -> Sheet:
-    """Give the page of a job and the region that is filled, its margin taken off.
+    """The page of a job and the region that is filled, its margin taken off.
 
     Raises JobError where nothing is left of it, DrawingError where a drawing cannot be read.
     """
@@ -78,10 +78,10 @@ def _drawn_sheet(name: str, job: Job, budget: AccuracyBudget) -> Sheet:
             border = offset(border, -margin).paths
         except OffsetError as error:
             raise JobError(
-                f"the margin cannot be applied to {name}: {error}", remedy="Use another --margin."
+                f"the margin cannot be applied to {name}: {error}", remedy="Use another `margin`."
             ) from error
         if not len(border):
-            raise JobError(f"a margin of {margin:g} mm leaves nothing of {name}", remedy="Use a smaller --margin.")
+            raise JobError(f"a margin of {margin:g} mm leaves nothing of {name}", remedy="Use a smaller `margin`.")
     left, bottom, right, top = border.bounds
     return Sheet(width, height, Region(border), complex(left + right, bottom + top) / 2)
 

@@ -64,7 +64,7 @@ def _near(period: Period, box: Floats, region: Region) -> tuple[Ints, Ints]:
 
 
 def _against(region: Region, paths: Paths, items: Ints) -> tuple[Bools, Bools]:
-    """Tell which items have something of the region, and which have something beyond it.
+    """Which items have something of the region, and which have something beyond it.
 
     What is near the border is decided by the parts between the points where the two meet.
     """

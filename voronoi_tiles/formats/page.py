@@ -18,7 +18,7 @@ Work = Literal["cut", "score", "engrave"]
 """What a laser does along a path: through the sheet, along its surface, or to mark it."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Layer:
     """Paths that are worked alike, in the order in which a machine takes them.
 
@@ -37,13 +37,16 @@ class Layer:
     labels: tuple[str, ...] = ()
     filled: bool = False
 
+    def __repr__(self) -> str:
+        return f"<Layer {self.name!r}: {self.work}, {len(self.paths)} paths>"
+
     @classmethod
     def of_paths(cls, name: str, work: Work, colour: str, stroke: float, paths: Paths) -> Layer:
         """A layer in which every path is an item of its own."""
         return cls(name, work, colour, stroke, paths, np.arange(len(paths) + 1))
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Drawing:
     """A page of `width` times `height` millimetres, its layers in the order of work.
 
@@ -57,6 +60,10 @@ class Drawing:
     title: str = ""
     recipe: Mapping[str, str] = field(default_factory=dict)
     bottom: float = 0.0
+
+    def __repr__(self) -> str:
+        layers = ", ".join(layer.name for layer in self.layers)
+        return f"<Drawing {self.title!r}: {self.width:.6g} x {self.height:.6g} mm, layers {layers}>"
 
     def with_evidence(self, evidence: Mapping[str, Any]) -> Self:
         """The same with what was proved and checked in the recipe."""

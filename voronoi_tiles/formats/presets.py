@@ -79,7 +79,7 @@ class Preset:
 
 
 def load_preset(name_or_path: str) -> Preset:
-    """Give the preset of a name, or the one in a TOML file, whose path ends in .toml.
+    """The preset of a name, or the one in a TOML file, whose path ends in .toml.
 
     A file has the keys of presets.toml, any of them, and `extends`, the name of the preset that has the others (without
     it, "plain"). A table in it changes only the keys that it names. Raises DesignError with file, key and remedy.

@@ -64,6 +64,9 @@ class Shape:
     stroke_width: float | None
     source: str
 
+    def __repr__(self) -> str:
+        return f"<Shape {self.source!r}: {len(self.paths)} paths on layer {self.layer!r}>"
+
 
 @dataclass(frozen=True, eq=False)
 class ReadDrawing:
@@ -85,6 +88,9 @@ class ReadDrawing:
     ignored: Mapping[str, int] = field(default_factory=dict)
     clones: int = 0
     job: Mapping[str, Any] = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        return f"<ReadDrawing {self.format}: {len(self.shapes)} shapes>"
 
 
 def load_bytes(name: str) -> bytes:

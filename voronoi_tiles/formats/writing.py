@@ -47,7 +47,7 @@ def write_drawing(
 
 
 def recoloured(drawing: Drawing, preset_name: str, form: str) -> Drawing:
-    """Give a drawing of the layers "engrave", "inside" and "cut" the names and colours of a preset.
+    """A drawing whose layers "engrave", "inside" and "cut" have the names and colours of a preset.
 
     Raises DesignError where the preset is broken or does not read the format.
     """

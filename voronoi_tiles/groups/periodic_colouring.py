@@ -116,7 +116,7 @@ def _colour_quotient(pairs: Ints, placements: int, repeat: Repeat, least: int) -
 
 
 def _colour_greedily(here: Ints, there: Ints, count: int) -> Ints:
-    """Give each node in turn the first colour that none of its neighbours has."""
+    """The colour of each node: in turn, the first that none of its neighbours has."""
     order = np.argsort(np.concatenate((here, there)), kind="stable")
     other = np.concatenate((there, here))[order]
     start = np.searchsorted(np.concatenate((here, there))[order], np.arange(count + 1))

@@ -17,6 +17,7 @@ from types import MappingProxyType
 from typing import Literal, overload
 
 from voronoi_tiles.base.arrays import Complexes, Floats
+from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.maps import UNITS, Isometry, unit_at
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.base.tolerance import UNIT_SNAP
@@ -29,7 +30,7 @@ class Lattice:
     """The lattice of a wallpaper group: all i a + j b with integers i, j.
 
     `a` and `b` are Cartesian vectors in the units of the design, b to the left of a (positive `det`); the
-    lattices of designs have a along +x. Raises ValueError where the basis is not finite or not positively
+    lattices of designs have a along +x. Raises ArgumentError where the basis is not finite or not positively
     oriented.
     """
 
@@ -38,7 +39,9 @@ class Lattice:
 
     def __post_init__(self) -> None:
         if not (cmath.isfinite(self.a) and cmath.isfinite(self.b) and self.det > 0.0):
-            raise ValueError(f"not a positively oriented lattice basis: {self.a}, {self.b}")
+            raise ArgumentError(
+                f"not a positively oriented lattice basis: {self.a}, {self.b}", remedy="Take b to the left of a."
+            )
 
     @property
     def det(self) -> float:
@@ -82,7 +85,7 @@ class Lattice:
         """The Cartesian isometry of `operation`.
 
         Its linear part is one of `UNITS` to the bit (where a lies along +x), chosen by what the operation
-        does to a. Raises ValueError where the operation is no isometry of this lattice.
+        does to a. Raises ArgumentError where the operation is no isometry of this lattice.
         """
         a, conj = self._linear(operation.linear)
         return Isometry(a, self.cartesian(*operation.translation), conj)
@@ -104,12 +107,12 @@ class Lattice:
         error_a = abs(unit * a - (w[0] * self.a + w[2] * self.b)) / abs(a)
         error_b = abs(unit * b - (w[1] * self.a + w[3] * self.b)) / abs(b)
         if max(error_a, error_b) > UNIT_SNAP:
-            raise ValueError(f"the linear part {w} is no isometry of the lattice {self.a}, {self.b}")
+            raise ArgumentError(f"the linear part {w} is no isometry of the lattice {self.a}, {self.b}")
         self._linear_parts[w] = unit, conj
         return unit, conj
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class WallpaperGroup:
     """A wallpaper group: its name, its crystal system, and its operations up to lattice translations.
 
@@ -120,6 +123,9 @@ class WallpaperGroup:
     name: str
     system: System
     operations: tuple[Operation, ...]
+
+    def __repr__(self) -> str:
+        return f"<WallpaperGroup {self.name}: {self.system}, of order {self.order}>"
 
     @property
     def order(self) -> int:
@@ -139,12 +145,12 @@ class WallpaperGroup:
     def lattice(self, a: float, b: float | None = None, angle: float | None = None) -> Lattice:
         """The lattice of a conventional cell: a along +x, b at `angle` degrees from it.
 
-        What the system fixes may be left out, and is not read. Raises ValueError where b or the angle is
+        What the system fixes may be left out, and is not read. Raises ArgumentError where b or the angle is
         missing, or the cell has no area.
         """
         if b is None:
             if not self.fixes_b:
-                raise ValueError(f"{self.name} needs b")
+                raise ArgumentError(f"{self.name} needs `b`")
             b = a
         match self.system:
             case "hexagonal":
@@ -153,7 +159,7 @@ class WallpaperGroup:
                 return Lattice(complex(a), complex(0.0, b))
             case "oblique":
                 if angle is None:
-                    raise ValueError(f"{self.name} needs an angle")
+                    raise ArgumentError(f"{self.name} needs an `angle`")
                 unit = unit_at(angle)
                 return Lattice(complex(a), complex(b * unit.real, b * unit.imag))
 

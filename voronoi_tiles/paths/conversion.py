@@ -24,7 +24,7 @@ COUNT_MAX: Final = 20_000_000
 
 
 def usable(paths: Paths, accuracy: float) -> float:
-    """Give the part of an accuracy, in the paths' unit, that is not left to the rounding of points.
+    """The part of an accuracy, in the paths' unit, that is not left to the rounding of points.
 
     Raises ValueError where the accuracy is not positive and finite, or finer than the coordinates' resolution.
     """

@@ -33,7 +33,7 @@ def oriented(rings: Paths) -> Paths:
 
 
 def simple(rings: Paths) -> bool:
-    """Tell whether no ring crosses or touches itself or another one, as far as chords tell."""
+    """Whether no ring crosses or touches itself or another one, as far as chords tell."""
     import shapely
 
     if not len(rings):

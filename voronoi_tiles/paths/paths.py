@@ -7,13 +7,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Final, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
+from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.maps import move
 
 Kinds = NDArray[np.uint8]
@@ -41,6 +42,9 @@ class Paths:
     kind: Kinds
     offsets: Ints
     closed: Bools
+
+    def __repr__(self) -> str:
+        return f"<Paths: {len(self)} paths of {len(self.start)} pieces>"
 
     @classmethod
     def empty(cls) -> Self:
@@ -208,10 +212,10 @@ class Paths:
     def bounds(self) -> tuple[float, float, float, float]:
         """The smallest upright rectangle around the paths: least x, least y, greatest x, greatest y.
 
-        Raises ValueError where there is no segment.
+        Raises ArgumentError where there is no segment.
         """
         if not len(self.start):
-            raise ValueError("no path has no bounds")
+            raise ArgumentError("no path has no bounds")
         quads, cubics, arcs = (np.flatnonzero(self.kind == kind) for kind in (QUAD, CUBIC, ARC))
         extremes = [self.start, self.end]
         extremes += _quad_extremes(self.start[quads], self.control[quads, 0], self.end[quads])
@@ -248,9 +252,6 @@ class Paths:
         return centre, radius, np.angle(start - centre), turn
 
 
-_GAUSS_NODES, _GAUSS_WEIGHTS = np.polynomial.legendre.leggauss(24)
-
-
 _LENGTH_ERROR = 1e-11
 """How exactly the lengths of cubic curves are found, relative to their control polygons."""
 
@@ -272,13 +273,20 @@ def _cubic_lengths(p0: Complexes, p1: Complexes, p2: Complexes, p3: Complexes) -
     return lengths
 
 
+@cache
+def _gauss() -> tuple[Floats, Floats]:
+    """Nodes and weights of the quadrature; deferred, as numpy.polynomial takes a while to import."""
+    return np.polynomial.legendre.leggauss(24)
+
+
 def _quadrature(curves: Complexes) -> Floats:
     """The integrals of the speed along cubic Bezier curves (4, n), from their differences."""
-    t = (_GAUSS_NODES + 1) / 2
+    nodes, weights = _gauss()
+    t = (nodes + 1) / 2
     s = 1 - t
     a, b, c = np.diff(curves, axis=0)
     speed = np.abs(3 * (np.outer(a, s * s) + np.outer(b, 2 * s * t) + np.outer(c, t * t)))
-    return np.asarray(speed @ (_GAUSS_WEIGHTS / 2), np.float64)
+    return np.asarray(speed @ (weights / 2), np.float64)
 
 
 def halves(curves: Complexes) -> Complexes:

@@ -8,7 +8,7 @@ from voronoi_tiles.base.arrays import Complexes, Floats
 
 
 def quadratic_lengths(start: Complexes, control: Complexes, end: Complexes) -> Floats:
-    """Give the lengths of quadratic Bezier curves, float64 (n,), to a few units in the last place.
+    """The lengths of quadratic Bezier curves, float64 (n,), to a few units in the last place.
 
     Half the derivative runs linearly from p = control - start to q = end - control. With coordinates x along q - p
     and y across it, the length is (|p| + |q|)/2 + (x_p + x_q)^2 / (2 (|p| + |q|)) + y^2 (asinh(x_q/y) - asinh(x_p/y)) /

@@ -66,7 +66,7 @@ def _turns(paths: Paths, points: Complexes) -> Ints:
 
 
 def _left(start: Complexes, end: Complexes, points: Complexes) -> Bools:
-    """Tell which points lie to the left of chords, as seen from these; to the right of the reverse of a chord.
+    """Which points lie to the left of chords, as seen from these; to the right of the reverse of a chord.
 
     A point on the line counts as one slightly above it, or to the right of it, as it does for rays.
     """

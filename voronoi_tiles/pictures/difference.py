@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
 from voronoi_tiles.base.arrays import Complexes
-from voronoi_tiles.base.version import __version__
 from voronoi_tiles.crosscheck.check_report import CheckReport, Figure
-from voronoi_tiles.formats.png import PngStream, Sink
 from voronoi_tiles.groups.wallpaper import Lattice
 from voronoi_tiles.raster.frame import rectangle_frame
 from voronoi_tiles.raster.line_coverage import coverage
@@ -29,12 +26,11 @@ _MILDEST, _WORST = -9.0, 0.0
 """The deviations where the colours begin and end; decimal logarithm, in samples."""
 
 
-def write_diff(report: CheckReport, lattice: Lattice, outlines: Complexes, file: Sink) -> None:
-    """Write the failures of a report as a PNG of one cell: white, and nothing else, where there is none.
+def difference_pixels(report: CheckReport, lattice: Lattice, outlines: Complexes) -> NDArray[np.uint8]:
+    """The failures of a report as a picture of one cell, (rows, columns, 3): white, where there is none.
 
     Marks run from yellow (1e-9 of a sample off, or less) over red to black (a sample or more, or no measure at all),
-    over the outlines in grey: segments (n, 2) for all copies in the cell's surroundings (see `region`). The text
-    "Report" is the report as JSON.
+    over the outlines in grey: segments (n, 2) for all copies in the cell's surroundings (see `region`).
     """
     x0, y0, x1, y1 = region(report, lattice)
     scale = _SIDE / max(x1 - x0, y1 - y0)
@@ -51,20 +47,18 @@ def write_diff(report: CheckReport, lattice: Lattice, outlines: Complexes, file:
             chosen = place[(colour == step).all(axis=1)]
             strength = coverage(np.stack((chosen, chosen), axis=1), 2 * _RADIUS, frame)[..., None]
             pixels += strength * (step.astype(np.float32) - pixels)
-    text = {"Software": f"voronoi-tiles {__version__}", "Report": json.dumps(report.document())}
-    with PngStream(file, width, height, text=text) as png:
-        png.write(np.rint(pixels).astype(np.uint8))
+    return np.asarray(np.rint(pixels), np.uint8)
 
 
 def region(report: CheckReport, lattice: Lattice) -> tuple[float, float, float, float]:
-    """Give the rectangle about the image's cell: x0, y0, x1, y1."""
+    """The rectangle about the image's cell: x0, y0, x1, y1."""
     a, b = lattice.reduced_basis
     corners = report.frame.origin + np.array([0, a, a + b, b])
     return float(corners.real.min()), float(corners.imag.min()), float(corners.real.max()), float(corners.imag.max())
 
 
 def _marks(figure: Figure, report: CheckReport, lattice: Lattice) -> tuple[Complexes, NDArray[np.uint8]]:
-    """Give the places of a figure's failures, moved into the cell, and their colours: uint8 (n, 3)."""
+    """The places of a figure's failures, moved into the cell, and their colours: uint8 (n, 3)."""
     order = np.argsort(-figure.marks.excess, kind="stable")[:_MOST]
     place, excess = figure.marks.place[order], figure.marks.excess[order]
     a, b = lattice.reduced_basis

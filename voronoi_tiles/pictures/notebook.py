@@ -1,38 +1,101 @@
-"""Small pictures for notebooks, as SVG texts."""
+"""Pictures for notebooks, as SVG texts: designs, tiles and tilings."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from typing import Any
 
-from voronoi_tiles.base.arrays import Floats
+import numpy as np
+
+from voronoi_tiles.base.arrays import Complexes, Floats
+from voronoi_tiles.designs.design import Design
 from voronoi_tiles.formats.page import page_length
 from voronoi_tiles.formats.svg.path_text import decimal_text, path_data
 from voronoi_tiles.formats.svg.writer import document_text, new_document
+from voronoi_tiles.groups.periodic_colouring import palette
 from voronoi_tiles.vector.outline import Outline
+
+Region = tuple[float, float, float, float]
+
+_SIZE = 300
+"""The longer side of what is shown; pixels."""
+
+_TILE, _PAPER, _INK, _SITE, _COPY = "#f3ead8", "#ffffff", "#000000", "#b03020", "#c8c8c8"
+
+
+class _Canvas:
+    """An SVG picture of a rectangle of the plane, with a margin of a fiftieth; y is turned to run down."""
+
+    def __init__(self, region: Region) -> None:
+        low_x, low_y, high_x, high_y = region
+        size = max(high_x - low_x, high_y - low_y)
+        margin = size / 50
+        self._scale = _SIZE / size
+        self._corner = complex(low_x - margin, high_y + margin)
+        sides = (high_x - low_x, high_y - low_y)
+        width, height = (decimal_text(page_length((side + 2 * margin) * self._scale)) for side in sides)
+        self._drawing = new_document(width, height, f"0 0 {width} {height}")
+
+    def outline(self, outline: Outline, fill: str) -> None:
+        """Draw a tile."""
+        data = path_data(outline.paths.moved(1.0, -self._corner).moved(self._scale, 0j))
+        self._add(data, fill=fill, stroke=_INK, stroke_width=1)
+
+    def segments(self, segments: Complexes, colour: str, width: float) -> None:
+        """Draw segments (n, 2), a point as one of no length, which a round cap shows as a dot."""
+        ends = [
+            [f"{decimal_text(z.real)} {decimal_text(-z.imag)}" for z in row]
+            for row in ((segments - self._corner) * self._scale).tolist()
+        ]
+        data = " ".join(f"M {a} L {b}" for a, b in ends)
+        if data:
+            self._add(data, fill="none", stroke=colour, stroke_width=width, stroke_linecap="round")
+
+    def text(self) -> str:
+        """The picture."""
+        return document_text(self._drawing)
+
+    def _add(self, data: str, **style: Any) -> None:
+        self._drawing.add(self._drawing.path(d=data, **style))
+
+
+def _segments(elements: Floats) -> Complexes:
+    """Elements (k, 4) as segments (k, 2)."""
+    return np.asarray(elements[:, 0::2] + 1j * elements[:, 1::2])
 
 
 def tile_picture(outline: Outline, elements: Floats) -> str:
-    """Draw one tile with its site for a notebook: the tile filled, the site's elements (k, 4) in it."""
-    low_x, low_y, high_x, high_y = outline.bounds
-    size = max(high_x - low_x, high_y - low_y)
-    margin, scale = size / 50, 300 / size
-    corner = complex(low_x - margin, high_y + margin)
-    width, height = (
-        decimal_text(page_length((length + 2 * margin) * scale)) for length in (high_x - low_x, high_y - low_y)
-    )
-    drawing = new_document(width, height, f"0 0 {width} {height}")
-    tile = path_data(outline.paths.moved(1.0, -corner).moved(scale, 0j))
-    drawing.add(drawing.path(d=tile, fill="#f3ead8", stroke="#000000", stroke_width=1))
-    site = " ".join(_strokes(elements, corner, scale))
-    drawing.add(drawing.path(d=site, fill="none", stroke="#b03020", stroke_width=3, stroke_linecap="round"))
-    return document_text(drawing)
+    """Draw one tile, filled, and its site's elements (k, 4) in it."""
+    return tiling_picture([(outline, elements)], [])
 
 
-def _strokes(elements: Floats, origin: complex, scale: float) -> Iterable[str]:
-    """Write every element as a line; a point is a line of no length, which a round cap shows as a dot."""
-    for x0, y0, x1, y1 in elements.tolist():
-        a, b = (
-            f"{decimal_text((x - origin.real) * scale)} {decimal_text((origin.imag - y) * scale)}"
-            for x, y in ((x0, y0), (x1, y1))
-        )
-        yield f"M {a} L {b}"
+def tiling_picture(tiles: Sequence[tuple[Outline, Floats]], copies: Iterable[Outline]) -> str:
+    """Draw the tiles, filled, each with its site's elements (k, 4), over copies that lie about them."""
+    bounds = np.array([outline.bounds for outline, _ in tiles])
+    low, high = bounds[:, :2].min(axis=0).tolist(), bounds[:, 2:].max(axis=0).tolist()
+    canvas = _Canvas((*low, *high))
+    for outline in copies:
+        canvas.outline(outline, _PAPER)
+    fills = [_TILE] if len(tiles) == 1 else [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in palette(len(tiles)).tolist()]
+    for (outline, elements), fill in zip(tiles, fills, strict=True):
+        canvas.outline(outline, fill)
+        canvas.segments(_segments(elements), _SITE, 3)
+    return canvas.text()
+
+
+def design_picture(design: Design) -> str:
+    """Draw the cell, the sites, and the copies of them about it."""
+    from voronoi_tiles.pictures.rendering import on_all_copies
+    from voronoi_tiles.raster.scene import Pattern
+
+    a, b = design.lattice.a, design.lattice.b
+    corners = np.array([0, a, a + b, b, 0])
+    own = [_segments(site.elements) for site in design.noded]
+    shown = np.concatenate([corners, *(segments.ravel() for segments in own)])
+    region = (shown.real.min(), shown.imag.min(), shown.real.max(), shown.imag.max())
+    canvas = _Canvas((float(region[0]), float(region[1]), float(region[2]), float(region[3])))
+    pattern = Pattern(design.noded, design.group, design.lattice)
+    canvas.segments(on_all_copies(own, pattern, region), _COPY, 2)
+    canvas.segments(np.stack((corners[:-1], corners[1:]), axis=1), _INK, 1)
+    canvas.segments(np.concatenate(own), _SITE, 3)
+    return canvas.text()

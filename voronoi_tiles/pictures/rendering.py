@@ -2,26 +2,29 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
+from typing import TypedDict, Unpack, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
 from voronoi_tiles.base.arrays import Complexes
-from voronoi_tiles.base.errors import DesignError, ProofError
+from voronoi_tiles.base.errors import ArgumentError, DesignError, ProofError
 from voronoi_tiles.base.files import writing
 from voronoi_tiles.base.tolerance import COORDINATE_MAX, EPSILON, NUMBER_MIN
 from voronoi_tiles.base.version import __version__
 from voronoi_tiles.crosscheck import CheckReport
 from voronoi_tiles.designs.design import Design
-from voronoi_tiles.formats.png import PngStream, Sink
+from voronoi_tiles.formats.png import PngStream
 from voronoi_tiles.groups.symmetry_elements import placed, symmetry_elements
 from voronoi_tiles.pictures import difference as diff
+from voronoi_tiles.pictures.rendered import Rendering
 from voronoi_tiles.raster.line_coverage import dashed
-from voronoi_tiles.raster.picture import INK, Overlay, Picture, PictureStyle, Region, default_region
+from voronoi_tiles.raster.picture import INK, Overlay, Picture, PictureStyle, Pixels, Region, default_region
 from voronoi_tiles.raster.renderer import Choice, Method, Provenance, Renderer
 from voronoi_tiles.raster.scene import Pattern
 from voronoi_tiles.vector.outline import Outline
@@ -48,38 +51,78 @@ _OUTLINE = (255, 0, 255)
 _PAPER = (255, 255, 255)
 
 
+class RenderOptions(TypedDict, total=False):
+    """How a picture is rendered; see `render`."""
+
+    size: int | tuple[int, int]
+    region: Region | None
+    overlay: str | Sequence[str]
+    method: Method
+    renderer: Choice
+    device: int | None
+    notice: Callable[[str], None] | None
+    progress: Callable[[int, int], None] | None
+
+
+@overload
+def render(design: Design, path: None = None, **options: Unpack[RenderOptions]) -> Rendering: ...
+@overload
+def render(design: Design, path: str | os.PathLike[str], **options: Unpack[RenderOptions]) -> Provenance: ...
 def render(
+    design: Design, path: str | os.PathLike[str] | None = None, **options: Unpack[RenderOptions]
+) -> Rendering | Provenance:
+    """Render the coloured tessellation of a design: into memory, or as a PNG file, whole or not at all.
+
+    Without a path the result holds the pixels and knows its PNG; a file of any size is written in bands, and the
+    result says who rendered it. The options, all keywords:
+
+    - `size`: the longer side in pixels, or width and height; default 1600;
+    - `region`: the rectangle x0, y0, x1, y1 in the design's units, grown where `size` has another shape; default two
+      cells each way;
+    - `overlay`: what is drawn on top, of "symmetry" (mirrors, glides and rotation centres), "cell", "outline" (the
+      exact ones) and "art" (in the place of the strokes);
+    - `method`: "exact", or "hoff" for cones and tents with a depth test; `renderer`: "auto", "gl" or "cpu"; `device`:
+      the number of OpenGL's device;
+    - `notice` is called with one line when OpenGL is given up, `progress` with how many rows, of how many, are done.
+
+    Raises ArgumentError for a size, a region or a word that cannot be, DesignError for art that is not there,
+    TouchingCopiesError where copies touch, RenderError where OpenGL fails and is insisted on, OutputError, and with the
+    overlay "outline" ProofError.
+
+    >>> import voronoi_tiles as vt
+    >>> picture = vt.render(vt.starter("p4"), size=(120, 80), renderer="cpu")
+    >>> picture
+    <Rendering 120 x 80: exact on cpu (numpy), float64>
+    >>> picture.pixels.shape, picture.png[1:4]
+    ((80, 120, 3), b'PNG')
+    """
+    return paint(design, path, **options)
+
+
+def paint(
     design: Design,
-    path: str | os.PathLike[str],
+    path: str | os.PathLike[str] | None,
     *,
+    outlines: Sequence[Outline] | None = None,
     size: int | tuple[int, int] = DEFAULT_SIZE,
     region: Region | None = None,
-    overlay: Sequence[str] = (),
+    overlay: str | Sequence[str] = (),
     method: Method = "exact",
     renderer: Choice = "auto",
     device: int | None = None,
     notice: Callable[[str], None] | None = None,
     progress: Callable[[int, int], None] | None = None,
-) -> Provenance:
-    """Write the coloured tessellation of a design as a PNG file, whole or not at all; say who rendered it.
-
-    `size` is the longer side in pixels, or width and height; `region` the rectangle x0, y0, x1, y1 in the design's
-    units, grown where `size` has another shape (default: two cells each way). `overlay` names what is drawn on top, of
-    OVERLAYS; `renderer`, `device`, `method` and `notice` are those of Renderer; `progress` is told how many rows, of
-    how many, are done. Pictures of any size are rendered in bands.
-
-    Raises DesignError for a size or a region that cannot be, and for art that is not there; TouchingCopiesError where
-    copies touch, RenderError where OpenGL fails and is insisted on, OutputError, and with the overlay "outline"
-    ProofError.
-    """
+) -> Rendering | Provenance:
+    """Render as `render` does; `outlines` are the design's, where they are known."""
     if isinstance(overlay, str):
         overlay = [overlay]
     unknown = set(overlay) - set(OVERLAYS)
     if unknown:
-        raise ValueError(f"unknown overlay {min(unknown)!r}: use {', '.join(OVERLAYS)}")
-    pattern = Pattern(design.sites, design.group, design.lattice)
+        raise ArgumentError(f"`overlay` {min(unknown)!r} is unknown", remedy=f"Use {', '.join(OVERLAYS)}.")
+    pattern = Pattern(design.noded, design.group, design.lattice)
     region, width, height = _fit(default_region(pattern) if region is None else region, size)
-    outlines = _outlines(design, needed="outline" in overlay)
+    if outlines is None:
+        outlines = _outlines(design, needed="outline" in overlay)
     style = _style(width, height, strokes="art" not in overlay)
     picture = Picture(
         pattern,
@@ -95,56 +138,74 @@ def render(
         "Title": f"{design.name} ({design.group.name})",
         "Source": design.source,
     }
-    per_metre = width / ((region[2] - region[0]) * design.unit_mm / 1000)
-    with (
-        writing(path) as file,
-        PngStream(file, width, height, pixels_per_metre=min(max(per_metre, 1.0), 2.0**31 - 1), text=text) as png,
-    ):
-        for band in picture.bands():
+    per_metre = min(max(width / ((region[2] - region[0]) * design.unit_mm / 1000), 1.0), 2.0**31 - 1)
+    if path is None:
+        bands = list(_told(picture, progress))
+        return Rendering(np.concatenate(bands), text, per_metre, _trailer(picture), picture.provenance)
+    with writing(path) as file, PngStream(file, width, height, pixels_per_metre=per_metre, text=text) as png:
+        for band in _told(picture, progress):
             png.write(band)
-            if progress is not None:
-                progress(png.rows, height)
-        png.trailer["Renderer"] = ", then ".join(picture.renderers)
+        png.trailer.update(_trailer(picture))
     return picture.provenance
 
 
-def write_diff(design: Design, outlines: Sequence[Outline], report: CheckReport, file: Sink) -> None:
-    """Write the PNG of where a cross-check has found differences, and by how much: white where there is none."""
-    pattern = Pattern(design.sites, design.group, design.lattice)
+def _told(picture: Picture, progress: Callable[[int, int], None] | None) -> Iterator[Pixels]:
+    """The bands of a picture; `progress` is told of each when it has been taken."""
+    rows = 0
+    for band in picture.bands():
+        yield band
+        rows += len(band)
+        if progress is not None:
+            progress(rows, picture.height)
+
+
+def _trailer(picture: Picture) -> dict[str, str]:
+    """What a PNG says at its end: who rendered it, in turn."""
+    return {"Renderer": ", then ".join(picture.renderers)}
+
+
+def difference(design: Design, outlines: Sequence[Outline], report: CheckReport) -> Rendering:
+    """Draw where a cross-check has found differences, and by how much: white where there is none."""
+    pattern = Pattern(design.noded, design.group, design.lattice)
     around = diff.region(report, design.lattice)
     segments = np.zeros((0, 2), complex)
     if not report.passed:
         segments = outline_segments(outlines, pattern, around, accuracy=(around[2] - around[0]) / 10_000)
-    diff.write_diff(report, design.lattice, segments, file)
+    text = {"Software": f"voronoi-tiles {__version__}", "Report": json.dumps(report.document())}
+    return Rendering(diff.difference_pixels(report, design.lattice, segments), text, provenance=report.provenance)
 
 
 def _fit(region: Region, size: int | tuple[int, int]) -> tuple[Region, int, int]:
-    """Give the region in the shape of the picture, and the picture's width and height."""
-    x0, y0, x1, y1 = region
-    if not (all(map(math.isfinite, region)) and x1 > x0 and y1 > y0):
-        what = "is empty" if all(map(math.isfinite, region)) else "is not finite"
-        raise DesignError(
-            f"the region {x0:g},{y0:g},{x1:g},{y1:g} {what}", remedy="Give x0,y0,x1,y1 with x0 < x1 and y0 < y1."
-        )
-    farthest = max(map(abs, region))
+    """The region in the shape of the picture, and the picture's width and height."""
+    remedy = "Give x0,y0,x1,y1 with x0 < x1 and y0 < y1."
+    try:
+        x0, y0, x1, y1 = (float(side) for side in region)
+    except (TypeError, ValueError):
+        raise ArgumentError(f"the `region` {region!r} is no rectangle", remedy=remedy) from None
+    finite = all(map(math.isfinite, (x0, y0, x1, y1)))
+    if not (finite and x1 > x0 and y1 > y0):
+        what = "is empty" if finite else "is not finite"
+        raise ArgumentError(f"the `region` {x0:g},{y0:g},{x1:g},{y1:g} {what}", remedy=remedy)
+    farthest = max(map(abs, (x0, y0, x1, y1)))
     if farthest > COORDINATE_MAX:
-        raise DesignError(
-            f"the region reaches to {farthest:g}", remedy=f"Its coordinates must be within {COORDINATE_MAX:g}."
+        raise ArgumentError(
+            f"the `region` reaches to {farthest:g}", remedy=f"Its coordinates must be within {COORDINATE_MAX:g}."
         )
     across, down = x1 - x0, y1 - y0
-    if not all(isinstance(side, int) for side in (size if isinstance(size, tuple) else (size,))):
-        raise DesignError(f"a picture of {size} pixels", remedy="Give whole numbers.")
+    sides: tuple[object, ...] = size if isinstance(size, tuple) else (size,)
+    if not (len(sides) <= 2 and all(isinstance(side, int) for side in sides)):
+        raise ArgumentError(f"a `size` of {size!r} pixels", remedy="Give whole numbers, one or two.")
     if isinstance(size, tuple):
         width, height = size
     else:  # a strip is one pixel wide at least
         width, height = (max(min(size, 1), round(size * side / max(across, down))) for side in (across, down))
     if not (1 <= width <= SIDE_MAX and 1 <= height <= SIDE_MAX):
-        raise DesignError(
+        raise ArgumentError(
             f"a picture of {width} x {height} pixels", remedy=f"Choose sides from 1 to {SIDE_MAX:,} pixels."
         )
     step = max(across / width, down / height)
     if step < max(100 * EPSILON * farthest, NUMBER_MIN):
-        raise DesignError(
+        raise ArgumentError(
             f"the pixels would be {step:.3g} wide, no more than the rounding of coordinates of {farthest:g}",
             remedy="Show a larger region, or one nearer to the origin.",
         )
@@ -166,7 +227,7 @@ def _overlays(
     width: int,
     wanted: Iterable[str],
 ) -> list[Overlay]:
-    """Give the lines to be drawn on top: all lengths that are no widths in the design's units."""
+    """The lines to be drawn on top: all lengths that are no widths in the design's units."""
     wanted = set(wanted)
     pixel = (region[2] - region[0]) / width
     side = math.sqrt(width * (region[3] - region[1]) / pixel)
@@ -204,7 +265,7 @@ def _style(width: int, height: int, *, strokes: bool) -> PictureStyle:
 def _outlines(design: Design, *, needed: bool) -> list[Outline] | None:
     """Compute the tiles: a picture is drawn of what can be tiled, even if the outlines fail their proof."""
     try:
-        tiles, _ = proved_tiles(design.sites, design.group, design.lattice)
+        tiles, _ = proved_tiles(design.noded, design.group, design.lattice)
     except ProofError:
         if needed:
             raise
@@ -213,7 +274,7 @@ def _outlines(design: Design, *, needed: bool) -> list[Outline] | None:
 
 
 def _symbols(centres: Complexes, orders: NDArray[np.intp], radius: float) -> Complexes:
-    """Give the sides of the symbols of rotation centres: a lens for 2, else regular polygons; complex128 (n, 2)."""
+    """The sides of the symbols of rotation centres: a lens for 2, else regular polygons; complex128 (n, 2)."""
     sides = []
     for order in (2, 3, 4, 6):
         count = 4 if order == 2 else order
@@ -233,27 +294,27 @@ def _dots(pattern: Pattern, region: Region, style: PictureStyle) -> list[Overlay
     for site in pattern.sites:
         start, end = (site.elements[:, k] + 1j * site.elements[:, k + 1] for k in (0, 2))
         flat.append(np.stack((start, end), axis=1)[start == end])
-    return [Overlay(_everywhere(flat, pattern, region), _DOT * style.site, INK)]
+    return [Overlay(on_all_copies(flat, pattern, region), _DOT * style.site, INK)]
 
 
 def outline_segments(outlines: Sequence[Outline], pattern: Pattern, region: Region, *, accuracy: float) -> Complexes:
-    """Give the outlines of all copies that may show in a region as chords, within `accuracy` (in units): (n, 2)."""
+    """The outlines of all copies that may show in a region as chords, within `accuracy` (in units): (n, 2)."""
     flat = [
         np.concatenate([np.stack((ring, np.roll(ring, -1)), axis=1) for ring in outline.flatten(accuracy=accuracy)])
         for outline in outlines
     ]
-    return _everywhere(flat, pattern, region)
+    return on_all_copies(flat, pattern, region)
 
 
 def _art_segments(design: Design, pattern: Pattern, region: Region, *, accuracy: float) -> Complexes:
-    """Give the art on all copies that may show in a region as chords, within `accuracy` (in units): (n, 2).
+    """The art on all copies that may show in a region as chords, within `accuracy` (in units): (n, 2).
 
     Raises DesignError where the design has none, or it cannot be read.
     """
     from voronoi_tiles.fabrication.artwork import read_art
     from voronoi_tiles.paths.conversion import to_lines
 
-    flat = [np.zeros((0, 2), complex) for _ in design.sites]
+    flat = [np.zeros((0, 2), complex) for _ in design.noded]
     for site, art in enumerate(design.art):
         if art is not None:
             works = read_art(art, design.folder, site, design.unit_mm, fills=False)
@@ -265,11 +326,11 @@ def _art_segments(design: Design, pattern: Pattern, region: Region, *, accuracy:
             key="site[0].art",
             remedy='Give a site its drawing, as art = "face.svg" (voronoi-tiles template makes one to draw in).',
         )
-    return _everywhere(flat, pattern, region)
+    return on_all_copies(flat, pattern, region)
 
 
-def _everywhere(flat: Sequence[Complexes], pattern: Pattern, region: Region) -> Complexes:
-    """Give the segments (n, 2) of every site on all its copies that may show in a region: (m, 2)."""
+def on_all_copies(flat: Sequence[Complexes], pattern: Pattern, region: Region) -> Complexes:
+    """The segments (n, 2) of every site on all its copies that may show in a region: (m, 2)."""
     lattice = pattern.lattice
     corners = np.array([complex(x, y) for x in region[::2] for y in region[1::2]])
     found = []

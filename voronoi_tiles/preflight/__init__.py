@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import os
+import sys
 from collections.abc import Collection
 from dataclasses import replace
+from types import ModuleType
 
 import numpy as np
 
+from voronoi_tiles.base.files import write_whole
 from voronoi_tiles.formats.reading import DrawingError, ReadDrawing, read_drawing
 from voronoi_tiles.formats.recipe import tab_width
 from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.preflight.annotated import marked_svg
 from voronoi_tiles.preflight.cut_lines import cut_shapes, layer_uses, subject_of
 from voronoi_tiles.preflight.file_findings import page_findings
 from voronoi_tiles.preflight.findings import DEFAULT_LIMITS, Finding, LayerUse, Limits, PreflightReport, report_text
@@ -20,20 +24,35 @@ __all__ = ["Finding", "LayerUse", "Limits", "PreflightReport", "judge", "preflig
 
 
 def preflight(
-    path: str | os.PathLike[str], *, limits: Limits = DEFAULT_LIMITS, layers: Collection[str] = ()
+    path: str | os.PathLike[str],
+    *,
+    limits: Limits = DEFAULT_LIMITS,
+    layers: Collection[str] = (),
+    marked: str | os.PathLike[str] | None = None,
 ) -> PreflightReport:
     """Find what would spoil the cut of an SVG or DXF file; `-` is standard input.
 
     Only the `layers` (or colours "#rrggbb") are judged; without any, all strokes but those on layers whose names say
-    that they are engraved or scored. Raises DrawingError for what cannot be read, and for a layer that the file has
-    not.
+    that they are engraved or scored. With `marked` a picture of the drawing is written, an SVG file with a numbered
+    mark at every finding. Raises DrawingError for what cannot be read, and for a layer that the file has not, and
+    OutputError.
+
+    >>> import tempfile, voronoi_tiles as vt
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = vt.starter("p4m").tessellate().export(f"{folder}/pair.svg")
+    ...     report = vt.preflight(f"{folder}/pair.svg")
+    >>> report.passed, sorted({finding.kind for finding in report.findings})
+    (False, ['duplicate'])
     """
     name = os.fspath(path)
     shown = "standard input" if name == "-" else name
     try:
-        return judge(read_drawing(path), shown, limits=limits, layers=layers)
+        report = judge(read_drawing(path), shown, limits=limits, layers=[layers] if isinstance(layers, str) else layers)
     except DrawingError as error:
         raise error.with_file(shown) from None
+    if marked is not None:
+        write_whole(marked, marked_svg(report).encode())
+    return report
 
 
 def judge(
@@ -69,3 +88,12 @@ def judge(
         length=float(lengths.sum()),
         cut=tuple(cut),
     )
+
+
+class _CallableModule(ModuleType):
+    """This package as `vt.preflight`: its name and that of the function are one, and the import binds the package."""
+
+    __call__ = staticmethod(preflight)
+
+
+sys.modules[__name__].__class__ = _CallableModule

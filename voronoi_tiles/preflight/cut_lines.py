@@ -78,7 +78,7 @@ def subject_of(drawing: ReadDrawing, cut: Sequence[bool], limits: Limits) -> Cut
     if counts.sum() > _CHORDS_MAX:
         raise DrawingError(
             f"its curves take {counts.sum():,} chords at a tolerance of {limits.tolerance:g} mm",
-            remedy="Allow a larger --tolerance, or check the size of the drawing.",
+            remedy="Allow a larger `tolerance`, or check the size of the drawing.",
         )
     chords = chords_of(paths, counts, limits.tolerance)
     return CutLines(paths, owner, chosen, chords, drawing.format == "svg", drawing.height or 0.0)

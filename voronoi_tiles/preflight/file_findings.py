@@ -34,7 +34,10 @@ def page_findings(
         yield from _size(drawing, extents)
         if not any(use.cut for use in layers):
             yield Finding(
-                "empty", "error", "nothing is cut: all layers are named as not cut", "Name what is cut: --layer NAME."
+                "empty",
+                "error",
+                "nothing is cut: all layers are named as not cut",
+                "Name what is cut: `layers=['NAME']`.",
             )
         elif all(use.colour is None for use in layers):
             yield Finding(

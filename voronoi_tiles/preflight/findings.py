@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any, Final, Literal
 
+from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.text import printable
 from voronoi_tiles.formats.reading import ReadDrawing
 
 Severity = Literal["error", "warning", "info"]
 SEVERITIES: Final[tuple[Severity, ...]] = ("error", "warning", "info")
+
+LENGTH_MIN: Final = 1e-6
+"""Smallest distance at which lines are still two; millimetres. Files hold nanometres."""
 
 PLACES_SHOWN: Final = 20
 """How many places of one kind the text shows; a count. The document has them all."""
@@ -24,6 +29,7 @@ class Limits:
     Lines nearer than `tolerance` are one place; ends nearer than `gap` should have met; material narrower than `neck`
     and contours smaller than `feature` break or burn; pieces shorter than `shortest` are rubbish; corners sharper than
     `corner` burn. Gaps up to the width `tabs` are bridges that are meant; None takes what a file of our own says.
+    Raises ArgumentError for numbers that cannot be.
     """
 
     tolerance: float = 0.005
@@ -33,6 +39,15 @@ class Limits:
     shortest: float = 0.01
     corner: float = 20.0
     tabs: float | None = None
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            least = LENGTH_MIN if field.name == "tolerance" else 0.0
+            if not (value is None and field.name == "tabs") and not least <= value < math.inf:
+                raise ArgumentError(
+                    f"`{field.name}` {value!r} cannot be", remedy=f"Give a number of millimetres, {least:g} or more."
+                )
 
 
 DEFAULT_LIMITS: Final = Limits()
@@ -69,7 +84,7 @@ class LayerUse:
     cut: bool
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class PreflightReport:
     """All findings on one file; `extents` (least, then greatest x and y) are as places, None where nothing is drawn."""
 
@@ -84,6 +99,10 @@ class PreflightReport:
     shortest: float | None
     length: float
     cut: tuple[bool, ...] = ()
+
+    def __repr__(self) -> str:
+        kinds = ", ".join(dict.fromkeys(finding.kind for finding in self.findings)) or "nothing found"
+        return f"<PreflightReport {self.file!r}: {'passed' if self.passed else 'failed'}, {kinds}>"
 
     @property
     def passed(self) -> bool:

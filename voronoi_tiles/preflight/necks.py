@@ -16,7 +16,7 @@ from voronoi_tiles.preflight.contacts import run_beside
 _APPROACH: Final = 1e-6
 """By how much of its length a line may come nearer to be still parallel; no unit. Rounding leaves 1e-10."""
 
-_REMEDY: Final = "Split the drawing, or look for narrower necks, or for none: --neck 0."
+_REMEDY: Final = "Split the drawing, or look for narrower necks, or for none: `neck=0`."
 
 _WAYS: Final = 4_000_000  # lines that leave points, looked at at once
 _WAYS_MAX: Final = 200_000_000  # and altogether

@@ -69,14 +69,14 @@ def write_svg(drawing: Drawing, file: BinaryIO, *, exact: bool = False) -> None:
 
 
 def _style(layer: Layer) -> dict[str, Any]:
-    """Give the attributes of a layer's group."""
+    """The attributes of a layer's group."""
     if layer.filled:
         return {"fill": layer.colour, "stroke": "none"}
     return {"fill": "none", "stroke": layer.colour, "stroke_width": decimal_text(layer.stroke)}
 
 
 def _identifier(name: str) -> str:
-    """Give an XML name."""
+    """An XML name."""
     return _ODD.sub("-", name) or "layer"
 
 

@@ -1,0 +1,55 @@
+"""The command `check`: the exact outlines against an image."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from voronoi_tiles.cli.common import PATH, print_figures, refuse_output, reporting, say, say_written, shown, tessellate
+from voronoi_tiles.cli.options import with_method, with_renderer
+
+if TYPE_CHECKING:
+    from voronoi_tiles.raster.renderer import Choice, Method
+
+
+@click.command()
+@click.argument("design", type=PATH)
+@click.option(
+    "--size",
+    type=click.IntRange(16, 8192),
+    metavar="N",
+    help="Samples along the side of the cell [16 to 8192, which takes 4 GB; default: 1024].",
+)
+@with_method
+@with_renderer
+@click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")
+@click.option(
+    "-o", "--output", metavar="DIFF", type=PATH, help="Write a picture (.png) of where, and by how much, they differ."
+)
+def check(
+    design: str,
+    size: int | None,
+    method: Method,
+    renderer: Choice,
+    device: int | None,
+    as_json: bool,
+    output: str | None,
+) -> None:
+    """Check the exact outlines of a design against an image that is rendered by another method.
+
+    Every figure is printed with its limit and what that follows from. The exit code is 1 where they differ.
+    """
+    from voronoi_tiles.cli.tables import check_text
+
+    refuse_output(design, output, (".png",), stream=False)
+    with reporting(design):
+        tiling = tessellate(design)
+        report = tiling.check(samples=size, renderer=renderer, device=device, method=method, notice=say)
+        if output is not None:
+            tiling.difference(report).save(output)
+            say_written(output)
+    print_figures(tiling.evidence(report), check_text, as_json=as_json)
+    if not report.passed:
+        say(f"Error: {shown(design)}: the outlines failed the cross-check: {', '.join(report.failures)}.")
+        raise click.exceptions.Exit(1)

@@ -1,0 +1,135 @@
+"""The command `render`: a picture of the tessellation."""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from voronoi_tiles.cli.common import PATH, refuse_output, reporting, say, say_written
+from voronoi_tiles.cli.options import with_method, with_renderer
+
+if TYPE_CHECKING:
+    from voronoi_tiles.raster.renderer import Choice, Method
+
+_PATIENCE = 1.0
+"""After how long a progress bar appears; seconds."""
+
+
+def _read_size(_context: click.Context, _parameter: click.Parameter, text: str | None) -> int | tuple[int, int] | None:
+    """Read the size of a picture: "1600" or "1920x1080"."""
+    if text is None:
+        return None
+    sides = text.lower().split("x")
+    if len(sides) > 2 or not all(side.isascii() and side.isdigit() and len(side) < 10 for side in sides):
+        raise click.BadParameter(f"{text!r} is no size. Write 1600, or 1920x1080.")
+    numbers = [int(side) for side in sides]
+    return numbers[0] if len(numbers) == 1 else (numbers[0], numbers[1])
+
+
+def _read_region(
+    _context: click.Context, _parameter: click.Parameter, text: str | None
+) -> tuple[float, float, float, float] | None:
+    """Read a rectangle: "0,0,120,60"."""
+    if text is None:
+        return None
+    try:
+        x0, y0, x1, y1 = (float(part) for part in text.split(","))
+    except ValueError:
+        raise click.BadParameter(f"{text!r} is no rectangle. Write X0,Y0,X1,Y1, such as 0,0,120,60.") from None
+    return x0, y0, x1, y1
+
+
+@click.command()
+@click.argument("design", type=PATH)
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    metavar="PICTURE",
+    type=PATH,
+    help="The file to write (.png); - for standard output.",
+)
+@click.option(
+    "--size",
+    metavar="N|WxH",
+    callback=_read_size,
+    help="The longer side in pixels, or both: then the region grows to the picture's shape [default: 1600].",
+)
+@click.option(
+    "--region",
+    metavar="X0,Y0,X1,Y1",
+    callback=_read_region,
+    help="The rectangle to show, in the design's units [default: two cells each way, which repeat seamlessly].",
+)
+@click.option(
+    "--overlay",
+    multiple=True,
+    type=click.Choice(("symmetry", "cell", "outline", "art")),
+    help="Draw on top: mirrors, glides and rotation centres; the cell; the exact outlines; the sites' art in the place "
+    "of their strokes. May be repeated.",
+)
+@with_method
+@with_renderer
+@click.option("-q", "--quiet", is_flag=True, help="Report only what fails.")
+def render(
+    design: str,
+    output: str,
+    size: int | tuple[int, int] | None,
+    region: tuple[float, float, float, float] | None,
+    overlay: tuple[str, ...],
+    method: Method,
+    renderer: Choice,
+    device: int | None,
+    quiet: bool,
+) -> None:
+    """Write a picture (PNG) of the tessellation: coloured tiles, their borders, and the strokes that made them."""
+    from voronoi_tiles.designs.design import Design
+    from voronoi_tiles.pictures.rendering import DEFAULT_SIZE
+    from voronoi_tiles.pictures.rendering import render as render_picture
+
+    refuse_output(design, output, (".png",))
+    with reporting(design), _progress(quiet) as progress:
+        provenance = render_picture(
+            Design.load(design),
+            output,
+            size=DEFAULT_SIZE if size is None else size,
+            region=region,
+            overlay=overlay,
+            method=method,
+            renderer=renderer,
+            device=device,
+            notice=say,
+            progress=progress,
+        )
+    if not quiet:
+        say_written(output, provenance)
+
+
+@contextmanager
+def _progress(quiet: bool) -> Iterator[Callable[[int, int], None]]:
+    """Show a bar on a terminal for what takes longer than a second."""
+    begun = time.monotonic()
+    bar: Any = None
+
+    def step(done: int, total: int) -> None:
+        nonlocal bar
+        if bar is None and not quiet and done < total and time.monotonic() - begun > _PATIENCE and sys.stderr.isatty():
+            from rich.console import Console
+            from rich.progress import Progress
+
+            bar = Progress(console=Console(stderr=True), transient=True)
+            bar.add_task("rendering", total=total)
+            bar.start()
+        if bar is not None:
+            bar.update(bar.task_ids[0], completed=done)
+
+    try:
+        yield step
+    finally:
+        if bar is not None:
+            bar.stop()

@@ -1,0 +1,118 @@
+"""A site as it is drawn: the strokes of one tile shape, with its name, tolerance and art."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.base.values import shown
+from voronoi_tiles.designs.art import Art
+from voronoi_tiles.designs.coordinates import GeoInterface, PathData, PointLike, pair
+from voronoi_tiles.designs.drawn_strokes import Stroke, drawn_lines, path, stroke_of
+from voronoi_tiles.designs.schema import placement
+
+Drawn: TypeAlias = Stroke | GeoInterface | PathData
+"""What a site is made of: strokes, and geometries, whose points are points and whose lines are polylines."""
+
+
+@dataclass(frozen=True, init=False, repr=False)
+class Site:
+    """One tile shape: the strokes of a site, which may meet, cross and branch.
+
+    `strokes` are strokes, geometries, of which each point, line and ring is a stroke, or paths of svgpathtools. The
+    name None is "site1", "site2", ... by the place in the design. Curves are flattened to within `tolerance`, in the
+    design's units; None is 0.01 mm. `art` is a drawing that every copy carries, or its file.
+
+    >>> import voronoi_tiles as vt
+    >>> vt.Site([vt.segment(5 + 3j, 25 + 11j), vt.circle(9j, 2)], name="bird")
+    <Site 'bird': 2 strokes>
+    """
+
+    strokes: tuple[Stroke, ...]
+    name: str | None
+    tolerance: float | None
+    art: Art | None
+
+    def __init__(
+        self,
+        strokes: Iterable[Drawn],
+        *,
+        name: str | None = None,
+        tolerance: float | None = None,
+        art: Art | str | os.PathLike[str] | None = None,
+    ) -> None:
+        """Describe a site. Raises DesignError for what is no stroke and no geometry."""
+        if isinstance(strokes, Stroke | GeoInterface | PathData):
+            strokes = (strokes,)
+        if isinstance(strokes, str | Mapping) or not isinstance(strokes, Iterable):
+            raise DesignError(
+                f"must be a sequence of strokes, not {shown(strokes)}",
+                key="strokes",
+                remedy="Write [segment(5+3j, 25+11j)].",
+            )
+        parts = [part for k, item in enumerate(strokes) for part in _drawn(item, k).parts]
+        object.__setattr__(self, "strokes", tuple(parts))
+        object.__setattr__(self, "name", name)
+        object.__setattr__(self, "tolerance", tolerance)
+        object.__setattr__(self, "art", art if art is None or isinstance(art, Art) else Art(art))
+
+    def __repr__(self) -> str:
+        count = len(self.strokes)
+        return f"<Site {self.name!r}: {count} stroke{'s' * (count != 1)}>"
+
+    @property
+    def table(self) -> dict[str, Any]:
+        """The site as in a design file."""
+        found = {"name": self.name, "tolerance": self.tolerance, "art": None if self.art is None else self.art.table}
+        return {
+            **{name: value for name, value in found.items() if value is not None},
+            "strokes": [stroke.table for stroke in self.strokes],
+        }
+
+    def moved(
+        self, *, mirror: bool = False, scale: float = 1.0, rotate: float = 0.0, translate: PointLike = 0j
+    ) -> Site:
+        """The same site with all its strokes and its art moved, in the order of the arguments, about the origin.
+
+        `mirror` is x -> -x, `rotate` in degrees counter-clockwise. Raises DesignError where a path, or art, is to be
+        mirrored.
+        """
+        by = placement({"scale": scale, "rotate": rotate, "translate": pair(translate)})
+        if mirror and self.art is not None:
+            raise DesignError("art cannot be mirrored", key="art", remedy="Mirror the drawing in its own program.")
+        strokes = [(stroke.mirrored() if mirror else stroke).placed(by) for stroke in self.strokes]
+        art = None if self.art is None else self.art.placed(by)
+        return Site(strokes, name=self.name, tolerance=self.tolerance, art=art)
+
+
+def _drawn(item: object, index: int) -> Stroke:
+    """What a site is given as one stroke, of several parts where it is a geometry of several."""
+    try:
+        match item:
+            case Stroke():
+                return item
+            case GeoInterface():
+                return drawn_lines(item)
+            case PathData():
+                return path(item)
+    except DesignError as error:
+        raise error.under(f"strokes[{index}]") from None
+    raise DesignError(
+        f"must be a stroke or a geometry, not {shown(item)}",
+        key=f"strokes[{index}]",
+        remedy="Make one with segment(5+3j, 25+11j), or the like.",
+    )
+
+
+def site_of(table: Mapping[str, Any], name: str) -> Site:
+    """The site of a table that has been checked; `name` is what it is called where the table does not say."""
+    art = table.get("art")
+    return Site(
+        [stroke_of(stroke) for stroke in table["strokes"]],
+        name=table.get("name", name),
+        tolerance=table.get("tolerance"),
+        art=Art(**art) if isinstance(art, Mapping) else art,
+    )

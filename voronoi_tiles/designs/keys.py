@@ -1,0 +1,59 @@
+"""Keys of a design file as values that compare and hash: those that say no more than their default are left out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, Final
+
+import numpy as np
+
+from voronoi_tiles.base.maps import Placement
+
+Keys = tuple[tuple[str, Any], ...]
+"""Keys and values, a stroke's own key first and its placement last; arrays are tuples."""
+
+DEFAULTS: Final[Mapping[str, Any]] = {
+    "closed": False,
+    "alpha": 0.5,
+    "scale": 1.0,
+    "rotate": 0.0,
+    "translate": (0.0, 0.0),
+}
+"""What the keys of strokes and art mean where they are not written."""
+
+
+_LAST: Final = ("tangents", "radius", "alpha", "closed", "scale", "rotate", "translate")
+
+
+def keys_of(table: Mapping[str, Any]) -> Keys:
+    """The keys of a table that say something."""
+    frozen = ((name, _frozen(table[name])) for name in sorted(table, key=_rank))
+    return tuple((name, value) for name, value in frozen if not _is_default(name, value))
+
+
+def _rank(name: str) -> int:
+    return _LAST.index(name) if name in _LAST else -1
+
+
+def _is_default(name: str, value: object) -> bool:
+    default = DEFAULTS.get(name)
+    return default is not None and isinstance(value, bool) == isinstance(default, bool) and bool(value == default)
+
+
+def _frozen(value: Any) -> Any:
+    """A value with tuples in the place of lists and arrays."""
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    return tuple(map(_frozen, value)) if isinstance(value, list | tuple) else value
+
+
+def placement_of(keys: Keys) -> Placement:
+    """Where something is laid, by its keys, which have been checked."""
+    table = {**DEFAULTS, **dict(keys)}
+    return Placement(table["scale"], table["rotate"], complex(*table["translate"]))
+
+
+def keys_of_placement(placement: Placement) -> dict[str, Any]:
+    """A placement as keys."""
+    shift = placement.translate
+    return {"scale": placement.scale, "rotate": placement.rotate, "translate": (shift.real, shift.imag)}

@@ -1,0 +1,73 @@
+"""A design as TOML, as people write it: a stroke a line, points wrapped."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from typing import Any, Final
+
+from voronoi_tiles.base.errors import DesignError
+
+_WIDTH: Final = 110
+"""Where the points of a stroke are wrapped; characters."""
+
+
+def toml_text(design: Mapping[str, Any]) -> str:
+    """The table of a design, checked, as TOML.
+
+    Raises DesignError for texts that UTF-8 does not have, as names of files may be.
+    """
+    lines = [f"{key} = {_value(design[key])}" for key in ("schema", "group", "units")]
+    lines += ["", "[cell]", *(f"{key} = {_value(value)}" for key, value in design["cell"].items())]
+    for site in design["site"]:
+        lines += ["", "[[site]]"]
+        lines += [f"{key} = {_value(value)}" for key, value in site.items() if key != "strokes"]
+        lines += ["strokes = [", *(f"  {_wrapped(_value(stroke))}," for stroke in site["strokes"]), "]"]
+    return "\n".join(lines) + "\n"
+
+
+def _value(value: Any) -> str:
+    """A value on one line."""
+    match value:
+        case bool():
+            return "true" if value else "false"
+        case str():
+            return _text(value)
+        case Mapping():
+            return f"{{ {', '.join(f'{key} = {_value(item)}' for key, item in value.items())} }}"
+        case list() | tuple():
+            return f"[{', '.join(map(_value, value))}]"
+    number = float(value)
+    return repr(int(number)) if number.is_integer() else repr(number)  # repr has the digits that give the same bits
+
+
+def _text(text: str) -> str:
+    """A text in quotes: what JSON escapes TOML does too, and DEL."""
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        raise DesignError(
+            f"{text!r} is no text that a file can hold", key="art.file", remedy="Rename the drawing."
+        ) from None
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _wrapped(stroke: str) -> str:
+    """A stroke with line breaks between its points, where it is long; TOML allows them inside an array."""
+    if len(stroke) <= _WIDTH:
+        return stroke
+    return "\n    ".join(_filled(stroke.split("], ["), "], ["))
+
+
+def _filled(parts: Iterable[str], joint: str) -> list[str]:
+    """Parts joined to lines of up to _WIDTH characters; a line ends with the first half of a joint."""
+    before, after = joint.split(" ")
+    lines = [""]
+    for k, part in enumerate(parts):
+        lead = "" if k == 0 else joint
+        if k and len(lines[-1]) + len(lead) + len(part) > _WIDTH:
+            lines[-1] += before
+            lines.append(after + part)
+        else:
+            lines[-1] += lead + part
+    return lines

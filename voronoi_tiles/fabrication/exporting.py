@@ -1,0 +1,98 @@
+"""Products written as files: whole or not at all, a file for each colour, and never over what they are made from."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable
+from contextlib import ExitStack
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from voronoi_tiles.base.errors import OutputError
+from voronoi_tiles.base.files import STDOUT, is_special, writing
+from voronoi_tiles.designs.design import Design
+from voronoi_tiles.fabrication.job import ACCURACY_MM, Job
+from voronoi_tiles.fabrication.job_options import JobError
+from voronoi_tiles.formats.page import Drawing
+from voronoi_tiles.formats.writing import FORMATS, write_drawing
+from voronoi_tiles.vector.tessellation import Tessellation
+
+if TYPE_CHECKING:
+    from voronoi_tiles.fabrication.product import Product
+
+
+class Exported(NamedTuple):
+    """A file that was written, and the product in it; None where it holds the exact tiles as they lie in the plane."""
+
+    path: str
+    product: Product | None
+
+
+def format_of(path: str | os.PathLike[str], formats: Iterable[str]) -> str:
+    """The format that a file's suffix names. Raises OutputError where it names none of these."""
+    suffix = Path(path).suffix.lower().removeprefix(".")
+    formats = tuple(formats)
+    if suffix not in formats:
+        suffixes = " or ".join(f".{name}" for name in formats)
+        raise OutputError(f"cannot tell the format of {os.fspath(path)!r}: give it the suffix {suffixes}", path=path)
+    return suffix
+
+
+def write_products(
+    design: Design,
+    tessellation: Tessellation,
+    path: str,
+    file_format: str,
+    job: Job,
+    finish: Callable[[Product], Product],
+) -> tuple[Exported, ...]:
+    """Write the files of a job: one, or one for each colour, with its number before the suffix.
+
+    `finish` is what is still done to a product. A job that cannot be done leaves nothing, and no file takes its place
+    before all are written. Raises JobError, and OutputError where a file cannot be written, or the job reads it.
+    """
+    from voronoi_tiles.fabrication.product import make, make_colours
+
+    if job.colours != "files":
+        products = {path: make(design, tessellation, job, file_format)}
+    elif path == STDOUT or is_special(path):
+        raise JobError(
+            "`colours='files'`: several files need a name that they can begin with",
+            remedy="Write to a file such as sheet.svg.",
+        )
+    else:
+        place = Path(path)
+        products = {
+            str(place.with_name(f"{place.stem}-{name}{place.suffix}")): product
+            for name, product in make_colours(design, tessellation, job, file_format)
+        }
+    refuse_overwriting(design, job, products)
+    with ExitStack() as stack:
+        for name, product in products.items():
+            finish(product).write(stack.enter_context(writing(name)))
+    return tuple(Exported(name, product) for name, product in products.items())
+
+
+def refuse_overwriting(design: Design, job: Job | None, targets: Iterable[str]) -> None:
+    """Refuse to overwrite what a job is made from: the sheet's drawing, the preset, the art. Raises OutputError."""
+    read = [os.path.join(design.folder, art.file) for art in design.art if art is not None]  # noqa: PTH118 - any name
+    if job is not None:
+        read += [name for name in (job.sheet, job.preset) if isinstance(name, str)]
+    known = {os.path.realpath(name) for name in read}
+    for target in targets:
+        if os.path.realpath(target) in known:
+            raise OutputError(
+                f"{target} is read for this job, and would be overwritten", path=target, remedy="Choose another name."
+            )
+
+
+def drawing_format(path: str | os.PathLike[str]) -> str:
+    """The format of a drawing by its file's suffix, SVG without one. Raises OutputError for another."""
+    return format_of(path, FORMATS) if Path(path).suffix else "svg"
+
+
+def save_drawing(drawing: Drawing, path: str | os.PathLike[str]) -> None:
+    """Write a drawing that is no tiling's, whole or not at all. Raises OutputError."""
+    form = drawing_format(path)
+    with writing(path) as file:
+        write_drawing(drawing, file, form, accuracy=ACCURACY_MM)

@@ -1,0 +1,190 @@
+"""What the options of a job are: what each takes, its default, and what it means, for Python and the command line.
+
+An option is a field of a Job, as a descriptor: whatever it is given is read when the job is made, so that the job holds
+numbers of millimetres, whatever texts it was made of. `help` is what `voronoi-tiles export --help` says of it.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable
+from typing import Any, Final, Generic, Literal, TypeAlias, TypeVar, cast, get_args
+
+from voronoi_tiles.base.errors import ArgumentError, DesignError
+from voronoi_tiles.base.units import parse_length, parse_size
+
+SHEET_MAX: Final = 100_000.0
+"""Largest side of a sheet, and largest length of an option; millimetres."""
+
+SHEET_MIN: Final = 0.1
+"""Smallest side of a sheet; millimetres."""
+
+Given = TypeVar("Given")
+Kept = TypeVar("Kept")
+Kind = Literal["length", "angle", "word", "flag", "text", "number"]
+
+SheetSize: TypeAlias = tuple[float, float] | str | os.PathLike[str] | None
+Offset: TypeAlias = complex | tuple[float | str, float | str] | str | None
+
+
+class JobError(ArgumentError):
+    """A job that cannot be done; `message` without a full stop, `remedy` a sentence, `fields` names its options."""
+
+
+class Option(Generic[Given, Kept]):
+    """An option of a job: `read` makes what is kept of what is given under a name; `words` are those that it takes."""
+
+    def __init__(
+        self,
+        default: Kept,
+        read: Callable[[str, Any], Kept],
+        help: str,  # noqa: A002 - the word that click has for it
+        *,
+        kind: Kind,
+        shown: str = "",
+        words: tuple[str, ...] = (),
+    ) -> None:
+        self.default = default
+        self.help = help
+        self.kind = kind
+        self.shown = shown
+        self.words = words
+        self._read = read
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, job: object | None, owner: type | None = None) -> Kept:
+        return self.default if job is None else cast("Kept", job.__dict__[self.name])
+
+    def __set__(self, job: object, value: Given) -> None:
+        job.__dict__[self.name] = self._read(self.name, value)
+
+
+Length: TypeAlias = Option[float | str, float]
+Choice: TypeAlias = Option[Kept, Kept]
+Flag: TypeAlias = Option[bool, bool]
+
+
+def length(
+    default: Kept,
+    help: str,  # noqa: A002 - as in Option
+    *,
+    least: float = 0.0,
+    most: float = SHEET_MAX,
+    shown: str = "LENGTH",
+) -> Option[float | str | Kept, float | Kept]:
+    """An option that takes a length from `least` to `most`, or None where that is the default."""
+
+    def read(name: str, value: object) -> float | Kept:
+        if value is None and default is None:
+            return default
+        size = read_number(name, value)
+        if not least <= size <= most:
+            raise JobError(f"`{name}` {size:g} mm cannot be", remedy=f"Give a length from {least:g} to {most:,.0f} mm.")
+        return size
+
+    return Option(default, read, help, kind="length", shown=shown)
+
+
+def choice(default: Any, kind: Any, help: str) -> Option[Any, Any]:  # noqa: A002 - as in Option
+    """An option that takes one of some words, those of a Literal; None where that is the default."""
+    words = get_args(kind)
+
+    def read(name: str, value: object) -> object:
+        if not (value in words or (value is None and default is None)):
+            raise JobError(f"`{name}` {value!r} is unknown", remedy=f"Use one of {', '.join(words)}.")
+        return value
+
+    return Option(default, read, help, kind="word", words=words)
+
+
+def flag(help: str) -> Flag:  # noqa: A002 - as in Option
+    """An option that is given or not."""
+
+    def read(name: str, value: object) -> bool:
+        if not isinstance(value, bool):
+            raise JobError(f"`{name}` {value!r} cannot be", remedy="Use True or False.")
+        return value
+
+    return Option(False, read, help, kind="flag")
+
+
+def read_text(name: str, value: object) -> str:
+    """Read a name, or the path of a file. Raises JobError."""
+    if isinstance(value, os.PathLike):
+        value = os.fspath(value)
+    if not isinstance(value, str):
+        raise JobError(f"`{name}` {value!r} cannot be", remedy="Give a name, or the path of a TOML file.")
+    return value
+
+
+def read_angle(name: str, value: object) -> float:
+    """Read an angle; degrees. Raises JobError."""
+    angle = read_number(name, value)
+    if not math.isfinite(angle):
+        raise JobError(f"`{name}` {value!r} is not a number", remedy="Give a finite number of degrees.")
+    return angle
+
+
+def read_colour(name: str, value: object) -> int | None:
+    """Read the number of a colour. Raises JobError."""
+    if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
+        raise JobError(f"`{name}` {value!r} cannot be", remedy="Give the number of a colour, from 0.")
+    return value
+
+
+def read_sheet(name: str, value: Any) -> tuple[float, float] | str | None:
+    """Read a sheet: two numbers, the text of a size, or the name of a drawing. Raises JobError."""
+    remedy = 'Give two numbers of millimetres, "600x300mm", or the name of an SVG or DXF file.'
+    if isinstance(value, os.PathLike):
+        value = os.fspath(value)
+        if isinstance(value, str):
+            return value
+    if value is None or (isinstance(value, str) and value.lower().endswith((".svg", ".svgz", ".dxf"))):
+        return value
+    try:
+        width, height = parse_size(value) if isinstance(value, str) else value
+    except DesignError as error:
+        raise JobError(f"`{name}`: {error.message}", remedy=remedy) from error
+    except (TypeError, ValueError) as error:
+        raise JobError(f"`{name}` {value!r} cannot be", remedy=remedy) from error
+    width, height = read_number(name, width), read_number(name, height)
+    if not (SHEET_MIN <= width <= SHEET_MAX and SHEET_MIN <= height <= SHEET_MAX):
+        raise JobError(
+            f"`{name}`: {width:g} x {height:g} mm cannot be",
+            remedy=f"Give a size such as 600x300mm, with sides from {SHEET_MIN:g} to {SHEET_MAX:,.0f} mm.",
+        )
+    return width, height
+
+
+def read_offset(name: str, value: Any) -> complex | None:
+    """Read an offset: a complex number, two lengths, or a text of two, "3mm,-2mm". Raises JobError."""
+    if value is None:
+        return None
+    if isinstance(value, complex):
+        value = (value.real, value.imag)
+    elif isinstance(value, int | float) and not isinstance(value, bool):
+        value = (value, 0.0)
+    try:
+        x, y = value.split(",") if isinstance(value, str) else value
+    except (TypeError, ValueError, AttributeError) as error:
+        raise JobError(f"`{name}` {value!r} cannot be", remedy="Give two lengths, such as 3mm,-2mm.") from error
+    place = complex(read_number(name, x), read_number(name, y))
+    if not abs(place) <= SHEET_MAX:
+        raise JobError(f"`{name}` {value!r} is not a number, or too large", remedy="Give finite numbers.")
+    return place
+
+
+def read_number(name: str, value: object) -> float:
+    """Read a length, or an angle, that is a number or a text. Raises JobError."""
+    remedy = 'Give a number of millimetres, or a text: "0.15mm".'
+    try:
+        if isinstance(value, str):
+            return parse_length(value)
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise JobError(f"`{name}` {value!r} cannot be", remedy=remedy)
+        return float(value)
+    except (DesignError, OverflowError) as error:
+        raise JobError(f"`{name}` {value!r} cannot be", remedy=remedy) from error

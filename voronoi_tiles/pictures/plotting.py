@@ -1,0 +1,71 @@
+"""Tiles on the axes of matplotlib, which is there for those who have it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any, assert_never
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Floats
+from voronoi_tiles.base.errors import MissingLibraryError
+from voronoi_tiles.vector.arcs import LineArc, ParabolaArc
+from voronoi_tiles.vector.outline import Outline
+
+
+def axes_of(axes: Any) -> Any:
+    """The axes to draw on, those of the current figure where there are none given, with one scale both ways.
+
+    Raises MissingLibraryError where matplotlib is not installed.
+    """
+    try:
+        import matplotlib.pyplot as plt
+    except ImportError as error:
+        raise MissingLibraryError(
+            "plots are drawn by matplotlib, which is not installed", remedy="Install it: pip install matplotlib."
+        ) from error
+    axes = plt.gca() if axes is None else axes
+    axes.set_aspect("equal")
+    return axes
+
+
+def plot_tiles(axes: Any, tiles: Iterable[tuple[Outline, Floats | None]], colours: Iterable[Any]) -> None:
+    """Draw outlines, filled with a colour each, and the elements (k, 4) of their sites, where they are given.
+
+    A parabola's arc is exactly one curve of matplotlib's. Coordinates are the design's, y up.
+    """
+    from matplotlib.collections import LineCollection
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path
+
+    for (outline, elements), colour in zip(tiles, colours, strict=False):
+        points: list[complex] = []
+        codes: list[int] = []
+        for ring in outline.rings:
+            points.append(ring[0].start)
+            codes.append(Path.MOVETO)
+            for arc in ring:
+                match arc:
+                    case LineArc(_, end):
+                        points.append(end)
+                        codes.append(Path.LINETO)
+                    case ParabolaArc(_, control, end):
+                        points += [control, end]
+                        codes += [Path.CURVE3] * 2
+                    case _:
+                        assert_never(arc)
+            points.append(ring[0].start)
+            codes.append(Path.CLOSEPOLY)
+        place = np.array(points)
+        axes.add_patch(
+            PathPatch(
+                Path(np.stack((place.real, place.imag), axis=1), codes),
+                facecolor=colour,
+                edgecolor="black",
+                linewidth=0.8,
+            )
+        )
+        if elements is not None:
+            lines = elements.reshape(-1, 2, 2)
+            axes.add_collection(LineCollection(lines, colors="#b03020", linewidths=1.5, capstyle="round"))
+    axes.autoscale_view()

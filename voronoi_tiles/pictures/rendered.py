@@ -1,0 +1,50 @@
+"""A picture that was rendered into memory."""
+
+from __future__ import annotations
+
+import io
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+from voronoi_tiles.base.files import write_whole
+from voronoi_tiles.formats.png import PngStream
+from voronoi_tiles.raster.picture import Pixels
+from voronoi_tiles.raster.renderer import Provenance
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Rendering:
+    """A picture: `pixels` is uint8 (rows, columns, 3), red, green, blue, the first row the upper one.
+
+    `text` and `trailer` are what its PNG says, and `pixels_per_metre` its scale; `provenance` tells who rendered it.
+    """
+
+    pixels: Pixels
+    text: Mapping[str, str] = field(default_factory=dict)
+    pixels_per_metre: float | None = None
+    trailer: Mapping[str, str] = field(default_factory=dict)
+    provenance: Provenance | None = None
+
+    def __repr__(self) -> str:
+        rows, columns, _ = self.pixels.shape
+        return f"<Rendering {columns} x {rows}: {self.provenance}>"
+
+    @cached_property
+    def png(self) -> bytes:
+        """The picture as a PNG file."""
+        rows, columns, _ = self.pixels.shape
+        buffer = io.BytesIO()
+        with PngStream(buffer, columns, rows, pixels_per_metre=self.pixels_per_metre, text=self.text) as png:
+            png.write(self.pixels)
+            png.trailer.update(self.trailer)
+        return buffer.getvalue()
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the PNG file, whole or not at all. Raises OutputError."""
+        write_whole(path, self.png)
+
+    def _repr_png_(self) -> bytes:
+        """Show the picture: notebooks do."""
+        return self.png
