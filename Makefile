@@ -8,7 +8,7 @@
 #   make gallery the pictures of docs/gallery.md     make diagrams  the drawings of the other pages
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-slow lint format types bench fuzz docs paper gallery diagrams clean
+.PHONY: help demo test test-slow test-pythons lint format types bench fuzz docs paper gallery diagrams clean
 .DELETE_ON_ERROR:
 
 PYTHON ?= python3
@@ -61,6 +61,12 @@ test: $(INSTALLED_DEV)
 test-slow: $(INSTALLED_DEV)
 	$(VENV)/bin/python -m pytest -m slow -n auto --dist worksteal $(PYTEST)
 
+test-pythons:
+	set -e; found=$$($(PYTHON) .ci/pythons.py); echo "$${found:-No other CPython from 3.11 on is here.}"; \
+	echo "$$found" | while read -r version python; do \
+	    test -z "$$python" || $(MAKE) test VENV=$(VENV)-$$version PYTHON=$$python || exit 1; \
+	done
+
 lint: $(INSTALLED_DEV)
 	$(VENV)/bin/ruff check .
 	$(VENV)/bin/ruff format --check .
@@ -84,7 +90,7 @@ $(INSTALLED_TYPES): $(TYPES_VENV)/.created $(SOURCES)
 # From inside the environment, where the folder voronoi_tiles/ of the checkout cannot shadow the installed package.
 types: $(INSTALLED_TYPES)
 	cd $(TYPES_VENV) && bin/mypy --config-file $(abspath pyproject.toml) --cache-dir cache -p voronoi_tiles
-	cd $(TYPES_VENV) && bin/mypy --config-file $(abspath pyproject.toml) --cache-dir cache $(abspath tests bench docs)
+	cd $(TYPES_VENV) && bin/mypy --config-file $(abspath pyproject.toml) --cache-dir cache $(abspath tests bench docs .ci/pythons.py)
 
 bench: $(INSTALLED_DEV)
 	$(VENV)/bin/python bench/engine.py --write
@@ -112,5 +118,5 @@ diagrams: $(INSTALLED_DOCS)
 	$(VENV)/bin/python docs/generate/diagrams.py
 
 clean:
-	rm -rf $(VENV) $(TYPES_VENV) $(DEMO) docs/_build build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(VENV)-3.* $(TYPES_VENV) $(DEMO) docs/_build build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
