@@ -132,15 +132,16 @@ def even_stretches(runs: SmoothRuns, stretches: Stretches, bound: float) -> Stre
 def _moved(runs: SmoothRuns, stretches: Stretches, error: Floats, first: Ints) -> Stretches:
     """Cut each run into as many stretches again, of equal shares of the cube root of the error."""
     run = stretches.run
-    count = np.diff(np.append(first, len(run)))[run]
+    offsets = np.append(first, len(run))
+    count = np.diff(offsets)[run]
     root = np.cbrt(np.clip(error, 1e-6, 1e3))
     weight = np.ceil(root * 2.0**30).astype(np.int64)  # whole numbers add up without rounding
     sums = np.append(0, np.cumsum(weight))
-    total = (sums[np.append(first[1:], len(run))] - sums[first])[run]
+    total = (sums[offsets[1:]] - sums[first])[run]
     before = (sums[:-1] - sums[first][run]).astype(np.float64)
     number = np.arange(len(run)) - first[run]
     target = total * (number / count)
-    at = last_up_to(before, first[run], first[run] + count, target)
+    at = last_up_to(before, offsets, run, target)
     share = (target - before[at]) / weight[at]
     low = np.where(number == 0, 0.0, stretches.low[at] + share * (stretches.high[at] - stretches.low[at]))
     last = number == count - 1

@@ -47,7 +47,7 @@ class SmoothRuns:
 
     def locate(self, run: Ints, place: Floats, *, before: bool) -> tuple[Ints, Floats]:
         """The pieces and parameters at places; at a joint, those of the piece before it or of the one after it."""
-        piece = last_up_to(self.begin, self.first[run], self.first[run + 1], place)
+        piece = last_up_to(self.begin, self.first, run, place)
         t = np.clip((place - self.begin[piece]) / self.size[piece], 0.0, 1.0)
         t = np.where(t < _SNAP, 0.0, np.where(t > 1 - _SNAP, 1.0, t))
         back = before & (t == 0.0) & (piece > self.first[run])
@@ -60,17 +60,15 @@ class SmoothRuns:
         return x, y
 
 
-def last_up_to(values: Floats, first: Ints, end: Ints, limit: Floats) -> Ints:
-    """The last place from `first` up to `end`, not including, whose value is at most `limit`; else the first place.
+def last_up_to(values: Floats, first: Ints, row: Ints, limit: Floats) -> Ints:
+    """The last place in each `row` whose value is at most the `limit`, or the row's first.
 
-    `values` ascend between each pair of `first` and `end`.
+    `values` has the rows one after the other, each ascending; row k are the places from first[k] up to first[k + 1].
     """
-    low, high = first, end - 1
-    while np.any(low < high):
-        middle = (low + high + 1) // 2
-        later = values[middle] <= limit
-        low, high = np.where(later, middle, low), np.where(later, high, middle - 1)
-    return low
+    owner = np.repeat(np.arange(len(first) - 1), np.diff(first))
+    # Complex numbers are in the order of their real parts, and where these are equal, of their imaginary parts.
+    after = np.searchsorted(owner + 1j * values, row + 1j * limit, side="right")
+    return np.maximum(after - 1, first[row])
 
 
 def tangents(x: Floats, y: Floats, t: Floats | float, *, ahead: bool) -> tuple[Floats, Floats]:
