@@ -135,7 +135,7 @@ def runs_of(paths: Paths) -> SmoothRuns:
     """The one run that the quadratic curves of a path are."""
     p0, p1, p2 = paths.start, paths.control[:, 0], paths.end
     c = np.stack((p0, (p1 - p0) * (2 / 3), (p0 - 2 * p1 + p2) / 3, 0 * p0))
-    return SmoothRuns.of_pieces(c.real.copy(), c.imag.copy(), np.array([0, len(p0)]))
+    return SmoothRuns.of_segments(c.real.copy(), c.imag.copy(), np.array([0, len(p0)]))
 
 
 @pytest.mark.parametrize("accuracy", [0.05, 0.01, 0.005, 0.0005])

@@ -1,6 +1,6 @@
 """How far a line, an arc or a biarc is from a stretch of a smooth run of curves: bounds, not samples.
 
-Along a polynomial piece the equation of a circle is a polynomial; its Bernstein coefficients bound it everywhere.
+Along a polynomial segment the equation of a circle is a polynomial; its Bernstein coefficients bound it everywhere.
 """
 
 from __future__ import annotations
@@ -85,7 +85,7 @@ def fit(runs: SmoothRuns, run: Ints, low: Floats, high: Floats) -> Fit:
     all possible joints lie (the middle of that circle's arc without such a place), moved once so that the errors of
     the two arcs come closer to each other.
 
-    Bounds: on a polynomial piece F(d) = k |d|^2 / 2 - n d (k the circle's curvature, n its normal at the origin)
+    Bounds: on a polynomial segment F(d) = k |d|^2 / 2 - n d (k the circle's curvature, n its normal at the origin)
     is a polynomial, so the largest of its Bernstein coefficients, M, bounds it, and a point with |F| <= M is within
     2 M / (1 + sqrt(1 - 2 |k| M)) of the circle. Where the curve also runs round the circle in one sense, from the
     arc's beginning to its end, every point of the one has a partner on the same radius, and this holds for the
@@ -244,25 +244,25 @@ def _halves(b: Floats, t: Floats) -> tuple[Floats, Floats]:
 
 
 def _cut(runs: SmoothRuns, run: Ints, low: Floats, high: Floats) -> tuple[_ParameterParts, _StretchEnds]:
-    """Cut stretches at the joints of pieces and into about _PARTS parts; also the ends of the stretches."""
+    """Cut stretches at the joints of segments and into about _PARTS parts; also the ends of the stretches."""
     begin, at = runs.locate(run, low, before=False)
     last, until = runs.locate(run, high, before=True)
     last = np.maximum(last, begin)
     count = last - begin + 1
     owner = np.repeat(np.arange(len(run)), count)
-    piece = ranges(begin, count)
-    t0 = np.where(piece == begin[owner], at[owner], 0.0)
-    t1 = np.where(piece == last[owner], until[owner], 1.0)
-    part_of_all = runs.size[piece] * (t1 - t0) / (high - low)[owner]
+    segment = ranges(begin, count)
+    t0 = np.where(segment == begin[owner], at[owner], 0.0)
+    t1 = np.where(segment == last[owner], until[owner], 1.0)
+    part_of_all = runs.size[segment] * (t1 - t0) / (high - low)[owner]
     parts = np.maximum(np.ceil(_PARTS * part_of_all - 1e-9), 1.0).astype(np.intp)
-    row = np.repeat(np.arange(len(piece)), parts)
-    number = ranges(np.zeros(len(piece), np.intp), parts)
+    row = np.repeat(np.arange(len(segment)), parts)
+    number = ranges(np.zeros(len(segment), np.intp), parts)
     step = ((t1 - t0) / parts)[row]
     from_, to = t0[row] + number * step, t0[row] + (number + 1) * step
-    piece, owner = piece[row], owner[row]
+    segment, owner = segment[row], owner[row]
     start = np.stack(runs.points(begin, at))
     x, y = (
-        _between(coefficients[:, piece], origin[owner], from_, to)
+        _between(coefficients[:, segment], origin[owner], from_, to)
         for coefficients, origin in zip((runs.x, runs.y), start, strict=True)
     )
     first = np.searchsorted(owner, np.arange(len(run)))

@@ -16,7 +16,7 @@ from voronoi_tiles.paths.smooth_runs import SmoothRuns, tangents
 
 CORNER: Final = 1e-6
 """Tangents that differ by more than this make a corner; radians. Rounding leaves some 1e-10 of a smooth joint between
-pieces of a millionth of the drawing's size; a corner that is meant is far above."""
+segments of a millionth of the drawing's size; a corner that is meant is far above."""
 
 FLAT: Final = 1e-9
 """An arc whose sagitta is below this is a line; relative to the accuracy."""
@@ -27,22 +27,22 @@ def to_arcs(paths: Paths, *, accuracy: float, corner: float = CORNER, absorbed: 
 
     The Hausdorff distance between old and new curves is at most `accuracy` (in the paths' unit) both ways; it is
     bounded, not sampled. A path is cut at its corners, where tangents differ by more than `corner` (radians), and into
-    runs of curved pieces that join smoothly, whose end points stay; LINEs shorter than `absorbed` count as curved.
+    runs of curved segments that join smoothly, whose end points stay; LINEs shorter than `absorbed` count as curved.
     Along a run, one biarc after the other takes the longest stretch that it follows within the accuracy: two arcs of
     at most half a turn, tangent to the curve at both ends. Where one arc or one line between the same ends does, it
     stands instead. Then the breaks between the biarcs are moved, at the same count, to spread the error evenly.
-    Neighbouring pieces share their points bit for bit, and a run gives the same bits, reversed, when it is run through
-    backwards, and whatever else is in `paths`.
+    Neighbouring segments share their points bit for bit, and a run gives the same bits, reversed, when it is run
+    through backwards, and whatever else is in `paths`.
 
     Taking the longest stretch first gives the fewest, if a part of a feasible stretch is feasible: by induction the
     k-th break then lies no earlier than that of any other choice. Biarcs have this property where the curve's
     curvature is monotone (their error grows with the stretch at either end), and nearly so elsewhere; a longest
     stretch is found to about 0.4 percent. Where the assumption fails, the accuracy still holds, but the count may be
-    above the least; runs are covered from either end, and what takes fewer pieces is kept. What no biarc can
+    above the least; runs are covered from either end, and what takes fewer segments is kept. What no biarc can
     follow, cusps above all, is bridged by lines within the accuracy.
 
     A closed path that began within a run begins at the end of that run instead; one that is all one run is cut where
-    it began. Curved pieces of length 0 vanish, unless a path has nothing else: then one line of length 0 stays.
+    it began. Curved segments of length 0 vanish, unless a path has nothing else: then one line of length 0 stays.
 
     Raises ValueError where the accuracy is not positive and finite, or finer than the coordinates' resolution.
 
@@ -56,17 +56,17 @@ def to_arcs(paths: Paths, *, accuracy: float, corner: float = CORNER, absorbed: 
         paths = replace(paths, kind=kind, control=control)
     paths, begins = _arranged(paths, corner)
     bent = _bent(paths)
-    pieces = np.flatnonzero(bent)
-    if not len(pieces):
+    segments = np.flatnonzero(bent)
+    if not len(segments):
         return paths
     first = np.flatnonzero(begins & bent)
-    counts = np.diff(np.append(np.searchsorted(pieces, first), len(pieces)))
+    counts = np.diff(np.append(np.searchsorted(segments, first), len(segments)))
     turned, drawn = _fewer(paths, first, counts, bound, FLAT * accuracy)
     return _assembled(paths, ~bent, first, turned, drawn)
 
 
 def _bent(paths: Paths) -> Bools:
-    """Which pieces are to be replaced."""
+    """Which segments are to be replaced."""
     return np.asarray((paths.kind == QUAD) | (paths.kind == CUBIC))
 
 
@@ -80,11 +80,11 @@ class _Curves(NamedTuple):
     cubic: Bools
 
     @classmethod
-    def of_pieces(cls, paths: Paths, pieces: Ints) -> _Curves:
-        """Some pieces of paths."""
-        control = paths.control[pieces]
-        cubic = paths.kind[pieces] == CUBIC
-        return cls(paths.start[pieces], control[:, 0], control[:, 1], paths.end[pieces], cubic)
+    def of_segments(cls, paths: Paths, segments: Ints) -> _Curves:
+        """Some segments of paths."""
+        control = paths.control[segments]
+        cubic = paths.kind[segments] == CUBIC
+        return cls(paths.start[segments], control[:, 0], control[:, 1], paths.end[segments], cubic)
 
     def coefficients(self) -> tuple[Floats, Floats]:
         """Those of `SmoothRuns`, x and y, each float64 (4, n)."""
@@ -121,7 +121,7 @@ def _arranged(paths: Paths, corner: float) -> tuple[Paths, Bools]:
 
 
 def _without_points(paths: Paths) -> Paths:
-    """The paths without curved pieces of length 0; a path of nothing else becomes one line of length 0."""
+    """The paths without curved segments of length 0; a path of nothing else becomes one line of length 0."""
     still = _bent(paths) & (paths.start == paths.end) & (paths.control[:, 0] == paths.start)
     still &= (paths.kind == QUAD) | (paths.control[:, 1] == paths.start)
     if not np.any(still):
@@ -140,10 +140,10 @@ def _without_points(paths: Paths) -> Paths:
 
 
 def _smooth(paths: Paths, corner: float) -> Bools:
-    """Which pieces are curves that go on smoothly from a curve before them; in closed paths the last is before."""
+    """Which segments are curves that go on smoothly from a curve before them; in closed paths the last is before."""
     bent = _bent(paths)
     curved = np.flatnonzero(bent)
-    x, y = _Curves.of_pieces(paths, curved).coefficients()
+    x, y = _Curves.of_segments(paths, curved).coefficients()
     leaving, arriving = np.zeros((2, len(bent))), np.zeros((2, len(bent)))
     leaving[:, curved] = tangents(x, y, 0.0, ahead=True)
     arriving[:, curved] = tangents(x, y, 1.0, ahead=False)
@@ -172,20 +172,20 @@ def _turned(paths: Paths, first: Ints, last: Ints) -> Bools:
 
 
 def _oriented(paths: Paths, first: Ints, counts: Ints, turned: Bools) -> tuple[_Curves, SmoothRuns]:
-    """The pieces of all runs, in the sense in which they are fitted."""
+    """The segments of all runs, in the sense in which they are fitted."""
     run = np.repeat(np.arange(len(first)), counts)
-    piece = ranges(first, counts)
+    segment = ranges(first, counts)
     back = turned[run]
-    pieces = _Curves.of_pieces(paths, np.where(back, (2 * first + counts - 1)[run] - piece, piece))
-    swap = back & pieces.cubic
+    segments = _Curves.of_segments(paths, np.where(back, (2 * first + counts - 1)[run] - segment, segment))
+    swap = back & segments.cubic
     curves = _Curves(
-        np.where(back, pieces.end, pieces.start),
-        np.where(swap, pieces.second, pieces.first),
-        np.where(swap, pieces.first, pieces.second),
-        np.where(back, pieces.start, pieces.end),
-        pieces.cubic,
+        np.where(back, segments.end, segments.start),
+        np.where(swap, segments.second, segments.first),
+        np.where(swap, segments.first, segments.second),
+        np.where(back, segments.start, segments.end),
+        segments.cubic,
     )
-    return curves, SmoothRuns.of_pieces(*curves.coefficients(), np.append(0, np.cumsum(counts)))
+    return curves, SmoothRuns.of_segments(*curves.coefficients(), np.append(0, np.cumsum(counts)))
 
 
 class _Drawn(NamedTuple):
@@ -226,7 +226,7 @@ def _draw(runs: SmoothRuns, curves: _Curves, stretches: Stretches, bound: float,
 
 
 def _fewer(paths: Paths, first: Ints, counts: Ints, bound: float, flat: float) -> tuple[Bools, _Drawn]:
-    """Draw runs from either end, and keep what takes fewer pieces: whether from the far end, and the pieces.
+    """Draw runs from either end, and keep what takes fewer segments: whether from the far end, and the segments.
 
     Where both take as many, the order of the points decides, so that a run and its reverse are fitted alike.
     """
@@ -245,7 +245,7 @@ def _fewer(paths: Paths, first: Ints, counts: Ints, bound: float, flat: float) -
 
 
 def _assembled(paths: Paths, kept: Bools, first: Ints, turned: Bools, drawn: _Drawn) -> Paths:
-    """Put what replaces the runs in the place of their first pieces, beside the pieces that are kept."""
+    """Put what replaces the runs in the place of their first segments, beside the segments that are kept."""
     old = np.flatnonzero(kept)
     back = turned[drawn.run]
     number = np.arange(len(drawn.run))

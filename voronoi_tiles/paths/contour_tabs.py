@@ -20,10 +20,10 @@ _BISECTIONS: Final = 50
 
 
 def with_tabs(paths: Paths, width: float) -> Paths:
-    """Leave bridges of this width uncut in closed paths of LINE, QUAD and ARC pieces: open paths, exact but for that.
+    """Leave bridges of this width uncut in closed paths of LINE, QUAD and ARC segments: open paths, exact but for that.
 
     Each has TABS_LEAST of them or more, the same way apart, TAB_SPACING_MM at most; the first is in the middle of
-    the longest piece, for corners are cut. Raises ValueError where bridges would take more than half of a path.
+    the longest segment, for corners are cut. Raises ValueError where bridges would take more than half of a path.
     """
     if not len(paths):
         return paths
@@ -61,14 +61,14 @@ def stretches(paths: Paths, path: Ints, first: Floats, last: Floats) -> Paths:
     whole_turn = (a == b) & (stop <= start)
     count = np.where(whole_turn, size + 1, np.mod(b - a, size) + 1)
     at = np.repeat(low, count)
-    pieces = at + np.mod(ranges(a, count) - at, np.repeat(size, count))
+    segments = at + np.mod(ranges(a, count) - at, np.repeat(size, count))
     opening = np.cumsum(count) - count
     closing = opening + count - 1
-    t0, t1 = np.zeros(len(pieces)), np.ones(len(pieces))
+    t0, t1 = np.zeros(len(segments)), np.ones(len(segments))
     t0[opening] = _parameter(paths, a, base + start - behind[a])
     t1[closing] = _parameter(paths, b, base + stop - behind[b])
     kept = t1 > t0
-    parts = split(paths, pieces[kept], t0[kept], t1[kept])
+    parts = split(paths, segments[kept], t0[kept], t1[kept])
     owner = np.repeat(np.arange(len(path)), count)[kept]
     joint = np.flatnonzero(owner[1:] == owner[:-1]) + 1
     parts.start[joint] = parts.end[joint - 1]
@@ -82,16 +82,16 @@ def stretches(paths: Paths, path: Ints, first: Floats, last: Floats) -> Paths:
     )
 
 
-def _parameter(paths: Paths, pieces: Ints, lengths: Floats) -> Floats:
-    """The parameters at which pieces have given lengths behind them; on curves by bisection."""
-    whole = paths.lengths[pieces]
+def _parameter(paths: Paths, segments: Ints, lengths: Floats) -> Floats:
+    """The parameters at which segments have given lengths behind them; on curves by bisection."""
+    whole = paths.lengths[segments]
     share = np.clip(lengths / np.where(whole > 0, whole, 1.0), 0.0, 1.0)
-    bent = np.flatnonzero((paths.kind[pieces] == QUAD) & (share > 0) & (share < 1))
+    bent = np.flatnonzero((paths.kind[segments] == QUAD) & (share > 0) & (share < 1))
     if len(bent):
         low, high = np.zeros(len(bent)), np.ones(len(bent))
         for _ in range(_BISECTIONS):
             middle = (low + high) / 2
-            short = split(paths, pieces[bent], 0 * middle, middle).lengths < lengths[bent]
+            short = split(paths, segments[bent], 0 * middle, middle).lengths < lengths[bent]
             low, high = np.where(short, middle, low), np.where(short, high, middle)
         share[bent] = (low + high) / 2
     return np.asarray(share, np.float64)

@@ -134,7 +134,7 @@ def _whole(counts: Floats) -> Ints:
     """Counts rounded up; raises ValueError where they are too many altogether."""
     whole = np.maximum(np.ceil(counts * (1 - 1e-12)), 1.0)
     if whole.sum() > COUNT_MAX:
-        raise ValueError(f"the accuracy asks for {whole.sum():.3g} pieces, and {COUNT_MAX} is the limit")
+        raise ValueError(f"the accuracy asks for {whole.sum():.3g} segments, and {COUNT_MAX} is the limit")
     return whole.astype(np.intp)
 
 

@@ -9,17 +9,17 @@ import numpy as np
 from voronoi_tiles.base.arrays import Floats, Ints
 
 _SNAP = 1e-6
-"""A parameter that is nearer than this to an end of its piece means the end."""
+"""A parameter that is nearer than this to an end of its segment means the end."""
 
 
 @dataclass(frozen=True, eq=False)
 class SmoothRuns:
-    """Smooth runs of cubic pieces.
+    """Smooth runs of cubic segments.
 
-    The point at t in [0, 1] of a piece is c0 + 3 c1 t + 3 c2 t^2 + c3 t^3; `x` and `y` are float64 (4, n). Run r
-    are the pieces from `first[r]` up to, not including, `first[r + 1]`. A place along run r is a number between 0 and
-    `total[r]`: a piece takes up `size`, which is about its length, from `begin` on, evenly in t. Arithmetic on runs is
-    spelt out in real numbers and sums are exact, so that the bits of a result do not depend on the other runs.
+    The point at t in [0, 1] of a segment is c0 + 3 c1 t + 3 c2 t^2 + c3 t^3; `x` and `y` are float64 (4, n). Run r
+    are the segments from `first[r]` up to, not including, `first[r + 1]`. A place along run r is a number between 0 and
+    `total[r]`: a segment takes up `size`, which is about its length, from `begin` on, evenly in t. Arithmetic on runs
+    is spelt out in real numbers and sums are exact, so that the bits of a result do not depend on the other runs.
     """
 
     x: Floats
@@ -30,8 +30,8 @@ class SmoothRuns:
     total: Floats
 
     @classmethod
-    def of_pieces(cls, x: Floats, y: Floats, first: Ints) -> SmoothRuns:
-        """Lay out the pieces of runs along them; no piece has length 0."""
+    def of_segments(cls, x: Floats, y: Floats, first: Ints) -> SmoothRuns:
+        """Lay out the segments of runs along them; no segment has length 0."""
         owner = np.repeat(np.arange(len(first) - 1), np.diff(first))
         length = sum((np.hypot(x[k], y[k]) for k in (1, 2, 3)), start=np.zeros(x.shape[1]))
         unit = np.maximum.reduceat(length, first[:-1])[owner] * 2.0**-30
@@ -46,17 +46,20 @@ class SmoothRuns:
         return len(self.total)
 
     def locate(self, run: Ints, place: Floats, *, before: bool) -> tuple[Ints, Floats]:
-        """The pieces and parameters at places; at a joint, those of the piece before it or of the one after it."""
-        piece = last_up_to(self.begin, self.first, run, place)
-        t = np.clip((place - self.begin[piece]) / self.size[piece], 0.0, 1.0)
+        """The segments and parameters at places; at a joint, those of the segment before it or of the one after it."""
+        segment = last_up_to(self.begin, self.first, run, place)
+        t = np.clip((place - self.begin[segment]) / self.size[segment], 0.0, 1.0)
         t = np.where(t < _SNAP, 0.0, np.where(t > 1 - _SNAP, 1.0, t))
-        back = before & (t == 0.0) & (piece > self.first[run])
-        on = (not before) & (t == 1.0) & (piece < self.first[run + 1] - 1)
-        return piece + on - back, np.where(back, 1.0, np.where(on, 0.0, t))
+        back = before & (t == 0.0) & (segment > self.first[run])
+        on = (not before) & (t == 1.0) & (segment < self.first[run + 1] - 1)
+        return segment + on - back, np.where(back, 1.0, np.where(on, 0.0, t))
 
-    def points(self, piece: Ints, t: Floats) -> tuple[Floats, Floats]:
-        """The points of pieces at parameters: x, y."""
-        x, y = (c[0, piece] + t * (3 * c[1, piece] + t * (3 * c[2, piece] + t * c[3, piece])) for c in (self.x, self.y))
+    def points(self, segment: Ints, t: Floats) -> tuple[Floats, Floats]:
+        """The points of segments at parameters: x, y."""
+        x, y = (
+            c[0, segment] + t * (3 * c[1, segment] + t * (3 * c[2, segment] + t * c[3, segment]))
+            for c in (self.x, self.y)
+        )
         return x, y
 
 
@@ -72,9 +75,9 @@ def last_up_to(values: Floats, first: Ints, row: Ints, limit: Floats) -> Ints:
 
 
 def tangents(x: Floats, y: Floats, t: Floats | float, *, ahead: bool) -> tuple[Floats, Floats]:
-    """The unit tangents of pieces as in SmoothRuns, (4, n), at parameters: x, y.
+    """The unit tangents of segments as in SmoothRuns, (4, n), at parameters: x, y.
 
-    Where the speed is 0 they are the limit from ahead or from behind. No piece has length 0.
+    Where the speed is 0 they are the limit from ahead or from behind. No segment has length 0.
     """
     sign = 1.0 if ahead else -1.0
     (u1, u2, u3), (v1, v2, v3) = ((c[1] + t * (2 * c[2] + t * c[3]), sign * (c[2] + t * c[3]), c[3]) for c in (x, y))
