@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 from dataclasses import replace
 from typing import Any
 
@@ -16,8 +17,11 @@ from voronoi_tiles.fabrication.arc_fitting import curve_fit
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.layout import lay_out
 from voronoi_tiles.fabrication.sheets import read_sheet
+from voronoi_tiles.formats.svg.reader import svg_drawing
 from voronoi_tiles.paths.paths import ARC, Paths
 from voronoi_tiles.paths.segments import tangent_at
+from voronoi_tiles.preflight import judge
+from voronoi_tiles.preflight.findings import DEFAULT_LIMITS
 from voronoi_tiles.tiling import Tiling
 from voronoi_tiles.vector.outline import Outline
 
@@ -91,6 +95,34 @@ def test_kerf_is_kept_on_every_example(name: str, kerf: float) -> None:
         check_kerf(exact_shape(outline, unit), contour, kerf, ACCURACY)
         wanted = steiner(outline, unit, kerf / 2)
         assert abs(contour.area - wanted) <= 0.2 * ACCURACY * outline.perimeter * unit
+
+
+@pytest.mark.parametrize(
+    "job",
+    [
+        pytest.param({"kerf": 0.05}, marks=pytest.mark.slow, id="a fine kerf"),
+        pytest.param({"kerf": 0.15}, id="kerf"),
+        pytest.param({"kerf": 0.2, "fillet": 0.4}, marks=pytest.mark.slow, id="kerf and fillets"),
+        pytest.param(
+            {"kerf": 0.15, "sheet": (90.0, 70.0), "fit": "clip"}, marks=pytest.mark.slow, id="cut by the sheet"
+        ),
+    ],
+)
+@each_example
+def test_no_segment_is_too_short_for_preflight(name: str, job: dict[str, Any]) -> None:
+    """Arcs about corners would be, at a turn of 0.4 and less where the kerf is 0.05 mm.
+
+    Their tips are half a micrometre off: less than the budget has for them.
+    """
+    assert cuts(made(name, **job)).lengths.min() >= DEFAULT_LIMITS.shortest
+
+
+def test_preflight_finds_no_short_segment() -> None:
+    """In the file of the example whose kerf had most of them."""
+    file = io.BytesIO()
+    made("pgg-crane", kerf=0.15, sheet=(300.0, 200.0)).write(file)
+    report = judge(svg_drawing(file.getvalue(), "cut.svg"), "cut.svg")
+    assert [finding.message for finding in report.findings if finding.kind == "short"] == []
 
 
 @pytest.mark.parametrize("accuracy", [0.001, 0.02, 0.1])

@@ -1,15 +1,21 @@
-"""Short segments: what goes, what stays, and that it is the same from wherever a ring is looked at."""
+"""Short segments: what goes, what stays, how far it moves anything, and that it is the same from wherever one looks."""
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 import shapely
+from hypothesis import given as drawn
+from hypothesis import settings
+from hypothesis import strategies as st
 
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.paths.conversion import to_lines
+from voronoi_tiles.paths.offset import offset
 from voronoi_tiles.paths.paths import ARC, LINE, Paths
 from voronoi_tiles.paths.short_segments import straightened, without_short_segments
 
@@ -56,7 +62,7 @@ def rough(seed: int, *, arcs: bool) -> Paths:
 
 def test_what_it_joined_meets_in_its_middle() -> None:
     """A short line at the corner of a square, and two in a row at another."""
-    found = without_short_segments(ring(0, 9, 9 + 0.2j, 9 + 9j, 8.9 + 9.1j, 8.8 + 9j, 9j), 0.3)
+    found = without_short_segments(ring(0, 9, 9 + 0.2j, 9 + 9j, 8.9 + 9.1j, 8.8 + 9j, 9j), 0.3, 0.3)
     assert found.start.tolist() == pytest.approx([0, 9 + 0.1j, 8.9 + 9j, 9j], abs=1e-12)
     assert (found.end == np.roll(found.start, -1)).all()
 
@@ -64,8 +70,8 @@ def test_what_it_joined_meets_in_its_middle() -> None:
 def test_a_row_that_is_long_together_stays() -> None:
     """Four tenths in a row are no speck."""
     points = [0, 9, 9 + 0.1j, 9 + 0.2j, 9 + 0.3j, 9 + 0.4j, 9 + 9j, 9j]
-    assert without_short_segments(ring(*points), 0.3).start.tolist() == points
-    assert len(without_short_segments(ring(*points), 0.5).start) == 4
+    assert without_short_segments(ring(*points), 0.3, 0.3).start.tolist() == points
+    assert len(without_short_segments(ring(*points), 0.5, 0.5).start) == 4
 
 
 def test_a_ring_keeps_two_segments() -> None:
@@ -74,42 +80,136 @@ def test_a_ring_keeps_two_segments() -> None:
     lens = replace(
         ring(5, 5 + 0.1j), kind=np.array([LINE, ARC], np.uint8), control=np.array([[0, 0], [-3, 0]], complex)
     )
-    found = without_short_segments(Paths.concatenate([tiny, plain, lens]), 0.3)
+    found = without_short_segments(Paths.concatenate([tiny, plain, lens]), 0.3, 0.3)
     assert found.counts.tolist() == [3, 3, 2]
     assert (found.take(np.array([0])).start == tiny.start).all()
     assert (found.take(np.array([2])).control == lens.control).all()
 
 
-@pytest.mark.parametrize("arcs", [False, True])
+def apart(one: Paths, two: Paths) -> float:
+    """How far two rings are from each other, measured both ways on chords."""
+    lines = dense(one), dense(two)
+    found = [shapely.distance(line, shapely.points(other.coords)) for line, other in (lines, lines[::-1])]
+    return float(max(distances.max() for distances in found))
+
+
+def grown(seed: int) -> Paths:
+    """The offset by 1 of a ring of lines and arcs whose corners turn by up to a third: many short arcs of radius 1."""
+    random = np.random.default_rng(seed)
+    angles = 2 * np.pi * (np.arange(24) + random.uniform(-0.2, 0.2, 24)) / 24
+    points = random.uniform(9.9, 10.1, 24) * np.exp(1j * angles)
+    chord = np.roll(points, -1) - points
+    bulges = np.where(random.random(24) < 0.5, random.uniform(-0.05, 0.1, 24), 0.0)
+    control = np.column_stack(((points + np.roll(points, -1)) / 2 - 0.5j * bulges * chord, 0 * chord))
+    kind = np.where(bulges == 0, LINE, ARC).astype(np.uint8)
+    region = replace(ring(*points.tolist()), kind=kind, control=np.where((kind == ARC)[:, None], control, 0))
+    return offset(region, 1.0).paths
+
+
+RINGS: dict[str, tuple[Callable[[int], Paths], float, float]] = {
+    "lines": (partial(rough, arcs=False), 0.005, 0.005),
+    "arcs": (partial(rough, arcs=True), 0.005, 0.005),
+    "arcs about corners": (grown, 0.4, 0.004),
+}
+"""What makes a ring of a seed, and which segments are left out: their length, the deviation."""
+
+
+@pytest.mark.parametrize("rings", RINGS)
 @pytest.mark.parametrize("seed", range(8))
-def test_start_and_direction_do_not_matter(seed: int, arcs: bool) -> None:
+def test_start_and_direction_do_not_matter(seed: int, rings: str) -> None:
     """The same nodes from every start, run through backwards, and in the mirror."""
-    given = rough(seed, arcs=arcs)
-    wanted = nodes(without_short_segments(given, 0.005))
+    make, length, deviation = RINGS[rings]
+    given = make(seed)
+    wanted = nodes(without_short_segments(given, length, deviation))
     assert len(wanted) < len(given.start)
     for first in range(len(given.start)):
         turned = started_at(given, first)
-        assert nodes(without_short_segments(turned, 0.005)) == pytest.approx(wanted, abs=1e-12)
-        assert nodes(without_short_segments(turned.reversed(), 0.005)) == pytest.approx(wanted, abs=1e-12)
-    mirrored = without_short_segments(given.moved(1.0, 0j, conj=True), 0.005)
+        assert nodes(without_short_segments(turned, length, deviation)) == pytest.approx(wanted, abs=1e-12)
+        assert nodes(without_short_segments(turned.reversed(), length, deviation)) == pytest.approx(wanted, abs=1e-12)
+    mirrored = without_short_segments(given.moved(1.0, 0j, conj=True), length, deviation)
     assert nodes(mirrored.moved(1.0, 0j, conj=True)) == pytest.approx(wanted, abs=1e-12)
 
 
-@pytest.mark.parametrize("arcs", [False, True])
+@pytest.mark.parametrize("rings", RINGS)
 @pytest.mark.parametrize("seed", range(8))
-def test_nothing_moves_by_more_than_the_size(seed: int, arcs: bool) -> None:
+def test_nothing_moves_by_more_than_the_deviation(seed: int, rings: str) -> None:
     """Both ways, measured on chords."""
-    given, size = rough(seed, arcs=arcs), 0.005
-    one, two = (dense(paths) for paths in (given, without_short_segments(given, size)))
-    apart = [shapely.distance(line, shapely.points(line_of.coords)) for line, line_of in ((one, two), (two, one))]
-    assert max(found.max() for found in apart) <= size
-    assert max(found.max() for found in apart) > 0.05 * size, "nothing was left out: it tests nothing"
+    make, length, deviation = RINGS[rings]
+    given = make(seed)
+    moved = apart(given, without_short_segments(given, length, deviation))
+    assert moved <= deviation
+    assert moved > 0.05 * deviation, "nothing was left out: it tests nothing"
+
+
+@settings(max_examples=60, deadline=None)
+@drawn(st.integers(0, 2**32 - 1), st.floats(0.05, 0.5), st.floats(1e-3, 0.02))
+def test_all_goes_that_may(seed: int, length: float, deviation: float) -> None:
+    """Of arcs about corners, beside longer edges, those go whose tips are near enough, and no others."""
+    given = grown(seed)
+    left = without_short_segments(given, length, deviation)
+    assert apart(given, left) <= deviation + 2e-5
+    radius, turn = given.arc_radius_and_turn(np.arange(len(given.start)))
+    short = given.lengths < max(length, deviation)
+    alone = short & ~np.roll(short, 1) & ~np.roll(short, -1)
+    corner = alone & (np.abs(radius - 1) < 1e-9) & (given.kind == ARC)
+    # Edges are flatter than a third: over half of 0.5, they leave their tangents by 0.02 at most.
+    surely = corner & (1 / np.cos(turn / 2) - 1 + np.tan(turn / 2) ** 2 / 3 <= deviation)
+    never = (1 / np.cos(turn / 2) - 1 > deviation) & (given.lengths > deviation) | (given.lengths > length)
+    middles = set(np.round(left.control[left.kind == ARC, 0], 9).tolist())
+    found = np.array([complex(z) in middles for z in np.round(given.control[:, 0], 9)])
+    assert not found[surely].any()
+    assert found[never & corner].all()
+
+
+def test_a_short_arc_about_a_corner_gives_way_to_its_tip() -> None:
+    """Two lines of a square go on to where they meet; the deviation is that of the tip, as the formula has it."""
+    radius, turn = 0.5, 0.2
+    reach, off = radius * np.tan(turn / 2), radius * (1 / np.cos(turn / 2) - 1)
+    tip, ahead = 10 + 0j, np.exp(1j * turn)
+    given = ring(0, tip - reach, tip + reach * ahead, tip + 9 * ahead, 9j)
+    given.kind[1], given.control[1, 0] = ARC, tip + off * 1j * np.exp(0.5j * turn)
+    assert given.arc_radius_and_turn(np.array([1]))[0] == pytest.approx([radius])
+    assert without_short_segments(given, 0.11, 1.01 * off).start.tolist() == pytest.approx(
+        [0, tip, tip + 9 * ahead, 9j], abs=1e-12
+    )
+    for stays in (without_short_segments(given, 0.11, 0.99 * off), without_short_segments(given, 0.09, 1.01 * off)):
+        assert stays is given or len(stays.start) == 5
+
+
+@pytest.mark.parametrize("bulge", [-0.02, 0.06])
+def test_an_arc_that_is_no_corners_stays(bulge: float) -> None:
+    """One that bulges to the other side, and one that bulges out over the tip."""
+    given = ring(0, 10, 10.1 + 0.01j, 20 + 2.01j, 10 + 9j)
+    assert len(without_short_segments(given, 0.2, 0.01).start) == 4
+    given.kind[1], given.control[1, 0] = ARC, 10.05 + 0.005j - 0.5j * bulge * (0.1 + 0.01j)
+    assert len(without_short_segments(given, 0.2, 0.01).start) == 5
+
+
+@pytest.mark.parametrize(("half", "left"), [(1.9, 3), (2.1, 4)])
+def test_arcs_that_turn_far_are_not_led_to_tips(half: float, left: int) -> None:
+    """There an arc that keeps its middle and is led on may leave its circle by more than at its end."""
+    angles = np.array([0, half, 2 * half])
+    begin, over, end = 5 * np.exp(1j * angles)
+    ahead = 1j * np.exp(2j * half)
+    tip = end + 0.5 * np.tan(0.05) * ahead
+    corner = tip + 0.5 * np.tan(0.05) * ahead * np.exp(0.1j)
+    given = ring(begin, end, corner, corner + 3 * ahead * np.exp(0.1j))
+    given.kind[:2] = ARC
+    given.control[:2, 0] = over, tip + 0.5 * (1 / np.cos(0.05) - 1) * 1j * ahead * np.exp(0.05j)
+    assert len(without_short_segments(given, 0.06, 0.002).start) == left
+
+
+def test_a_segment_of_no_length_goes() -> None:
+    """Wherever it stands, without a warning: it has no direction."""
+    for points in ([0, 9, 9, 9 + 9j], [0, 4, 4, 9, 9 + 9j], [0, 4, 4, 4, 9, 9 + 9j]):
+        found = without_short_segments(ring(*points), 0.3, 0.1).start.tolist()
+        assert found == sorted({complex(z) for z in points}, key=lambda z: (z.real, z.imag))
 
 
 def test_open_paths_are_refused() -> None:
     """Their ends belong to others."""
     with pytest.raises(ValueError, match="closed"):
-        without_short_segments(Paths.polylines([np.array([0, 1, 2])]), 0.1)
+        without_short_segments(Paths.polylines([np.array([0, 1, 2])]), 0.1, 0.1)
 
 
 def test_flat_arcs_are_lines() -> None:

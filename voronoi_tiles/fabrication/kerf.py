@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from itertools import pairwise
+from typing import Final
 
 import numpy as np
 
@@ -16,6 +17,9 @@ from voronoi_tiles.paths.offset import Offset, OffsetError, offset, round_corner
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.paths.short_segments import without_short_segments
 from voronoi_tiles.paths.winding import item_winding
+
+SHORTEST_MM: Final = 0.01
+"""Segments shorter than this are left out where the accuracy allows it; millimetres. Machines stutter at them."""
 
 _LOSSES = {
     "ring": "a piece vanishes",
@@ -61,7 +65,7 @@ class Compensation:
             rings = self._kept(round_corners, rings, job.fillet, "fillet", whole=whole)
         if job.kerf > 0.0 and len(rings):
             rings = self._kept(offset, rings, job.kerf / 2, "kerf", whole=whole)
-        return without_short_segments(rings, self.budget.short)
+        return without_short_segments(rings, SHORTEST_MM, self.budget.short)
 
     def _kept(
         self, change: Callable[[Paths, float], Offset], rings: Paths, size: float, name: str, *, whole: bool
