@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -137,9 +138,11 @@ def copies_near(action: Action, base: Placed, other: Placed) -> Copies:
     relevant = np.array([p, q, p + q if (p.conjugate() * q).real < 0 else p - q])
     reach = base.radius + other.radius
     bound = np.abs(relevant) ** 2 * (1 + 1e-9) + reach * np.abs(relevant)
-    gram = np.linalg.inv([[abs(p) ** 2, (p.conjugate() * q).real], [(p.conjugate() * q).real, abs(q) ** 2]])
-    n, m = (np.ceil(np.abs(gram) @ bound[:2]) + 1).astype(int)
-    steps = np.stack(np.meshgrid(np.arange(-n, n + 1), np.arange(-m, m + 1), indexing="ij"), axis=-1).reshape(-1, 2)
+    # How many steps along p and q: by the inverse of the Gram matrix, without signs.
+    first, second, product = float(bound[0]), float(bound[1]), p.conjugate() * q
+    n = math.ceil((abs(q) ** 2 * first + abs(product.real) * second) / product.imag**2) + 1
+    m = math.ceil((abs(product.real) * first + abs(p) ** 2 * second) / product.imag**2) + 1
+    steps = np.indices((2 * n + 1, 2 * m + 1)).reshape(2, -1).T - (n, m)
     base_motions = np.array(other.representatives)
     linear = [action.linear[m[:4]] for m in other.representatives]
     unit, conj = np.array([u for u, _ in linear]), np.array([c for _, c in linear])

@@ -70,11 +70,11 @@ class TileBoundary:
         points = self.control.moved(motion)
         curved = points.index >= 0
         control = np.where(curved, self.representatives.locate(points), (start + end) / 2)
-        focus, directrix = np.zeros(len(start), complex), np.zeros((len(start), 2), complex)
+        parabola = np.column_stack((self.focus, self.directrix))
+        parabola[~curved] = 0
         for number, by in enumerate(points.motions):
             chosen = np.flatnonzero(curved & (points.motion == number))
-            focus[chosen] = action.apply(by, self.focus[chosen])
-            directrix[chosen] = action.apply(by, self.directrix[chosen])
+            parabola[chosen] = action.apply(by, parabola[chosen])
         # A motion that turns the plane over turns the rings round: run through each backwards.
         order = np.arange(len(start))
         if reverses_orientation(motion):
@@ -85,8 +85,8 @@ class TileBoundary:
             control=control[order],
             end=end[order],
             curved=curved[order],
-            focus=focus[order],
-            directrix=directrix[order],
+            focus=parabola[order, 0],
+            directrix=parabola[order, 1:],
             neighbour=self.beyond[order],
             neighbours=neighbours,
             ring_offsets=offsets,
