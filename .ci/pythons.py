@@ -44,8 +44,8 @@ def main() -> None:
             print(f"{name} has no venv: the tests are not run on it.", file=sys.stderr)
         elif int(minor) != sys.version_info.minor:
             newest[int(minor)] = max((int(micro), name), newest.get(int(minor), (-1, "")))
-    for minor, (_, name) in sorted(newest.items()):
-        print(f"3.{minor} {name}")
+    for number, (_, name) in sorted(newest.items()):
+        print(f"3.{number} {name}")
 
 
 if __name__ == "__main__":
