@@ -73,7 +73,7 @@ class Score:
 def elements_at(
     plane: Plane, outline: Outline, number: dict[Operation, int], share: float | Floats
 ) -> list[tuple[int, int]]:
-    """Give the two elements that each arc is equally far from at a parameter: the base site's, the neighbour's.
+    """The two elements that each arc is equally far from at a parameter: the base site's, the neighbour's.
 
     They are the same all along an arc, but for a straight edge on a mirror, where two can give way to two others.
     """
@@ -106,7 +106,7 @@ def score_engine(plane: Plane, outline: Outline, number: dict[Operation, int]) -
 
 
 def edge_errors(plane: Plane, outline: Outline, pairs: Sequence[tuple[int, int]]) -> list[float]:
-    """Give, for each arc, how much its points' distances from its two elements differ at most, relative to the cell.
+    """For each arc, how much its points' distances from its two elements differ at most, relative to the cell.
 
     Taken at the parameters 0, 0.1, ..., 1, in 50 digits from the control points as they are.
     """
@@ -125,7 +125,7 @@ def edge_errors(plane: Plane, outline: Outline, pairs: Sequence[tuple[int, int]]
 
 
 def outline_vertices(plane: Plane, reading: peer.Reading) -> list[tuple[complex, Label]]:
-    """Give the ends of the edges between the base site's cells and others, with all elements that meet there."""
+    """The ends of the edges between the base site's cells and others, with all elements that meet there."""
     count, m = len(plane.site.segments), len(plane.site.nodes)
     elements = []
     for segment, category in reading.owner:
@@ -213,7 +213,7 @@ def draw(group: WallpaperGroup, kind: str, segments: int, rng: np.random.Generat
 
 
 def _controls(group: WallpaperGroup, lattice: Lattice, kind: str, rng: np.random.Generator) -> Complexes:
-    """Give four control points: of any curve, of one that is bent by a millionth, or of one that ends near a copy."""
+    """Four control points: of any curve, of one that is bent by a millionth, or of one that ends near a copy."""
     reach = 0.5 * math.sqrt(lattice.det / group.order)
     place = lattice.cartesian(*rng.uniform(0.0, 1.0, 2))
     p: Complexes = place + reach * rng.uniform(0.2, 1.0, 4) * np.exp(2j * np.pi * rng.uniform(0.0, 1.0, 4))
@@ -327,7 +327,7 @@ def print_designs(rows: Sequence[Row]) -> None:
 
 
 def _parts(score: Score | None) -> tuple[list[float], list[float]]:
-    """Give the errors and those against the own input."""
+    """The errors and those against the own input."""
     return (score.errors, score.own) if score else ([], [])
 
 

@@ -31,7 +31,7 @@ class MissingError(Exception):
 
 @cache
 def version() -> str:
-    """Give CGAL's version; raises MissingError where there is no compiler or no CGAL."""
+    """CGAL's version; raises MissingError where there is no compiler or no CGAL."""
     if shutil.which("g++") is None:
         raise MissingError("g++ is missing: install g++, libcgal-dev, libgmp-dev and libmpfr-dev to compare with CGAL")
     finished = subprocess.run(["g++", "-E", "-P", "-"], input=_PROBE, capture_output=True, text=True, check=False)  # noqa: S607
@@ -41,7 +41,7 @@ def version() -> str:
 
 
 def described() -> str:
-    """Give CGAL's name and version, or say what is missing."""
+    """CGAL's name and version, or what is missing."""
     try:
         return f"CGAL {version()}"
     except MissingError as error:
@@ -98,7 +98,7 @@ def _input_text(site: NodedSite, nodes: NDArray[np.complex128]) -> str:
 
 
 def _owners(site: NodedSite, copies: int) -> list[tuple[int, int]]:
-    """Give the segment and the category of each cell as Boost.Polygon numbers them: 1 start, 2 end, 3 open segment."""
+    """The segment and the category of each cell as Boost.Polygon numbers them: 1 start, 2 end, 3 open segment."""
     of_node: list[tuple[int, int]] = [(-1, 0)] * len(site.nodes)
     for k, ends in enumerate(site.segments.tolist()):
         for category, node in enumerate(ends, start=1):

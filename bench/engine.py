@@ -93,7 +93,7 @@ def case_of(group: str, segments: int) -> Case:
 
 
 def stopwatch(action: Callable[[], object]) -> float:
-    """Give the seconds that an action takes."""
+    """The seconds that an action takes."""
     begin = time.perf_counter()
     action()
     return time.perf_counter() - begin
@@ -128,7 +128,7 @@ class Peers:
     """The peers of one group: what they got last, and how long it took."""
 
     def __init__(self, limit: int) -> None:
-        """Give them no more than so many segments in the site."""
+        """Allow them no more than so many segments in the site."""
         self.limit = limit if HAS_PEERS else 0
         self.known: list[list[Operation] | None] = [None, None]
         self.slow = [False, False]
@@ -136,7 +136,7 @@ class Peers:
     def actions(
         self, case: Case, record: TileRecord
     ) -> list[tuple[int, Callable[[], float], Callable[[], float] | None]]:
-        """Give for each block the number of copies and the runs of Boost.Polygon and of CGAL."""
+        """For each block the number of copies and the runs of Boost.Polygon and of CGAL."""
         size = len(case.site.segments)
         found: list[tuple[int, Callable[[], float], Callable[[], float] | None]] = []
         for number, find in enumerate((peer.smallest_block, peer.block_of_cells) if self.limit else ()):
@@ -275,7 +275,7 @@ def print_stages(group: str, most: int) -> None:
 
 
 def process_cost(command: Sequence[str], runs: int) -> float:
-    """Give the median processor time, user and system, of a command's runs."""
+    """The median processor time, user and system, of a command's runs."""
     seconds = []
     for _ in range(runs):
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)  # noqa: S603 our own
@@ -330,7 +330,7 @@ def report_memory(group: str, size: int) -> None:
 
 
 def peak_memory() -> float:
-    """Give the largest memory of this process so far, in MB.
+    """The largest memory of this process so far, in MB.
 
     Linux counts in getrusage's figure what the parent process held when it started this one; /proc does not.
     """

@@ -68,33 +68,33 @@ class Plane:
         return len(self.site.nodes) + len(self.site.segments)
 
     def node(self, copy: int, node: int) -> Any:
-        """Give a node in 50 digits."""
+        """A node in 50 digits."""
         key = copy, node
         if key not in self._known:
             self._known[key] = self.exact(copy, node)
         return self._known[key]
 
     def copy_of(self, element: int) -> int:
-        """Give the number of an element's copy."""
+        """The number of an element's copy."""
         return element // self.per_copy
 
     def node_of(self, element: int) -> int | None:
-        """Give an element's node; None for a segment."""
+        """An element's node; None for a segment."""
         local = element % self.per_copy
         return local if local < len(self.site.nodes) else None
 
     def nodes_of(self, element: int) -> tuple[int, ...]:
-        """Give the nodes of an element: one, or a segment's two."""
+        """The nodes of an element: one, or a segment's two."""
         local = element % self.per_copy
         m = len(self.site.nodes)
         return (local,) if local < m else tuple(self.site.segments[local - m].tolist())
 
     def points_of(self, element: int) -> list[Any]:
-        """Give the nodes of an element in 50 digits."""
+        """The nodes of an element in 50 digits."""
         return [self.node(self.copy_of(element), node) for node in self.nodes_of(element)]
 
     def distances(self, z: complex) -> NDArray[np.float64]:
-        """Give the distances of a point from all elements, in doubles: float64 (elements,)."""
+        """The distances of a point from all elements, in doubles: float64 (elements,)."""
         ends = self.nodes[:, self.site.segments]
         first, chord = ends[..., 0], ends[..., 1] - ends[..., 0]
         along = ((z - first) * chord.conj()).real / np.abs(chord) ** 2
@@ -106,7 +106,7 @@ class Plane:
 
 
 def exact_images(site: NodedSite, lattice: Lattice, group: WallpaperGroup, copies: Sequence[Operation]) -> Plane:
-    """Give the plane of exact copies: the operation in 50 digits, applied to the doubles of the site."""
+    """The plane of exact copies: the operation in 50 digits, applied to the doubles of the site."""
     a, b = mpc(lattice.a), mpc(lattice.b)
     if group.system == "hexagonal":
         b = a * mpmath.expjpi(mpf(2) / 3)
@@ -129,12 +129,12 @@ def exact_images(site: NodedSite, lattice: Lattice, group: WallpaperGroup, copie
 
 
 def as_given(site: NodedSite, nodes: Complexes, size: float) -> Plane:
-    """Give the plane of copies whose nodes are these very doubles."""
+    """The plane of copies whose nodes are these very doubles."""
     return Plane(site, nodes, size, lambda copy, node: mpc(complex(nodes[copy, node])))
 
 
 def longer_side(lattice: Lattice) -> float:
-    """Give the cell's longer side."""
+    """The cell's longer side."""
     return max(abs(lattice.a), abs(lattice.b))
 
 
@@ -142,13 +142,13 @@ def longer_side(lattice: Lattice) -> float:
 
 
 def line_of(plane: Plane, segment: int) -> tuple[Any, Any]:
-    """Give a segment's first point and its unit direction, in 50 digits."""
+    """A segment's first point and its unit direction, in 50 digits."""
     first, second = plane.points_of(segment)
     return first, (second - first) / abs(second - first)
 
 
 def distance(plane: Plane, element: int, z: Any) -> tuple[Any, Any]:
-    """Give the distance of a point from an element's node or line, and its gradient, in 50 digits."""
+    """The distance of a point from an element's node or line, and its gradient, in 50 digits."""
     if plane.node_of(element) is not None:
         away = z - plane.points_of(element)[0]
         return abs(away), away / abs(away)
@@ -158,7 +158,7 @@ def distance(plane: Plane, element: int, z: Any) -> tuple[Any, Any]:
 
 
 def true_distance(plane: Plane, element: int, z: Any) -> Any:
-    """Give the distance of a point from a node or a segment, in 50 digits."""
+    """The distance of a point from a node or a segment, in 50 digits."""
     if plane.node_of(element) is None:
         first, along = line_of(plane, element)
         reach = ((z - first) * mpmath.conj(along)).real
@@ -168,7 +168,7 @@ def true_distance(plane: Plane, element: int, z: Any) -> Any:
 
 
 def equations(plane: Plane, label: Label, z: Any) -> list[tuple[Any, Any]]:
-    """Give residuals and gradients that vanish at the vertex of these elements.
+    """Residuals and gradients that vanish at the vertex of these elements.
 
     A segment and an end of its own touch along the normal there: the difference of their distances has a double root,
     so the condition is that the foot on the segment is that end.
@@ -188,7 +188,7 @@ def equations(plane: Plane, label: Label, z: Any) -> list[tuple[Any, Any]]:
 
 
 def solve(plane: Plane, label: Label, start: complex) -> Any | None:
-    """Give the point equally far from these elements, by Gauss and Newton from a start; None where there is none."""
+    """The point equally far from these elements, by Gauss and Newton from a start; None where there is none."""
     z = mpc(start)
     for _ in range(60):
         rows = equations(plane, label, z)
@@ -207,7 +207,7 @@ def solve(plane: Plane, label: Label, start: complex) -> Any | None:
 
 
 def confirm(plane: Plane, label: Label, z: Any) -> Vertex | None:
-    """Give the vertex with all its elements if none is nearer; None otherwise."""
+    """The vertex with all its elements if none is nearer; None otherwise."""
     near = plane.distances(complex(z))
     close = np.flatnonzero(near < near.min() + FILTER * plane.size).tolist()
     exact = {element: true_distance(plane, element, z) for element in {*close, *label}}
@@ -217,7 +217,7 @@ def confirm(plane: Plane, label: Label, z: Any) -> Vertex | None:
 
 
 def true_vertices(plane: Plane, label: Label, start: complex) -> list[Vertex]:
-    """Give the vertex of these elements; where they have none in common, the vertices that three of them have.
+    """The vertex of these elements; where they have none in common, the vertices that three of them have.
 
     Where there is none of these either, what is as near to the start as rounding can tell is tried, three by three: an
     edge between two vertices may be so short that doubles know no point of it.
@@ -231,7 +231,7 @@ def true_vertices(plane: Plane, label: Label, start: complex) -> list[Vertex]:
 
 
 def _vertex_of(plane: Plane, label: Label, start: complex) -> Vertex | None:
-    """Give the vertex of these elements, if they have one near to the start."""
+    """The vertex of these elements, if they have one near to the start."""
     z = solve(plane, label, start)
     if z is None or abs(z - start) > REACH * plane.size:
         return None
@@ -239,7 +239,7 @@ def _vertex_of(plane: Plane, label: Label, start: complex) -> Vertex | None:
 
 
 def _vertices_among(plane: Plane, elements: Label, start: complex) -> list[Vertex]:
-    """Give the vertices that three of some elements have, of different copies."""
+    """The vertices that three of some elements have, of different copies."""
     found: list[Vertex] = []
     for three in combinations(sorted(elements), 3):
         if len({plane.copy_of(element) for element in three}) > 1:

@@ -47,12 +47,12 @@ class Reading:
 
 
 def block_nodes(site: NodedSite, lattice: Lattice, copies: Iterable[Operation]) -> Complexes:
-    """Give the nodes of the site and then of its copies, complex128 (copies + 1, m)."""
+    """The nodes of the site and then of its copies, complex128 (copies + 1, m)."""
     return np.array([site.nodes, *(lattice.isometry(operation)(site.nodes) for operation in copies)])
 
 
 def block_segments(site: NodedSite, nodes: Complexes) -> list[Segment]:
-    """Give the segments of a block of copies, which has these nodes, as pyvoronoi takes them."""
+    """The segments of a block of copies, which has these nodes, as pyvoronoi takes them."""
     ends = nodes[:, site.segments].reshape(-1, 2)
     segments: list[Segment] = np.stack((ends.real, ends.imag), axis=-1).tolist()
     return segments
@@ -125,7 +125,7 @@ def _is_segment(category: int) -> bool:
 
 
 def _point(ends: Complexes, segment: int, category: int) -> complex:
-    """Give the end of a segment that a cell belongs to."""
+    """The end of a segment that a cell belongs to."""
     return complex(ends[segment, category - 1])
 
 
@@ -140,7 +140,7 @@ def neighbours(record: TileRecord) -> list[Operation]:
 
 
 def block_error(case: Case, copies: Sequence[Operation], area: float) -> float:
-    """Give the relative error of the tile's area that the peer finds with these copies."""
+    """The relative error of the tile's area that the peer finds with these copies."""
     segments = block_segments(case.site, block_nodes(case.site, case.lattice, copies))
     _, reading = run_peer(segments, len(case.site.segments))
     error = abs(tile_area(reading, segments) - area) / area

@@ -45,7 +45,7 @@ def frame_of(pattern: Pattern, samples: int) -> Frame:
 
 
 def fastest(action: Callable[[], object], runs: int = RUNS) -> float:
-    """Give the seconds of the fastest of some runs."""
+    """The seconds of the fastest of some runs."""
     seconds = []
     for _ in range(runs):
         begin = time.perf_counter()

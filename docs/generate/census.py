@@ -272,7 +272,7 @@ def _between_mirrors(found: Census) -> str:
 
 
 def describe(found: Census) -> str:
-    """Give a group's figures as lines of text."""
+    """A group's figures as lines of text."""
 
     def spread(name: str) -> str:
         low, middle, high = np.quantile(found.values(name), (0.0, 0.5, 1.0))

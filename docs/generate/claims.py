@@ -148,7 +148,7 @@ def outcome(claim: Claim, found: Census, even: Census | None) -> str:
 
 
 def table(rows: Sequence[Census], even: dict[str, Census]) -> str:
-    """Give the figures of all groups as a Markdown table; `even` are the censuses in cells with a = b, by group."""
+    """The figures of all groups as a Markdown table; `even` are the censuses in cells with a = b, by group."""
     head = (
         "group",
         "straight",

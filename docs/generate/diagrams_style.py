@@ -52,7 +52,7 @@ _SETTINGS = {
 
 @contextmanager
 def drawing(name: str, size: tuple[float, float], columns: int = 1, **options: Any) -> Iterator[tuple[Figure, Any]]:
-    """Give a figure of `size` inches and its axes, and write it as docs/pictures/NAME, SVG or PNG by its suffix."""
+    """A figure of `size` inches and its axes, which is written as docs/pictures/NAME, SVG or PNG by its suffix."""
     with mpl.rc_context(_SETTINGS):
         figure, axes = plt.subplots(1, columns, figsize=size, layout="constrained", **options)
         try:

@@ -62,23 +62,23 @@ class Family:
 
 
 def _tiles(figure: str, *rows: tuple[str, str]) -> tuple[Picture, ...]:
-    """Give the pictures of tessellations, each from a design's name after the figure's, and a caption."""
+    """The pictures of tessellations, each from a design's name after the figure's, and a caption."""
     return tuple(Picture(f"{figure}-{name}", f"{figure}-{name}.png", caption) for name, caption in rows)
 
 
 def _swimming(file: str, caption: str, region: str) -> Picture:
-    """Give a picture of the tile with its art."""
+    """A picture of the tile with its art."""
     arguments = ("--size", "400", "--overlay", "art", f"--region={region}", "--renderer", "cpu")
     return Picture("fig01-fish", file, caption, arguments, measure="")
 
 
 def _boundary(name: str, caption: str) -> Picture:
-    """Give a picture of two sites and what lies between them."""
+    """A picture of two sites and what lies between them."""
     return Picture(f"fig08-{name}", f"fig08-{name}.png", caption, (*OUTLINE, NEAR), measure="boundary")
 
 
 def _envelope(name: str, what: str) -> tuple[Picture, Picture]:
-    """Give the two pictures of cones and tents: in perspective, and from above by the depth test."""
+    """The two pictures of cones and tents: in perspective, and from above by the depth test."""
     above = ("--size", "480", NEAR, "--method", "hoff", "--renderer", "cpu")
     return (
         Picture(f"fig09-{name}", f"fig09-{name}-side.png", f"{what}, seen from the side", (NEAR,), PERSPECTIVE, ""),
@@ -87,7 +87,7 @@ def _envelope(name: str, what: str) -> tuple[Picture, Picture]:
 
 
 def _curves(figure: str, group: str) -> tuple[Picture, Picture]:
-    """Give the pictures of one and of two cubic curves in a group."""
+    """The pictures of one and of two cubic curves in a group."""
     one, two = _tiles(figure, (group, f"{group}, one curve"), (f"{group}-two", f"{group}, two curves"))
     return one, two
 
@@ -233,12 +233,12 @@ FAMILIES: tuple[Family, ...] = (
 
 
 def commands() -> Iterator[Command]:
-    """Give the commands of all pictures."""
+    """The commands of all pictures."""
     return (picture.command for family in FAMILIES for picture in family.pictures)
 
 
 def markdown(family: Family) -> str:
-    """Give a family's section: what it shows, its pictures with captions, what we found, the commands."""
+    """A family's section: what it shows, its pictures with captions, what we found, the commands."""
     pictures = [(picture.caption, f"paper/{picture.file}", caption(picture)) for picture in family.pictures]
     return "\n".join(
         (
@@ -252,7 +252,7 @@ def markdown(family: Family) -> str:
 
 
 def caption(picture: Picture) -> str:
-    """Give a picture's caption with what is measured in it."""
+    """A picture's caption with what is measured in it."""
     if not picture.measure:
         return picture.caption
     measured = _outline(picture.design) if picture.measure == "outline" else _between(picture.design)

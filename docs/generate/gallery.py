@@ -156,19 +156,19 @@ class Example:
 
 
 def examples() -> list[Example]:
-    """Give all examples: those of one site's art last."""
+    """All examples: those of one site's art last."""
     folder = ROOT / "examples"
     found = [*sorted(folder.glob("*.toml")), *sorted((folder / "art").glob("*.toml"))]
     return [Example(path.relative_to(folder).with_suffix("").as_posix()) for path in found]
 
 
 def commands() -> Iterator[Command]:
-    """Give the commands of all pictures."""
+    """The commands of all pictures."""
     return (command for example in examples() for command in example.commands)
 
 
 def section(example: Example) -> str:
-    """Give an example's section of the page."""
+    """An example's section of the page."""
     captions = (example.tile_caption, "the tessellation", example.sheet.caption)
     rows = [
         (f"{example.stem}: {caption}", Path(command.output).relative_to("docs").as_posix(), caption)
@@ -200,13 +200,13 @@ page small; without them the curves are exact. `heart.svg` is a drawing of one c
 
 
 def page() -> str:
-    """Give the page."""
+    """The page."""
     found = examples()
     return _HEAD.format(groups=_by_group(found)) + "\n".join(map(section, found))
 
 
 def _by_group(found: list[Example]) -> str:
-    """Give a table of the groups, in the order of the International Tables, and their examples."""
+    """A table of the groups, in the order of the International Tables, and their examples."""
     rows = ["| group | examples |", "| --- | --- |"]
     for group in GROUPS:
         links = ", ".join(f"[{example.stem}](#{example.stem})" for example in found if example.group == group)

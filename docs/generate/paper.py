@@ -45,7 +45,7 @@ ALWAYS = {
 
 
 def picture(name: str) -> Command:
-    """Give the command for the picture of a design that a sentence is tried at."""
+    """The command for the picture of a design that a sentence is tried at."""
     design = name if name.startswith("fig") else f"claim-{name}"
     options = ("--size", "440", "--overlay", "outline", "--overlay", "symmetry", "--renderer", "cpu")
     return Command(
@@ -57,12 +57,12 @@ def picture(name: str) -> Command:
 
 
 def commands() -> list[Command]:
-    """Give the commands of all pictures."""
+    """The commands of all pictures."""
     return [*figures.commands(), *(picture(name) for name in PGG | ALWAYS)]
 
 
 def pictures(captions: dict[str, str]) -> str:
-    """Give pictures beside each other, with the commands that made them."""
+    """Pictures beside each other, with the commands that made them."""
     rows = [(name, f"paper/claim-{name}.png", caption) for name, caption in captions.items()]
     return image_table(rows, len(rows)) + "\n" + command_block(picture(name) for name in captions)
 
@@ -73,7 +73,7 @@ def agrees(design: Path) -> bool:
 
 
 def sentences(found: dict[str, Census], even: dict[str, Census]) -> str:
-    """Give the paper's sentences with their verdicts, as a Markdown table; `even` are censuses with a = b."""
+    """The paper's sentences with their verdicts, as a Markdown table; `even` are censuses with a = b."""
     lines = ["| | the sentence, in substance | verdict | measured |", "|---|---|---|---|"]
     for claim in CLAIMS:
         outcomes = {group: outcome(claim, found[group], even.get(group)) for group in claim.groups}

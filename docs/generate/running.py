@@ -55,7 +55,7 @@ def run_all(commands: Iterable[Command], folder: Path | None = None) -> None:
 
 
 def image_table(pictures: Sequence[tuple[str, str, str]], columns: int) -> str:
-    """Give Markdown tables of pictures, `columns` in a row, each its alternative text, its address and its caption."""
+    """Markdown tables of pictures, `columns` in a row, each its alternative text, its address and its caption."""
     tables = []
     for start in range(0, len(pictures), columns):
         row = pictures[start : start + columns]
@@ -66,7 +66,7 @@ def image_table(pictures: Sequence[tuple[str, str, str]], columns: int) -> str:
 
 
 def command_block(commands: Iterable[Command]) -> str:
-    """Give a Markdown block of commands, one a line."""
+    """A Markdown block of commands, one a line."""
     return "```sh\n" + "".join(f"{command.shown}\n" for command in commands) + "```\n"
 
 

@@ -395,7 +395,7 @@ def test_a_read_only_file_is_no_place_for_a_stream(tmp_path: Path, monkeypatch: 
 
 @pytest.fixture
 def pipe() -> Iterator[tuple[int, int]]:
-    """Give both ends of a pipe, of which nothing blocks when it is empty."""
+    """Both ends of a pipe, of which nothing blocks when it is empty."""
     reader, writer = os.pipe()
     os.set_blocking(reader, False)
     yield reader, writer

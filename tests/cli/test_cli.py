@@ -39,7 +39,7 @@ def design(tmp_path: Path) -> Path:
 
 
 def complaint(result: subprocess.CompletedProcess[str], code: int = 2) -> str:
-    """Give the one message of a run that must have failed, with nothing on standard output and no traceback."""
+    """The one message of a run that must have failed, with nothing on standard output and no traceback."""
     assert result.returncode == code, result.stderr
     assert "Traceback" not in result.stderr
     assert result.stdout == ""

@@ -71,7 +71,7 @@ def check(tiling: Tiling, **options: Any) -> CheckReport:
 
 
 def step(tiling: Tiling, samples: int = SAMPLES) -> float:
-    """Give the distance between samples."""
+    """The distance between samples."""
     return float(cell_frame(tiling.design.lattice, samples).pixel)
 
 
@@ -284,7 +284,7 @@ def test_the_precision_of_the_image_does_not_matter(monkeypatch: pytest.MonkeyPa
 
 
 def before(outline: Outline, k: int) -> int:
-    """Give the arc that leads to arc k."""
+    """The arc that leads to arc k."""
     place = int(np.searchsorted(outline.ring_offsets, k, side="right")) - 1
     first, stop = outline.ring_offsets[place : place + 2].tolist()
     return int(stop - 1 if k == first else k - 1)
@@ -300,7 +300,7 @@ def moved(outline: Outline, k: int, by: complex) -> Outline:
 
 
 def longest(outline: Outline, *, curved: bool) -> int:
-    """Give the longest straight, or curved, arc."""
+    """The longest straight, or curved, arc."""
     return int(np.argmax(np.where(outline.curved == curved, outline.lengths, 0.0)))
 
 
@@ -342,7 +342,7 @@ def exchanged(outline: Outline, _: float) -> Outline:
 
 
 def renamed(outline: Outline, _: float, *, site: str | None = None, operation: str | None = None) -> Outline:
-    """Give a neighbour another site's name, or another operation; without either, that of the copy in the next cell."""
+    """The outline with another name or operation of a neighbour; without either, that of the copy in the next cell."""
     (name, there), *others = outline.neighbours
     other = Operation.parse(operation) if operation else there if site else there.translated(1, 0)
     return replace(outline, neighbours=(Neighbour(site or name, other), *others))
@@ -679,7 +679,7 @@ def test_a_broken_image_is_seen(monkeypatch: pytest.MonkeyPatch, kind: str) -> N
 
 
 def distance_to_images(tiling: Tiling, places: Complexes, points: Complexes) -> npt.NDArray[np.float64]:
-    """Give the distance of each place from the nearest image of any of the points under the whole group."""
+    """The distance of each place from the nearest image of any of the points under the whole group."""
     lattice = tiling.design.lattice
     least = np.full(len(places), np.inf)
     for operation in tiling.design.group.operations:
@@ -691,7 +691,7 @@ def distance_to_images(tiling: Tiling, places: Complexes, points: Complexes) -> 
 
 
 def points_of(outline: Outline, arcs: Sequence[int]) -> Complexes:
-    """Give many points of some arcs."""
+    """Many points of some arcs."""
     t = np.linspace(0.0, 1.0, 500)[:, None]
     start, control, end = outline.start[arcs], outline.control[arcs], outline.end[arcs]
     return np.asarray(((1 - t) ** 2 * start + 2 * t * (1 - t) * control + t * t * end).ravel())

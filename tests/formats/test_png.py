@@ -27,12 +27,12 @@ def encoded(picture: Pixels, cuts: Iterable[int] = (), **options: Any) -> bytes:
 
 
 def noise(height: int, width: int) -> Pixels:
-    """Give pixels that no compressor makes smaller."""
+    """Pixels that no compressor makes smaller."""
     return np.random.default_rng(height).integers(0, 256, (height, width, 3), dtype=np.uint8)
 
 
 def cells(height: int, width: int) -> Pixels:
-    """Give flat colours with thin lines."""
+    """Flat colours with thin lines."""
     y, x = np.mgrid[:height, :width]
     picture = np.stack((x // 9 * 20, y // 7 * 30, (x + y) // 11 * 25), axis=2).astype(np.uint8)
     picture[(x + 2 * y) % 13 == 0] = 0

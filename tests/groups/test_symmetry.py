@@ -273,7 +273,7 @@ def is_inside(z: complex, rectangle: Rectangle) -> bool:
 
 
 def all_centres(elements: SymmetryElements, lattice: Lattice, rectangle: Rectangle, reach: int) -> list[list[float]]:
-    """Give centres and orders by trying every lattice vector with coefficients up to `reach`."""
+    """Centres and orders by trying every lattice vector with coefficients up to `reach`."""
     tried = [
         (lattice.cartesian(centre.x + i, centre.y + j), centre.order)
         for centre in elements.centres
@@ -283,7 +283,7 @@ def all_centres(elements: SymmetryElements, lattice: Lattice, rectangle: Rectang
 
 
 def all_pieces(lines: tuple[Line, ...], lattice: Lattice, rectangle: Rectangle, reach: int) -> list[list[float]]:
-    """Give the pieces of lines by trying every image up to `reach`: between crossings with the rectangle's sides."""
+    """The pieces of lines by trying every image up to `reach`: between crossings with the rectangle's sides."""
     x0, y0, x1, y1 = rectangle
     pieces = []
     for line in lines:
@@ -303,7 +303,7 @@ def all_pieces(lines: tuple[Line, ...], lattice: Lattice, rectangle: Rectangle, 
 
 
 def as_rows(pieces: Complexes) -> list[list[float]]:
-    """Give the pieces with their ends in order, sorted."""
+    """The pieces with their ends in order, sorted."""
     assert pieces.shape == (len(pieces), 2)
     ends = [sorted((z.real, z.imag) for z in piece) for piece in pieces.tolist()]
     return sorted([*first, *last] for first, last in ends)

@@ -75,7 +75,7 @@ class BlockTile:
 
 
 def _bulge(grid: Any, cell: Any, other: Any, p: complex, q: complex) -> float:
-    """Give the signed area between a parabolic edge from p to q and its chord, in units of the grid.
+    """The signed area between a parabolic edge from p to q and its chord, in units of the grid.
 
     About the directrix as x axis the curve is y = x^2 / 2f + f / 2, so the area is dx^3 / 12 f, f the focus's distance.
     """
@@ -90,22 +90,22 @@ def _bulge(grid: Any, cell: Any, other: Any, p: complex, q: complex) -> float:
 
 
 def _segment(grid: Any, cell: Any) -> Any:
-    """Give the two ends of a cell's segment."""
+    """The two ends of a cell's segment."""
     return grid.RetrieveScaledSegment(cell)
 
 
 def _corner(grid: Any, cell: Any) -> complex:
-    """Give the point of a cell: a lone one or the end of a segment."""
+    """The point of a cell: a lone one or the end of a segment."""
     return complex(*grid.RetrieveScaledPoint(cell))
 
 
 def _round(z: Complexes, unit: float) -> list[complex]:
-    """Give points on the grid."""
+    """Points on the grid."""
     return [complex(round(p.real / unit), round(p.imag / unit)) for p in z.tolist()]
 
 
 def _copies(plane: brute.Plane, site: int, rim: float) -> list[tuple[int, Complexes, Complexes]]:
-    """Give site, start and end points of every copy that comes within `rim` of a site's centre, itself first."""
+    """Site, start and end points of every copy that comes within `rim` of a site's centre, itself first."""
     centre, (p, q) = plane.centres[site], plane.reduced
     det = abs((np.conj(p) * q).imag)
     found: list[tuple[int, Complexes, Complexes]] = [(site, plane.starts[site], plane.ends[site])]
@@ -130,7 +130,7 @@ def _copies(plane: brute.Plane, site: int, rim: float) -> list[tuple[int, Comple
 
 
 def _key(plane: brute.Plane, start: Complexes, end: Complexes) -> tuple[float, ...]:
-    """Give numbers by which images of a site that coincide can be told, whatever the order of the elements."""
+    """Numbers by which images of a site that coincide can be told, whatever the order of the elements."""
     unit = 1e-7 * plane.size
     marks = np.concatenate([start, end])
     moments = [complex(marks.mean()), complex(np.abs(marks - plane.centres[0]).mean())]

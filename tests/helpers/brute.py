@@ -71,7 +71,7 @@ class Motion:
 
 
 def _matrix(turn: int, mirrored: int, system: str) -> tuple[int, int, int, int]:
-    """Give the integer matrix of a rotation or mirror on the ideal cell of a system."""
+    """The integer matrix of a rotation or mirror on the ideal cell of a system."""
     b = complex(TURNS[_ANGLE[system] or 3])
     columns = [complex(TURNS[turn]) * (v.conjugate() if mirrored else v) for v in (1 + 0j, b)]
     ys = [z.imag / b.imag for z in columns]
@@ -81,7 +81,7 @@ def _matrix(turn: int, mirrored: int, system: str) -> tuple[int, int, int, int]:
 
 @cache
 def motions(group: str) -> tuple[Motion, ...]:
-    """Give the motions of a group up to lattice translations: all products of its generators."""
+    """The motions of a group up to lattice translations: all products of its generators."""
     system, generators = GENERATORS[group]
     start = Motion(0, False, (1, 0, 0, 1), (Fraction(0), Fraction(0)))
     found = {start}
@@ -161,20 +161,20 @@ class Plane:
             q -= n * p
 
     def shift(self, motion: Motion) -> complex:
-        """Give a motion's translation as a vector."""
+        """A motion's translation as a vector."""
         return float(motion.shift[0]) * self.a + float(motion.shift[1]) * self.b
 
     def pull(self, motion: Motion, z: Complexes, extra: Complexes | complex = 0.0) -> Complexes:
-        """Give the points that a motion, followed by the translation `extra`, takes to z."""
+        """The points that a motion, followed by the translation `extra`, takes to z."""
         back = TURNS[motion.turn].conjugate() * (z - (self.shift(motion) + extra))
         return np.asarray(np.conj(back) if motion.mirrored else back)
 
     def push(self, motion: Motion, z: Complexes) -> Complexes:
-        """Give the images of points."""
+        """The images of points."""
         return np.asarray(TURNS[motion.turn] * (np.conj(z) if motion.mirrored else z) + self.shift(motion))
 
     def distance(self, site: int, z: Complexes) -> Floats:
-        """Give the distance of each point from a base site, over all its elements."""
+        """The distance of each point from a base site, over all its elements."""
         start, chord = self.starts[site], self.ends[site] - self.starts[site]
         square = np.maximum(np.abs(chord) ** 2, 1e-300)
         result = np.empty(len(z))
@@ -186,7 +186,7 @@ class Plane:
         return result
 
     def around(self, z: Complexes, reach: list[float] | None = None) -> Block:
-        """Give, for points, every copy that may be nearest; with `reach`, also those that lie so near (by site)."""
+        """For points, every copy that may be nearest; with `reach`, also those that lie so near (by site)."""
         p, q = self.reduced
         det = (np.conj(p) * q).imag
         rows = []
@@ -215,7 +215,7 @@ class Plane:
         return Block(*(np.concatenate(column) for column in zip(*rows, strict=True)))
 
     def symmetries(self, site: int) -> list[Motion]:
-        """Give the motions that map a site onto itself, compared as point sets by their elements' ends and middles."""
+        """The motions that map a site onto itself, compared as point sets by their elements' ends and middles."""
         marks = np.concatenate([self.starts[site], self.ends[site], (self.starts[site] + self.ends[site]) / 2])
         weight = np.abs(self.ends[site] - self.starts[site])
         middle = (self.starts[site] + self.ends[site]) / 2
@@ -266,16 +266,16 @@ class Shape:
         self.middle = complex(hull.mean())
 
     def reach(self, centre: complex) -> float:
-        """Give how far the outline's hull reaches from a point."""
+        """How far the outline's hull reaches from a point."""
         return float(np.abs(np.concatenate([self.start, self.control, self.end]) - centre).max())
 
     def at(self, arc: Ints, t: Floats) -> Complexes:
-        """Give points of arcs."""
+        """Points of arcs."""
         curve = (1 - t) ** 2 * self.start[arc] + 2 * t * (1 - t) * self.control[arc] + t * t * self.end[arc]
         return np.asarray(np.where(self.curved[arc], curve, (1 - t) * self.start[arc] + t * self.end[arc]))
 
     def ring_areas(self) -> list[float]:
-        """Give the signed area of each ring, by the shoelace formula and two thirds of each arc's triangle."""
+        """The signed area of each ring, by the shoelace formula and two thirds of each arc's triangle."""
         start, control, end = self.start - self.middle, self.control - self.middle, self.end - self.middle
         sector = (np.conj(start) * end).imag / 2
         bulge = (np.conj(control - start) * (end - start)).imag / 3
@@ -283,7 +283,7 @@ class Shape:
         return [math.fsum(part) for part in np.split(parts, np.cumsum(self.sizes)[:-1])]
 
     def contains(self, z: Complexes) -> NDArray[np.bool_]:
-        """Tell for each point whether it is inside: a ray to the right meets the outline an odd number of times."""
+        """For each point whether it is inside: a ray to the right meets the outline an odd number of times."""
         x0, x1, y0, y1 = self.box
         inside = np.zeros(len(z), bool)
         near = np.flatnonzero((z.real >= x0) & (z.real <= x1) & (z.imag >= y0) & (z.imag <= y1))

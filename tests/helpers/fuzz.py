@@ -46,7 +46,7 @@ class Outcome:
 
 
 def design_of(seed: int, number: int) -> tuple[str, dict[str, Any]]:
-    """Give the kind of a design and the design."""
+    """The kind of a design and the design."""
     return strategies.make_design(strategies.Dice(np.random.default_rng([seed, number])))
 
 
@@ -95,7 +95,7 @@ def _refusal(read: Design, error: TouchingCopiesError) -> str:
 
 
 def geometry(plane: brute.Plane, site: int, motion: brute.Motion | None = None) -> shapely.Geometry:
-    """Give a copy of a site for shapely."""
+    """A copy of a site for shapely."""
     ends = np.stack([plane.starts[site], plane.ends[site]], axis=1)
     moved = plane.push(motion, ends) if motion else ends
     return shapely.multilinestrings(shapely.linestrings(np.stack([moved.real, moved.imag], axis=-1)))

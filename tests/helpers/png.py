@@ -15,7 +15,7 @@ Chunks = list[tuple[bytes, bytes]]
 
 
 def chunks_of(data: bytes) -> Chunks:
-    """Give the chunks of a PNG by kind, after checking each one's CRC."""
+    """The chunks of a PNG by kind, after checking each one's CRC."""
     assert data.startswith(SIGNATURE)
     chunks, at = [], len(SIGNATURE)
     while at < len(data):

@@ -51,11 +51,11 @@ class Chance(Protocol):
     """Where the generators' decisions come from."""
 
     def real(self, low: float, high: float) -> float:
-        """Give a number between two."""
+        """A number between two."""
         ...
 
     def whole(self, low: int, high: int) -> int:
-        """Give an integer, both ends included."""
+        """An integer, both ends included."""
         ...
 
     def pick(self, options: Sequence[T]) -> T:
@@ -70,11 +70,11 @@ class Dice:
         self._rng = rng
 
     def real(self, low: float, high: float) -> float:
-        """Give a number between two."""
+        """A number between two."""
         return float(low + (high - low) * self._rng.random())
 
     def whole(self, low: int, high: int) -> int:
-        """Give an integer, both ends included."""
+        """An integer, both ends included."""
         return int(self._rng.integers(low, high, endpoint=True))
 
     def pick(self, options: Sequence[T]) -> T:
@@ -89,11 +89,11 @@ class Drawn:
         self._draw = draw
 
     def real(self, low: float, high: float) -> float:
-        """Give a number between two."""
+        """A number between two."""
         return low + (high - low) * float(self.whole(0, 10**6)) / 1e6
 
     def whole(self, low: int, high: int) -> int:
-        """Give an integer, both ends included."""
+        """An integer, both ends included."""
         from hypothesis import strategies as st
 
         return int(self._draw(st.integers(low, high)))
@@ -121,23 +121,23 @@ class Canvas:
         return math.sqrt(self.lattice.det)
 
     def corners(self) -> list[complex]:
-        """Give the corners of the domain of one copy."""
+        """The corners of the domain of one copy."""
         pairs = (pair.split(",") for pair in DOMAINS[self.group].split())
         return [self.lattice.cartesian(float(x) / 12, float(y) / 12) for x, y in pairs]
 
     def centre(self) -> complex:
-        """Give the middle of the domain."""
+        """The middle of the domain."""
         corners = self.corners()
         return sum(corners) / len(corners)
 
     def inradius(self) -> float:
-        """Give how far the middle is from the domain's border."""
+        """How far the middle is from the domain's border."""
         corners, centre = self.corners(), self.centre()
         sides = zip(corners, corners[1:] + corners[:1], strict=True)
         return min(abs(((q - p).conjugate() * (centre - p)).imag) / abs(q - p) for p, q in sides)
 
     def spot(self, chance: Chance, fill: float = 0.9) -> complex:
-        """Give a point of the domain, shrunk by `fill` about its middle."""
+        """A point of the domain, shrunk by `fill` about its middle."""
         corners = self.corners()
         k = chance.whole(1, len(corners) - 2)
         u, v = chance.real(0.0, 1.0), chance.real(0.0, 1.0)
@@ -147,7 +147,7 @@ class Canvas:
         return self.centre() + fill * (z - self.centre())
 
     def stabilizer(self, place: complex) -> list[Isometry]:
-        """Give the isometries of the group that leave a place where it is, the identity first."""
+        """The isometries of the group that leave a place where it is, the identity first."""
         lattice, found = self.lattice, []
         for operation in GROUPS[self.group].operations:
             away = place - lattice.isometry(operation)(place)
@@ -159,7 +159,7 @@ class Canvas:
 
 
 def canvas(chance: Chance, group: str, size: float = 60.0, aspect: float = 2.0, tilt: float = 50.0) -> Canvas:
-    """Give a cell for a group: sides up to `aspect` apart, the angle up to `tilt` degrees from a right one."""
+    """A cell for a group: sides up to `aspect` apart, the angle up to `tilt` degrees from a right one."""
     kind = GROUPS[group]
     cell = {"a": size}
     if not kind.fixes_b:
@@ -173,7 +173,7 @@ def canvas(chance: Chance, group: str, size: float = 60.0, aspect: float = 2.0, 
 
 
 def xy(z: complex) -> list[float]:
-    """Give a point as the design file writes it."""
+    """A point as the design file writes it."""
     return [float(z.real), float(z.imag)]
 
 
@@ -191,17 +191,17 @@ def _apart(points: Sequence[complex], least: float) -> list[complex]:
 
 
 def segment(*ends: complex) -> Stroke:
-    """Give a segment, or a polyline where there are more than two points."""
+    """A segment, or a polyline where there are more than two points."""
     return {"segment" if len(ends) == 2 else "polyline": [xy(z) for z in ends]}
 
 
 def closed(corners: Sequence[complex]) -> Stroke:
-    """Give a closed polyline."""
+    """A closed polyline."""
     return {"polyline": [xy(z) for z in corners], "closed": True}
 
 
 def path(points: Sequence[complex], size: float) -> Stroke:
-    """Give SVG path data through four points or more: every command of it once in a while."""
+    """SVG path data through four points or more: every command of it once in a while."""
     p = [f"{z.real!r},{z.imag!r}" for z in points]
     more = [
         f"C {p[1]} {p[2]} {p[3]}",
@@ -218,7 +218,7 @@ STROKES = ("segment", "polyline", "closed", "bezier", "hermite", "catmull_rom", 
 
 
 def stroke(chance: Chance, at: Callable[[], complex], size: float, kind: str | None = None) -> Stroke:
-    """Give a stroke of a kind through points that `at` gives, which lie some `size` apart."""
+    """A stroke of a kind through points that `at` gives, which lie some `size` apart."""
     kind = kind or chance.pick(STROKES)
     counts = {"segment": (2, 2), "circle": (1, 1), "point": (1, 1), "polyline": (2, 6), "closed": (3, 6)}
     few, many = counts.get(kind, (4, 6))
@@ -248,7 +248,7 @@ def stroke(chance: Chance, at: Callable[[], complex], size: float, kind: str | N
 
 
 def carried(chance: Chance, drawn: Stroke) -> Stroke:
-    """Give a stroke drawn elsewhere, with the scale, rotation and translation that bring it back."""
+    """A stroke drawn elsewhere, with the scale, rotation and translation that bring it back."""
     scale, turn = chance.pick((1.0, 2.0, -0.5, 1.7)), chance.pick((0.0, 90.0, 60.0, -17.0))
     shift = complex(chance.whole(-9, 9), chance.whole(-9, 9))
     kind = next(iter(drawn))
@@ -318,7 +318,7 @@ def grid(chance: Chance, on: Canvas) -> Sites:
 
 
 def regular(centre: complex, radius: float, count: int, turn: float = 0.0) -> list[complex]:
-    """Give the corners of a regular polygon, the first at `turn` degrees."""
+    """The corners of a regular polygon, the first at `turn` degrees."""
     return [centre + cmath.rect(radius, math.radians(turn) + 2 * math.pi * k / count) for k in range(count)]
 
 
@@ -346,7 +346,7 @@ def polygon(chance: Chance, on: Canvas) -> Sites:
 
 
 def _about(chance: Chance, on: Canvas) -> tuple[list[Isometry], complex, float]:
-    """Give the symmetries of a special place, the place, and how far to draw from it."""
+    """The symmetries of a special place, the place, and how far to draw from it."""
     places = [on.lattice.cartesian(x, y) for x in SPECIAL for y in SPECIAL]
     place = chance.pick([z for z in places if len(on.stabilizer(z)) > 1] or places[:1])
     return on.stabilizer(place), place, on.size * chance.pick((0.05, 0.15, 0.3))
@@ -441,7 +441,7 @@ def points(chance: Chance, on: Canvas) -> Sites:
 
 
 def _within(chance: Chance, middle: complex, reach: float) -> complex:
-    """Give a point in a ring about another."""
+    """A point in a ring about another."""
     return middle + cmath.rect(reach * chance.real(0.2, 1.0), chance.real(0.0, 6.2))
 
 
@@ -510,7 +510,7 @@ KINDS: dict[str, tuple[Callable[[Chance, Canvas], Sites], int]] = {
 
 
 def make_design(chance: Chance, kind: str | None = None, group: str | None = None) -> tuple[str, dict[str, Any]]:
-    """Give a kind's name and a random design of this kind as a mapping."""
+    """A kind's name and a random design of this kind as a mapping."""
     if kind is None:
         kind = chance.pick([name for name, (_, weight) in KINDS.items() for _ in range(weight)])
     generate = KINDS[kind][0]
@@ -537,7 +537,7 @@ def make_design(chance: Chance, kind: str | None = None, group: str | None = Non
 
 
 def designs(*kinds: str, group: str | None = None) -> Any:
-    """Give a Hypothesis strategy of designs of some kinds (all but the slowest, if none is named)."""
+    """A Hypothesis strategy of designs of some kinds (all but the slowest, if none is named)."""
     from hypothesis import strategies as st
 
     names = kinds or tuple(name for name in KINDS if name not in {"dense", "long"})

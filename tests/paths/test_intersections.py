@@ -17,7 +17,7 @@ DENSE = 2001
 
 
 def single(start: Complexes, end: Complexes, control: Complexes, kind: npt.ArrayLike) -> Paths:
-    """Give open paths of one piece each."""
+    """Open paths of one piece each."""
     n = len(start)
     kinds = np.broadcast_to(np.asarray(kind, np.uint8), n).copy()
     controls = np.stack((np.where(kinds == LINE, 0, control), np.zeros(n)), axis=1)
@@ -25,17 +25,17 @@ def single(start: Complexes, end: Complexes, control: Complexes, kind: npt.Array
 
 
 def one(start: complex, end: complex, control: complex = 0j, kind: int = LINE) -> Paths:
-    """Give one piece."""
+    """One piece."""
     return single(np.array([start]), np.array([end]), np.array([control]), kind)
 
 
 def somewhere(rng: np.random.Generator, n: int) -> Complexes:
-    """Give random points of a square."""
+    """Random points of a square."""
     return np.asarray(rng.uniform(-1, 1, n) + 1j * rng.uniform(-1, 1, n))
 
 
 def random_pieces(rng: np.random.Generator, n: int, kinds: list[int], *, scale: float = 1, shift: complex = 0) -> Paths:
-    """Give random pieces; arcs from almost straight ones to almost whole circles."""
+    """Random pieces; arcs from almost straight ones to almost whole circles."""
     start, end, free = (somewhere(rng, n) * scale + shift for _ in range(3))
     kind = rng.choice(kinds, n).astype(np.uint8)
     bulge = np.tan(rng.uniform(-1.4, 1.4, n) * rng.choice([1e-9, 1e-4, 0.1, 1], n))
@@ -61,7 +61,7 @@ def samples(paths: Paths, count: int = DENSE) -> Complexes:
 
 
 def chords(rows: Complexes) -> npt.NDArray[np.object_]:
-    """Give polylines through the points of each row."""
+    """Polylines through the points of each row."""
     return np.asarray(shapely.linestrings(np.stack((rows.real, rows.imag), axis=-1)))
 
 
@@ -110,7 +110,7 @@ def test_a_wrong_crossing_is_seen() -> None:
 
 
 def meeting(first: Paths, second: Paths) -> tuple[Floats, Floats, Ints]:
-    """Give where two pieces meet, and whether they overlap."""
+    """Where two pieces meet, and whether they overlap."""
     found = crossings(first, np.array([0]), second, np.array([0]))
     return found.t, found.u, found.overlaps
 

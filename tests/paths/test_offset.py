@@ -41,7 +41,7 @@ WASHER = Paths.polylines([[0, 3, 3 + 3j, 3j], [1 + 1j, 1 + 2j, 2 + 2j, 2 + 1j]],
 
 
 def ring(corners: Complexes, bulges: Floats) -> Paths:
-    """Give a closed ring with an arc of each bulge."""
+    """A closed ring with an arc of each bulge."""
     start, end = corners, np.roll(corners, -1)
     middle = (start + end) / 2 - 0.5j * bulges * (end - start)
     control = np.stack((np.where(bulges == 0, 0, middle), np.zeros(len(start))), axis=1)
@@ -50,7 +50,7 @@ def ring(corners: Complexes, bulges: Floats) -> Paths:
 
 
 def star(seed: int, *, corners_only: bool = False) -> Paths:
-    """Give a random star of lines and arcs, about 10 in radius; with `corners_only` no arc ends at a reflex corner."""
+    """A random star of lines and arcs, about 10 in radius; with `corners_only` no arc ends at a reflex corner."""
     rng = np.random.default_rng(seed)
     n = int(rng.integers(4, 24))
     angle = 2 * np.pi * (np.arange(n) + rng.uniform(-0.3, 0.3, n)) / n
@@ -87,7 +87,7 @@ def samples(paths: Paths, count: int) -> list[Complexes]:
 
 
 def solid(paths: Paths, count: int = 60) -> shapely.Geometry:
-    """Give what closed paths enclose, from samples: the outer rings less the holes."""
+    """What closed paths enclose, from samples: the outer rings less the holes."""
     loops = [shapely.Polygon(np.stack((p.real, p.imag), axis=1)) for p in samples(paths, count)]
     outer = [loop for loop in loops if shapely.is_ccw(loop.exterior)]
     holes = [loop for loop in loops if not shapely.is_ccw(loop.exterior)]
@@ -97,7 +97,7 @@ def solid(paths: Paths, count: int = 60) -> shapely.Geometry:
 
 
 def points_of(paths: Paths, count: int) -> npt.NDArray[np.object_]:
-    """Give samples of paths as points of the other library."""
+    """Samples of paths as points of the other library."""
     points = np.concatenate(samples(paths, count))
     return np.asarray(shapely.points(points.real, points.imag))
 
@@ -117,7 +117,7 @@ def deviation(region: Paths, result: Paths, distance: float, count: int = 60) ->
 
 
 def paths_of(outline: Outline) -> Paths:
-    """Give an outline as paths."""
+    """An outline as paths."""
     control = np.stack((np.where(outline.curved, outline.control, 0), np.zeros(len(outline.start))), axis=1)
     closed = np.ones(len(outline.ring_offsets) - 1, np.bool_)
     kind = np.where(outline.curved, QUAD, LINE).astype(np.uint8)

@@ -41,7 +41,7 @@ def strokes(name: str) -> list[list[str]]:
 
 @cache
 def designs_by_kind() -> set[tuple[str, tuple[str, ...]]]:
-    """Give the group and the strokes of every design of one site."""
+    """The group and the strokes of every design of one site."""
     return {(source(name)["group"], tuple(sites[0])) for name in EXAMPLES if len(sites := strokes(name)) == 1}
 
 

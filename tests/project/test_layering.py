@@ -42,7 +42,7 @@ STAGES = ("vector", "raster")
 
 
 def modules() -> dict[str, Path]:
-    """Give every module of the product by its installed name."""
+    """Every module of the product by its installed name."""
     homes = {"voronoi_tiles": "voronoi_tiles", "vector": "voronoi_tiles.vector", "raster": "voronoi_tiles.raster"}
     return {
         ".".join((package, *path.relative_to(ROOT / folder).with_suffix("").parts)): path
@@ -52,7 +52,7 @@ def modules() -> dict[str, Path]:
 
 
 def imports(tree: ast.Module, package: str) -> Iterator[tuple[str, str]]:
-    """Give every imported module or name of one, with what is around it: "Design.tessellate", "TYPE_CHECKING", ""."""
+    """Every imported module or name of one, with what is around it: "Design.tessellate", "TYPE_CHECKING", ""."""
 
     def visit(node: ast.AST, scope: str) -> Iterator[tuple[str, str]]:
         match node:
@@ -78,13 +78,13 @@ def imports(tree: ast.Module, package: str) -> Iterator[tuple[str, str]]:
 
 
 def place(module: str) -> str | None:
-    """Give the package below the root that a module belongs to; None for the root package and what is no module."""
+    """The package below the root that a module belongs to; None for the root package and what is no module."""
     parts = module.split(".")
     return parts[1] if len(parts) > 1 and parts[1] in RANK else None
 
 
 def violations(source: str, module: str) -> list[str]:
-    """Give the imports of a module that break the rules."""
+    """The imports of a module that break the rules."""
     package, _, name = module.rpartition(".")
     own = place(module)
     found = []
@@ -110,7 +110,7 @@ def violations(source: str, module: str) -> list[str]:
 
 
 def cycle(arrows: dict[str, set[str]]) -> list[str]:
-    """Give a cycle of a directed graph, empty where there is none."""
+    """A cycle of a directed graph, empty where there is none."""
     done: set[str] = set()
 
     def visit(node: str, path: list[str]) -> list[str]:
@@ -129,7 +129,7 @@ def cycle(arrows: dict[str, set[str]]) -> list[str]:
 
 
 def arrows_between_modules() -> dict[str, set[str]]:
-    """Give for each module those that it imports, deferred and for types alike, without UPWARDS."""
+    """For each module those that it imports, deferred and for types alike, without UPWARDS."""
     files = modules()
     names = {name.removesuffix(".__init__"): name for name in files}
     arrows: dict[str, set[str]] = {module: set() for module in files}

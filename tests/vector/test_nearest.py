@@ -26,17 +26,17 @@ BULGE: Ends = (0j, 3 + 5j, 7 + 1j)
 
 
 def line(start: complex, end: complex) -> LineArc:
-    """Give a straight arc."""
+    """A straight arc."""
     return LineArc(start, end, RIGHT)
 
 
 def curve(ends: Ends) -> ParabolaArc:
-    """Give a curved arc; nothing here reads its focus and directrix."""
+    """A curved arc; nothing here reads its focus and directrix."""
     return ParabolaArc(*ends, 0j, (0j, 1j), RIGHT)
 
 
 def distances(arcs: Sequence[Arc], points: Sequence[complex]) -> npt.NDArray[np.float64]:
-    """Give the distance of each point from the arc of the same number."""
+    """The distance of each point from the arc of the same number."""
     return np.asarray(distance_to_arcs(Outline.from_rings([arcs]), np.arange(len(arcs)), np.array(points, complex)))
 
 

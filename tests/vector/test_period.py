@@ -247,7 +247,7 @@ def edge_corners(here: Period, edge: int) -> Complexes:
 
 
 def maps_onto(action: Any, motion: Motion, one: tuple[Complexes, complex], two: tuple[Complexes, complex]) -> bool:
-    """Tell whether a motion, followed by some lattice translation, takes one edge to another, by ends and middle."""
+    """Whether a motion, followed by some lattice translation, takes one edge to another, by ends and middle."""
     ends, middle = action.apply(motion, one[0]), complex(action.apply(motion, np.array([one[1]]))[0])
     x, y = action.fractional(two[1] - middle)
     shift = complex(action.cartesian(round(x), round(y)))

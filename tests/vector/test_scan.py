@@ -27,7 +27,7 @@ Copies = list[tuple[Outline, Isometry]]
 
 
 def copies_of(tiles: Tiling) -> tuple[Copies, list[tuple[int, Operation]]]:
-    """Give one cell's copies, and the site and operation of each: one operation of every coset of the symmetry."""
+    """One cell's copies, and the site and operation of each: one operation of every coset of the symmetry."""
     copies, names = [], []
     for site, tile in enumerate(tiles.tiles):
         seen: set[Operation] = set()
@@ -40,12 +40,12 @@ def copies_of(tiles: Tiling) -> tuple[Copies, list[tuple[int, Operation]]]:
 
 
 def grid_of(tiles: Tiling, nx: int, ny: int, phase: tuple[float, float]) -> Grid:
-    """Give a grid of the cell at the origin."""
+    """A grid of the cell at the origin."""
     return Grid(0j, tiles.design.lattice.a, tiles.design.lattice.b, nx, ny, phase)
 
 
 def tangle(seed: int) -> Outline:
-    """Give two rings of lines and wild parabolas that cross themselves and each other; some arcs are level."""
+    """Two rings of lines and wild parabolas that cross themselves and each other; some arcs are level."""
     rng = np.random.default_rng(seed)
     rings = []
     for count in (5, 3):
@@ -60,7 +60,7 @@ def tangle(seed: int) -> Outline:
 
 
 def painted(copies: Copies, grid: Grid, low: int, high: int) -> np.ndarray:
-    """Give the winding number of each sample low <= i, j < high, row by row, from the spans."""
+    """The winding number of each sample low <= i, j < high, row by row, from the spans."""
     image = np.zeros((high - low, high - low), int)
     spans = scan_spans(copies, grid)
     for row, first, stop, winding in zip(spans.row, spans.first, spans.stop, spans.winding, strict=True):
