@@ -106,8 +106,8 @@ class Pattern:
         segments = {(min(s), max(s)) for s in site.segments.tolist()}
         found = []
         for operation in self.group.operations:
-            x, y = self.coordinates(np.array([middle + centre - self.lattice.isometry(operation)(middle + centre)]))
-            moved = operation.translated(round(float(x[0])), round(float(y[0])))
+            x, y = self.lattice.fractional(middle + centre - self.lattice.isometry(operation)(middle + centre))
+            moved = operation.translated(round(x), round(y))
             isometry = self.lattice.isometry(moved)
             turned = isometry.a * (local.conj() if isometry.conj else local) + (isometry(complex(middle)) - middle)
             distance, image = tree.query(np.stack((turned.real, turned.imag), axis=1))
@@ -118,14 +118,10 @@ class Pattern:
                 found.append(moved)
         return tuple(found)
 
-    def coordinates(self, z: Complexes) -> tuple[Floats, Floats]:
-        """The fractional coordinates of points."""
-        return self.lattice.fractional(z)
-
     @cached_property
     def basis(self) -> Ints:
         """The reduced basis in integers over the conventional one, a row for each vector."""
-        x, y = self.coordinates(np.array(self.lattice.reduced_basis))
+        x, y = self.lattice.fractional(np.array(self.lattice.reduced_basis))
         return np.round(np.stack((x, y), axis=1)).astype(np.intp)
 
 

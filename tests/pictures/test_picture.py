@@ -178,7 +178,7 @@ def test_the_default_region_repeats_seamlessly(group: str) -> None:
     design = vt.Design.loads(starter_text(group, None))
     pattern = pattern_of(design)
     x0, y0, x1, y1 = default_region(pattern)
-    x, y = pattern.coordinates(np.array([complex(x1 - x0, 0.0), complex(0.0, y1 - y0)]))
+    x, y = pattern.lattice.fractional(np.array([complex(x1 - x0, 0.0), complex(0.0, y1 - y0)]))
     whole = np.abs(np.concatenate((x, y)) - np.round(np.concatenate((x, y)))).max() < 1e-12
     assert whole == (group != "p1")
 

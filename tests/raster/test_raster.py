@@ -125,11 +125,11 @@ class Truth:
         return self.plane.distance(site, self.plane.pull(motion, z))
 
     def slack(self, z: Complexes) -> float:
-        """Give the oracle's own rounding, in units."""
+        """The oracle's own rounding, in units."""
         return 8 * EPSILON * (self.pattern.scale + float(np.abs(z).max()))
 
     def around(self, z: Complexes, reach: float) -> list[list[tuple[float, Key]]]:
-        """Give for each point all copies within `reach`, and maybe others: distances and names, nearest first."""
+        """For each point all copies within `reach`, and maybe others: distances and names, nearest first."""
         plane = self.plane
         block = plane.around(z, [radius + reach for radius in plane.radii])
         home = np.empty(len(block.point), complex)
@@ -192,7 +192,7 @@ class Truth:
 
 
 def _product(outer: brute.Motion, inner: brute.Motion) -> tuple[tuple[int, int, int, int], tuple[Fraction, Fraction]]:
-    """Give the product of two motions: the inner one is applied first."""
+    """The product of two motions: the inner one is applied first."""
     p, q, r, s = outer.matrix
     a, b, c, d = inner.matrix
     (x, y), (u, v) = inner.shift, outer.shift
@@ -200,7 +200,7 @@ def _product(outer: brute.Motion, inner: brute.Motion) -> tuple[tuple[int, int, 
 
 
 def two_nearest(label: NDArray[np.int32], distance: Floats) -> tuple[Floats, Ints]:
-    """Give the distances of the two nearest copies, and their labels, from those of elements; equal labels together."""
+    """The distances of the two nearest copies, and their labels, from those of elements; equal labels together."""
     start = np.flatnonzero(np.append(True, label[1:] != label[:-1]))
     nearest = np.minimum.reduceat(distance, start)
     two = np.argsort(nearest, kind="stable")[:2]
@@ -686,7 +686,7 @@ def test_an_image_of_a_cell_is_periodic(group: str) -> None:
         for column, row in ((frame.width, 0), (-2 * frame.width, 3 * frame.height)):
             beyond = Renderer("cpu").render(pattern, frame.window(column, row, frame.width, frame.height))
             shift = column * frame.u + row * frame.v
-            x, y = pattern.coordinates(np.array([shift]))
+            x, y = pattern.lattice.fractional(np.array([shift]))
             rounding = 2 * (pattern.rounding(frame) + pattern.rounding(beyond.frame))
             assert np.abs(beyond.d1 - image.d1).max() <= rounding
             assert np.abs(beyond.d2 - image.d2).max() <= rounding
@@ -847,7 +847,7 @@ class Steps(NamedTuple):
 
 
 def steps_of(image: LabelImage) -> Steps:
-    """Give the steps of an image where the owner changes."""
+    """The steps of an image where the owner changes."""
     codes = encode(image.copies)[image.first]
     sure = image.d2 - image.d1 > 4 * image.pattern.rounding(image.frame)
     parts = []

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, next_in_ring
 from voronoi_tiles.fabrication.region import Region
 from voronoi_tiles.fabrication.tile_placement import TilePlacement
 from voronoi_tiles.paths.intersections import candidate_pairs, crossings
@@ -220,7 +220,7 @@ def _border_nodes(region: Region, runs: InnerRuns) -> tuple[_Nodes, Ints, Ints]:
     at_start, at_end = np.flatnonzero(runs.starts_on_border), np.flatnonzero(runs.ends_on_border)
     ends = np.concatenate((paths.start[first[at_start]], paths.end[last[at_end]]))
     piece, share, place = region.on_border(ends)
-    following = _following(region.border)
+    following = next_in_ring(region.border.offsets)
     at_corner = np.abs(place - region.border.end[piece]) <= region.close
     piece, share = np.where(at_corner, following[piece], piece), np.where(at_corner, 0.0, share)
     at_corner = np.abs(place - region.border.start[piece]) <= region.close
@@ -240,13 +240,6 @@ def _border_nodes(region: Region, runs: InnerRuns) -> tuple[_Nodes, Ints, Ints]:
     paths.start[first[at_start]] = nodes.place[starts[at_start]]
     paths.end[last[at_end]] = nodes.place[stops[at_end]]
     return nodes, starts, stops
-
-
-def _following(border: Paths) -> Ints:
-    """The piece after each one of a closed path."""
-    following = np.arange(1, len(border.start) + 1)
-    following[border.offsets[1:] - 1] = border.offsets[:-1]
-    return following
 
 
 def _portions(region: Region, nodes: _Nodes) -> tuple[Paths, Ints, Ints, Complexes]:

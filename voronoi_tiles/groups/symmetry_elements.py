@@ -15,7 +15,7 @@ from itertools import product
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints, counting
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 
@@ -226,8 +226,8 @@ def _placed_centre(point: complex, lattice: Lattice, frame: _ShownWindow) -> Com
     first, last = np.ceil(first), np.floor(last)
     hit = first <= last
     starts, first, counts = starts[hit], first[hit], (last - first)[hit].astype(np.intp) + 1
-    within = np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts)
-    return frame.clamp(np.repeat(starts, counts) + (np.repeat(first, counts) + within) * u)
+    within, row = counting(counts)
+    return frame.clamp(starts[row] + (first[row] + within) * u)
 
 
 def _placed_lines(lines: tuple[Line, ...], lattice: Lattice, frame: _ShownWindow) -> Complexes:

@@ -123,7 +123,9 @@ def paint(
     region, width, height = _fit(default_region(pattern) if region is None else region, size)
     if outlines is None:
         outlines = _outlines(design, needed="outline" in overlay)
-    style = _style(width, height, strokes="art" not in overlay)
+    style = PictureStyle.of_size(width, height)
+    if "art" in overlay:
+        style = replace(style, site=0.0)
     picture = Picture(
         pattern,
         region,
@@ -236,8 +238,8 @@ def _overlays(
     if "cell" in wanted:
         a, b = design.lattice.a, design.lattice.b
         middle = complex(region[0] + region[2], region[1] + region[3]) / 2
-        x, y = pattern.coordinates(np.array([middle - (a + b) / 2]))
-        corner = round(float(x[0])) * a + round(float(y[0])) * b
+        x, y = design.lattice.fractional(middle - (a + b) / 2)
+        corner = round(x) * a + round(y) * b
         corners = corner + np.array([0, a, a + b, b, 0])
         segments = np.stack((corners[:-1], corners[1:]), axis=1)
         found += [Overlay(segments, 3.0 * line, (60, 60, 60)), Overlay(segments, 1.5 * line, _CELL)]
@@ -254,12 +256,6 @@ def _overlays(
     if "art" in wanted:
         found.append(Overlay(_art_segments(design, pattern, region, accuracy=pixel / 10), 1.5 * line, INK))
     return found
-
-
-def _style(width: int, height: int, *, strokes: bool) -> PictureStyle:
-    """The widths that suit a picture, with the sites' strokes or without."""
-    style = PictureStyle.of_size(width, height)
-    return style if strokes else replace(style, site=0.0)
 
 
 def _outlines(design: Design, *, needed: bool) -> list[Outline] | None:
@@ -341,7 +337,7 @@ def on_all_copies(flat: Sequence[Complexes], pattern: Pattern, region: Region) -
         # The translates whose box, in lattice coordinates, meets that of the region.
         ranges = [
             np.arange(math.ceil(shown.min() - own.max()), math.floor(shown.max() - own.min()) + 1)
-            for shown, own in zip(pattern.coordinates(corners), pattern.coordinates(segments.ravel()), strict=True)
+            for shown, own in zip(lattice.fractional(corners), lattice.fractional(segments.ravel()), strict=True)
         ]
         i, j = (part.ravel() for part in np.meshgrid(*ranges))
         found.append((segments[None] + (i * lattice.a + j * lattice.b)[:, None, None]).reshape(-1, 2))

@@ -25,20 +25,12 @@ class Nearest(NamedTuple):
 
     def take(self, which: Bools) -> Nearest:
         """Some of the pairs."""
-        return Nearest(
-            self.share_one[which], self.share_two[which], self.one[which], self.two[which], self.distance[which]
-        )
+        return Nearest._make(column[which] for column in self)
 
     @classmethod
     def concatenate(cls, parts: Sequence[Nearest]) -> Nearest:
         """All pairs of several."""
-        return cls(
-            np.concatenate([part.share_one for part in parts]),
-            np.concatenate([part.share_two for part in parts]),
-            np.concatenate([part.one for part in parts]),
-            np.concatenate([part.two for part in parts]),
-            np.concatenate([part.distance for part in parts]),
-        )
+        return cls._make(np.concatenate(column) for column in zip(*parts, strict=True))
 
 
 def divisor(length: Floats) -> Floats:
@@ -60,10 +52,10 @@ def nearest(chords: Chords, one: Ints, two: Ints) -> Nearest:
     """Where pairs of chords are nearest: at their crossing, or at an end of one of them."""
     a, b, c, d = chords.start[one], chords.end[one], chords.start[two], chords.end[two]
     shares = np.empty((5, 2, len(one)))
-    shares[0] = np.zeros(len(one)), _foot(a, c, d)
-    shares[1] = np.ones(len(one)), _foot(b, c, d)
-    shares[2] = _foot(c, a, b), np.zeros(len(one))
-    shares[3] = _foot(d, a, b), np.ones(len(one))
+    shares[0] = np.zeros(len(one)), foot_share(a, c, d)
+    shares[1] = np.ones(len(one)), foot_share(b, c, d)
+    shares[2] = foot_share(c, a, b), np.zeros(len(one))
+    shares[3] = foot_share(d, a, b), np.ones(len(one))
     area = cross(b - a, d - c)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         t, u = cross(c - a, d - c) / area, cross(c - a, b - a) / area
@@ -83,7 +75,7 @@ def nearest(chords: Chords, one: Ints, two: Ints) -> Nearest:
     )
 
 
-def _foot(point: Complexes, start: Complexes, end: Complexes) -> Floats:
+def foot_share(point: Complexes, start: Complexes, end: Complexes) -> Floats:
     """The share of segments at which they are nearest to points."""
     way = end - start
     length = dot(way, way)

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
 import shapely
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints, starts
 from voronoi_tiles.formats.reading import DrawingError
 from voronoi_tiles.preflight.chords import Chords
 
@@ -51,8 +52,7 @@ def chords_in(chords: Chords, low: Complexes, high: Complexes) -> Iterator[tuple
         np.searchsorted(lower, high.imag, "right") - np.searchsorted(upper, low.imag, "left"),
     )
     portion = np.cumsum(bound) // _PORTION
-    begins = np.append(np.flatnonzero(np.append(True, portion[1:] != portion[:-1])), len(low))
-    for first, after in zip(begins[:-1].tolist(), begins[1:].tolist(), strict=True):
+    for first, after in pairwise([*starts(portion).tolist(), len(low)]):
         some = slice(first, after)
         boxes = shapely.box(low[some].real, low[some].imag, high[some].real, high[some].imag)
         box, chord = chords.tree.query(boxes)

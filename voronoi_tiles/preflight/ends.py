@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, starts
 from voronoi_tiles.preflight import chord_search
-from voronoi_tiles.preflight.chord_distance import divisor, dot
+from voronoi_tiles.preflight.chord_distance import foot_share
 from voronoi_tiles.preflight.chords import Chords
 
 
@@ -48,8 +48,7 @@ def find_ends(chords: Chords, tolerance: float, gap: float) -> PathEnds:
         if count > chord_search.CANDIDATES_MAX:
             raise chord_search.too_dense()
         start, way = chords.start[chord], chords.end[chord] - chords.start[chord]
-        length = dot(way, way)
-        share = np.clip(dot(point[end] - start, way) / divisor(length), 0.0, 1.0)
+        share = foot_share(point[end], start, chords.end[chord])
         foot = start + share * way
         distance = np.abs(foot - point[end])
         own = chords.path[chord] == path[end]
@@ -58,6 +57,6 @@ def find_ends(chords: Chords, tolerance: float, gap: float) -> PathEnds:
         usable = np.flatnonzero((distance <= gap) & (~own | (along > far)))
         order = usable[np.lexsort((distance[usable], end[usable]))]
         ends = end[order]
-        firsts = order[np.append(True, ends[1:] != ends[:-1])] if len(order) else order
+        firsts = order[starts(ends)] if len(order) else order
         nearest[end[firsts]], near[end[firsts]], which[end[firsts]] = distance[firsts], foot[firsts], chord[firsts]
     return PathEnds(point, path, nearest, near, which, nearest > tolerance)

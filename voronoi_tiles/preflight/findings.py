@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from typing import Any, Final, Literal
 
 from voronoi_tiles.base.errors import ArgumentError
@@ -71,6 +71,11 @@ class Finding:
     value: float | None = None
     sources: tuple[str, ...] = ()
 
+    def document(self) -> dict[str, Any]:
+        """The finding in the types of JSON."""
+        place = None if self.place is None else list(self.place)
+        return {**asdict(self), "place": place, "sources": list(self.sources)}
+
 
 @dataclass(frozen=True, slots=True)
 class LayerUse:
@@ -127,32 +132,11 @@ class PreflightReport:
             "nodes": self.nodes,
             "shortest": self.shortest,
             "length": self.length,
-            "limits": {name: getattr(self.limits, name) for name in Limits.__dataclass_fields__},
-            "layers": [
-                {
-                    "layer": use.layer,
-                    "colour": use.colour,
-                    "shapes": use.shapes,
-                    "pieces": use.pieces,
-                    "length": use.length,
-                    "cut": use.cut,
-                }
-                for use in self.layers
-            ],
+            "limits": asdict(self.limits),
+            "layers": [asdict(use) for use in self.layers],
             "ignored": dict(drawing.ignored),
             "clones": drawing.clones,
-            "findings": [
-                {
-                    "kind": finding.kind,
-                    "severity": finding.severity,
-                    "message": finding.message,
-                    "remedy": finding.remedy,
-                    "place": None if finding.place is None else list(finding.place),
-                    "value": finding.value,
-                    "sources": list(finding.sources),
-                }
-                for finding in self.findings
-            ],
+            "findings": [finding.document() for finding in self.findings],
         }
 
     def json(self) -> str:
@@ -199,9 +183,8 @@ def report_text(report: PreflightReport) -> str:
     lines += _columns([("layer", "colour", "objects", "segments", "mm", ""), *rows])
     for group in grouped(report.findings):
         first = group[0]
-        lines += ["", f"{first.severity.upper()}  {first.kind}: {len(group):,} found" if len(group) > 1 else ""]
-        if len(group) == 1:
-            lines[-1] = f"{first.severity.upper()}  {first.kind}"
+        found = f": {len(group):,} found" if len(group) > 1 else ""
+        lines += ["", f"{first.severity.upper()}  {first.kind}{found}"]
         for finding in group[:PLACES_SHOWN]:
             place = "" if finding.place is None else f"({finding.place[0]:.3f}, {finding.place[1]:.3f}) "
             sources = f" [{'; '.join(printable(source) for source in finding.sources)}]" if finding.sources else ""
