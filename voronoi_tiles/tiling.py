@@ -342,11 +342,8 @@ class Tiling:
                 "a JSON document holds the exact outlines of one of each tile, and no sheet",
                 remedy="Write svg, dxf, pdf or lbrn2, or leave the other options out.",
             )
-
-        def finished(product: Product) -> Product:
-            return product if check is None else product.with_evidence(self.evidence(check))
-
-        return write_products(self.design, self.tessellation, name, form, job or Job(), finished)
+        evidence = None if check is None else self.evidence(check)
+        return write_products(self.design, self.tessellation, name, form, job or Job(), evidence)
 
 
 def require(check: CheckReport) -> None:

@@ -20,12 +20,13 @@ from ezdxf.path import make_path
 from helpers import cad
 
 from voronoi_tiles.base.arrays import Complexes
-from voronoi_tiles.formats.dxf.writer import Curves, nearest_index, write_dxf
+from voronoi_tiles.formats.dxf.writer import nearest_index, write_dxf
 from voronoi_tiles.formats.page import Drawing, Layer
+from voronoi_tiles.formats.presets import DxfCurves
 from voronoi_tiles.paths.biarcs import to_arcs
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
 
-KINDS: list[tuple[Curves, int]] = [
+KINDS: list[tuple[DxfCurves, int]] = [
     ("arc", ARC),
     ("arc", LINE),
     ("spline", QUAD),
@@ -36,7 +37,7 @@ KINDS: list[tuple[Curves, int]] = [
 TILES = ["p4-key", "p3-puzzle", "pg-elephant"]
 
 
-def written(drawing: Drawing, curves: Curves) -> bytes:
+def written(drawing: Drawing, curves: DxfCurves) -> bytes:
     """Write a drawing."""
     file = io.BytesIO()
     write_dxf(drawing, file, curves=curves, accuracy=0.01)
@@ -78,7 +79,7 @@ def one_layer(paths: Paths) -> Drawing:
     return Drawing(200.0, 200.0, (Layer.of_paths("cut", "cut", "#000000", 0.025, paths),))
 
 
-def form(paths: Paths, curves: Curves) -> Paths:
+def form(paths: Paths, curves: DxfCurves) -> Paths:
     """A tile in the pieces that a kind of curve takes."""
     if curves == "arc":
         return to_arcs(paths, accuracy=0.005)
@@ -86,7 +87,7 @@ def form(paths: Paths, curves: Curves) -> Paths:
 
 
 @pytest.mark.parametrize(("curves", "kind"), KINDS)
-def test_ezdxf_reads_the_same_curves(curves: Curves, kind: int) -> None:
+def test_ezdxf_reads_the_same_curves(curves: DxfCurves, kind: int) -> None:
     """Holes, open paths and many layers: same layers in the same order, curves to the rounding, nothing else."""
     drawing = cad.drawing(kind)
     document = read(written(drawing, curves))
@@ -102,7 +103,7 @@ def test_ezdxf_reads_the_same_curves(curves: Curves, kind: int) -> None:
 
 
 @pytest.mark.parametrize(("curves", "kind"), KINDS)
-def test_closed_paths_have_the_flag(curves: Curves, kind: int) -> None:
+def test_closed_paths_have_the_flag(curves: DxfCurves, kind: int) -> None:
     """The first flag of all three entities; open paths have it not."""
     drawing = cad.drawing(kind)
     flags = [bool(entity.dxf.flags & 1) for entity in read(written(drawing, curves)).modelspace()]
@@ -144,7 +145,7 @@ def test_straight_paths_are_polylines_among_splines() -> None:
 
 
 @pytest.mark.parametrize(("curves", "kind", "version"), [("arc", ARC, "AC1015"), ("polyline", LINE, "AC1009")])
-def test_unit_extents_and_layers(curves: Curves, kind: int, version: str) -> None:
+def test_unit_extents_and_layers(curves: DxfCurves, kind: int, version: str) -> None:
     """Millimetres, the bounds of all paths, layers with colour and linetype that are in the tables."""
     drawing = cad.drawing(kind)
     document = read(written(drawing, curves))
@@ -180,7 +181,7 @@ def test_every_handle_is_one_and_below_the_seed() -> None:
 
 @pytest.mark.parametrize(("curves", "kind"), KINDS)
 def test_the_same_drawing_gives_the_same_bytes(
-    curves: Curves, kind: int, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+    curves: DxfCurves, kind: int, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
     """No dates and no random identifiers, whatever the day is; ezdxf's options are left alone, and it is silent."""
     first = written(cad.drawing(kind), curves)
@@ -250,7 +251,7 @@ def test_colours_go_to_the_nearest_index(colour: str, index: int) -> None:
 @pytest.mark.parametrize(
     ("curves", "kind", "named"), [("arc", QUAD, "QUAD"), ("spline", ARC, "ARC"), ("polyline", CUBIC, "CUBIC")]
 )
-def test_pieces_that_do_not_fit_are_refused(curves: Curves, kind: int, named: str) -> None:
+def test_pieces_that_do_not_fit_are_refused(curves: DxfCurves, kind: int, named: str) -> None:
     """The kind is named, and nothing is written."""
     file = io.BytesIO()
     with pytest.raises(ValueError, match=f"has {named}"):
@@ -270,7 +271,7 @@ def test_what_cannot_be_kept_is_refused() -> None:
 
 @pytest.mark.parametrize("curves", ["arc", "spline", "polyline"])
 @pytest.mark.parametrize("name", TILES)
-def test_inkscape_reads_the_same_contours(curves: Curves, name: str, tmp_path: Path) -> None:
+def test_inkscape_reads_the_same_contours(curves: DxfCurves, name: str, tmp_path: Path) -> None:
     """Inkscape's importer: every contour, closed, in its place and size, within a hundredth of a millimetre."""
     tile = cad.tile(name)
     paths = form(tile, curves)
@@ -297,7 +298,7 @@ def test_inkscape_keeps_layers_and_open_paths(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("curves", ["arc", "polyline"])
 @pytest.mark.parametrize("name", TILES)
-def test_librecad_reads_the_same_contours(curves: Curves, name: str, tmp_path: Path) -> None:
+def test_librecad_reads_the_same_contours(curves: DxfCurves, name: str, tmp_path: Path) -> None:
     """LibreCAD prints every contour in its place and size, within the accuracy and two of its dots.
 
     Not so splines: LibreCAD 2.2 takes closed ones for periodic ones, whatever their knots are, and is millimetres off.

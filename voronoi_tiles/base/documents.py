@@ -14,17 +14,21 @@ from voronoi_tiles.base.tolerance import FILE_BYTES_MAX
 from voronoi_tiles.base.values import shown
 
 
+def read_bytes(file: str, most: int) -> bytes:
+    """The first bytes of a file, or of standard input, "-". Raises OSError, and ValueError for what is no name."""
+    if file == "-":
+        return sys.stdin.buffer.read(most)
+    with Path(file).open("rb") as stream:
+        return stream.read(most)
+
+
 def read_document(file: str, what: str, *, missing: str, remedy: str = "") -> str:
     """The text of a file, or of standard input, "-"; `what` it is to be, for messages.
 
     The remedies are `missing`, where it cannot be read, and `remedy` after others.
     """
     try:
-        if file == "-":
-            data = sys.stdin.buffer.read(FILE_BYTES_MAX + 1)
-        else:
-            with Path(file).open("rb") as stream:
-                data = stream.read(FILE_BYTES_MAX + 1)
+        data = read_bytes(file, FILE_BYTES_MAX + 1)
     except (OSError, ValueError) as error:
         raise DesignError(f"cannot read the {what}: {why_not_opened(file, error)}", remedy=missing) from None
     if len(data) > FILE_BYTES_MAX:

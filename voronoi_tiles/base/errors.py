@@ -22,7 +22,27 @@ class VoronoiTilesError(Exception):
     file: str | None = None
 
 
-class DesignError(VoronoiTilesError, ValueError):
+_ARGUMENT = re.compile(r"`(\w+)(?:=[^`]*)?`")
+
+
+class _ExplainedError(VoronoiTilesError):
+    """What cannot be done: `message` says what is wrong, without a full stop; `remedy` is a sentence, or None."""
+
+    def __init__(self, message: str, *, remedy: str | None = None) -> None:
+        super().__init__(message)
+        self.message = message
+        self.remedy = remedy
+
+    def __str__(self) -> str:
+        return f"{self.message}. {self.remedy}" if self.remedy else f"{self.message}."
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """The names of the arguments that the message is about, in its order."""
+        return tuple(dict.fromkeys(_ARGUMENT.findall(self.message)))
+
+
+class DesignError(_ExplainedError, ValueError):
     """A design, or a part of it, that cannot be used.
 
     `message` says what is wrong, without a full stop; `remedy` is a sentence that says what to write
@@ -40,18 +60,15 @@ class DesignError(VoronoiTilesError, ValueError):
         line: int | None = None,
         remedy: str | None = None,
     ) -> None:
-        super().__init__(message)
-        self.message = message
+        super().__init__(message, remedy=remedy)
         self.file = file
         self.key = key
         self.line = line
-        self.remedy = remedy
 
     def __str__(self) -> str:
         line = None if self.line is None else f"line {self.line}"
         place = ", ".join(part for part in (self.file, line, self.key) if part)
-        text = f"{place}: {self.message}" if place else self.message
-        return f"{text}. {self.remedy}" if self.remedy else f"{text}."
+        return f"{place}: {super().__str__()}" if place else super().__str__()
 
     def with_file(self, file: str | None) -> Self:
         """A copy of this error that names `file`; a file that is already named stays."""
@@ -96,18 +113,14 @@ class TouchingCopiesError(VoronoiTilesError, ValueError):
         return type(self)(self.site, self.other, self.operation, self.place, file=self.file or file)
 
 
-class _ResultError(VoronoiTilesError, ArithmeticError):
-    """A result that is not right: `message`, without a full stop; `report` has all figures."""
+class _ResultError(_ExplainedError, ArithmeticError):
+    """A result that is not right; `report` has all figures."""
 
     exit_code: ClassVar[int] = 1
 
     def __init__(self, message: str, report: Any = None) -> None:
         super().__init__(message)
-        self.message = message
         self.report = report
-
-    def __str__(self) -> str:
-        return f"{self.message}."
 
 
 class ProofError(_ResultError):
@@ -118,45 +131,25 @@ class CheckError(_ResultError):
     """A result that failed its cross-check: `message`, without a full stop; `report` is the CheckReport."""
 
 
-_ARGUMENT = re.compile(r"`(\w+)(?:=[^`]*)?`")
-
-
-class _RemediedError(VoronoiTilesError):
-    """What cannot be done; `message` and `remedy` are those of DesignError."""
-
-    def __init__(self, message: str, *, remedy: str | None = None) -> None:
-        super().__init__(message)
-        self.message = message
-        self.remedy = remedy
-
-    def __str__(self) -> str:
-        return f"{self.message}. {self.remedy}" if self.remedy else f"{self.message}."
-
-    @property
-    def fields(self) -> tuple[str, ...]:
-        """The names of the arguments that the message is about, in its order."""
-        return tuple(dict.fromkeys(_ARGUMENT.findall(self.message)))
-
-
-class ArgumentError(_RemediedError, ValueError):
+class ArgumentError(_ExplainedError, ValueError):
     """An argument that cannot be; `message` and `remedy` are those of DesignError, `fields` names it."""
 
 
-class UnknownNameError(_RemediedError, KeyError):
+class UnknownNameError(_ExplainedError, KeyError):
     """A name that nothing has; `message` and `remedy` are those of DesignError."""
 
 
-class MissingLibraryError(_RemediedError, ImportError):
+class MissingLibraryError(_ExplainedError, ImportError):
     """A library that is not installed, and needed; `message` and `remedy` are those of DesignError."""
 
 
-class RenderError(_RemediedError, RuntimeError):
+class RenderError(_ExplainedError, RuntimeError):
     """An image that could not be rendered; `message` and `remedy` are those of DesignError."""
 
     exit_code: ClassVar[int] = 1
 
 
-class OutputError(_RemediedError, OSError):
+class OutputError(_ExplainedError, OSError):
     """A file that could not be written; `path` is the file, which is as it was before.
 
     `message` and `remedy` are those of DesignError.

@@ -70,16 +70,11 @@ class Isometry(NamedTuple):
         Real and imaginary parts are multiplied and added one by one (no complex product, which may round
         differently in vector code): a point has the same bits whether it comes alone or in an array.
         """
-        c, s = self.a.real, self.a.imag
-        u, v = self.b.real, self.b.imag
         if isinstance(z, np.ndarray):
-            x, y = z.real, (-z.imag if self.conj else z.imag)
-            image = np.empty(z.shape, dtype=np.complex128)
-            image.real = (c * x - s * y) + u
-            image.imag = (s * x + c * y) + v
-            return image
-        x0, y0 = float(z.real), float(-z.imag if self.conj else z.imag)
-        return complex((c * x0 - s * y0) + u, (s * x0 + c * y0) + v)
+            return move(z, *self)
+        x, y = float(z.real), float(-z.imag if self.conj else z.imag)
+        unit, shift = self.a, self.b
+        return complex(unit.real * x - unit.imag * y + shift.real, unit.imag * x + unit.real * y + shift.imag)
 
 
 @dataclass(frozen=True, slots=True)

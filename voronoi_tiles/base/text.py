@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from typing import Final
 
 NUMBER: Final = r"[+-]?+(?:[0-9]++(?:\.[0-9]*+)?+|\.[0-9]++)(?:[eE][+-]?+[0-9]++)?+"
 """A decimal number, as a regular expression without groups; it takes all digits there are, and no second look."""
+
+_NOT_XML: Final = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def printable(text: str) -> str:
@@ -16,3 +19,8 @@ def printable(text: str) -> str:
         return f"\\x{ord(sign) - 0xDC00:02x}" if "\udc80" <= sign <= "\udcff" else repr(sign)[1:-1]
 
     return "".join(sign if sign.isprintable() else escaped(sign) for sign in text)
+
+
+def xml_text(text: str) -> str:
+    """The text with what XML 1.0 cannot carry replaced."""
+    return _NOT_XML.sub("\ufffd", text)

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import math
 import reprlib
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.tolerance import COORDINATE_MAX, NUMBER_MIN
 
 Table = Mapping[str, Any]
+Read = TypeVar("Read")
 
 _LARGER = "Write a larger number, or use smaller units."  # where 0 is refused too
 
@@ -51,21 +52,18 @@ def table(value: object, known: Collection[str], remedy: str) -> Table:
         raise DesignError(f"must be a table, not {shown(value)}", remedy=remedy)
     for name in value:
         if not (isinstance(name, str) and name in known):
-            listed = f"The keys here are {', '.join(known)}."
-            close = closest(name, known)
-            raise DesignError(
-                f"unknown key {shown(name)}", remedy=f'Did you mean "{close}"? {listed}' if close else listed
-            )
+            listed = f"{suggestion(name, known)}The keys here are {', '.join(known)}."
+            raise DesignError(f"unknown key {shown(name)}", remedy=listed)
     return value
 
 
-def closest(word: object, known: Collection[str]) -> str | None:
-    """The known word that was probably meant; None where nothing is near."""
+def suggestion(word: object, known: Collection[str]) -> str:
+    """The question whether a known word was meant, for the beginning of a remedy; nothing where none is near."""
     if not isinstance(word, str) or len(word) > 40:
-        return None
+        return ""
     import difflib
 
-    return next(iter(difflib.get_close_matches(word.lower(), known, n=1)), None)
+    return "".join(f'Did you mean "{close}"? ' for close in difflib.get_close_matches(word.lower(), known, n=1))
 
 
 def required(of: Table, name: str, remedy: str) -> Any:
@@ -100,6 +98,20 @@ def positive(value: object) -> float:
     return result
 
 
+def text(value: object, remedy: str) -> str:
+    """Read a text."""
+    if not isinstance(value, str):
+        raise DesignError(f"must be a text, not {shown(value)}", remedy=remedy)
+    return value
+
+
+def flag(value: object, remedy: str) -> bool:
+    """Read true or false."""
+    if not isinstance(value, bool):
+        raise DesignError(f"must be true or false, not {shown(value)}", remedy=remedy)
+    return value
+
+
 def sequence(value: object, remedy: str) -> list[Any] | tuple[Any, ...]:
     """Read an array."""
     if isinstance(value, np.ndarray):
@@ -107,3 +119,14 @@ def sequence(value: object, remedy: str) -> list[Any] | tuple[Any, ...]:
     if not isinstance(value, list | tuple):
         raise DesignError(f"must be an array, not {shown(value)}", remedy=remedy)
     return value
+
+
+def each(items: Iterable[Any], read: Callable[[Any], Read]) -> list[Read]:
+    """Read every item; the keys of errors begin with its number."""
+    found: list[Read] = []
+    try:
+        for item in items:
+            found.append(read(item))  # noqa: PERF401 - their number is the key
+    except DesignError as error:
+        raise error.under(f"[{len(found)}]") from None
+    return found

@@ -8,7 +8,8 @@ from typing import Any
 
 from voronoi_tiles.base.maps import Placement
 from voronoi_tiles.designs.coordinates import PointLike, pair
-from voronoi_tiles.designs.keys import Keys, keys_of, keys_of_placement, placement_of
+from voronoi_tiles.designs.keys import Keys, keys_of, keys_of_placement
+from voronoi_tiles.designs.schema import placement
 
 
 @dataclass(frozen=True, init=False, repr=False)
@@ -44,7 +45,7 @@ class Art:
     @property
     def placement(self) -> Placement:
         """Where the drawing is laid."""
-        return placement_of(self.keys)
+        return placement(dict(self.keys))
 
     @property
     def table(self) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -53,8 +53,7 @@ def checked(value: object) -> CheckedDesign:
     with values.within("cell"):
         lattice = _read_cell(cell, group)
     listed = values.required(table, "site", "Write [[site]] and, below it, its strokes.")
-    sites = _read_sites(listed, FLATTENING_MM / UNIT_MM[units], lattice)
-    art = _read_art(listed)
+    sites, art = _read_sites(listed, FLATTENING_MM / UNIT_MM[units], lattice)
     source = json.dumps(_canonical(table), sort_keys=True, separators=(",", ":"), allow_nan=False)
     return CheckedDesign(group, lattice, units, sites, art, source)
 
@@ -68,17 +67,13 @@ def _read_units(value: object) -> Units:
 
 def read_group(value: object) -> WallpaperGroup:
     """Read the name of a wallpaper group. Raises DesignError."""
-    close = None
+    word = value
     if isinstance(value, str):
         if value in GROUPS:
             return GROUPS[value]
-        close = _FULL_SYMBOLS.get(value.lower()) or values.closest(value, GROUPS)
-    remedy = f"Write one of {', '.join(GROUPS)}."
-    raise DesignError(
-        f"unknown wallpaper group {values.shown(value)}",
-        key="group",
-        remedy=f'Did you mean "{close}"? {remedy}' if close else remedy,
-    )
+        word = _FULL_SYMBOLS.get(value.lower(), value)
+    remedy = f"{values.suggestion(word, GROUPS)}Write one of {', '.join(GROUPS)}."
+    raise DesignError(f"unknown wallpaper group {values.shown(value)}", key="group", remedy=remedy)
 
 
 def _read_cell(value: object, group: WallpaperGroup) -> Lattice:
@@ -130,38 +125,31 @@ def _refuse_other(table: values.Table, name: str, fixed: float, what: str) -> No
             raise DesignError(what, remedy=f"Leave {name} out.")
 
 
-def _read_sites(value: object, accuracy: float, lattice: Lattice) -> tuple[NodedSite, ...]:
+def _read_sites(
+    value: object, accuracy: float, lattice: Lattice
+) -> tuple[tuple[NodedSite, ...], tuple[Art | None, ...]]:
+    """The sites, and the art of each."""
     remedy = "Write [[site]], in double brackets, above the keys of each site."
     with values.within("site"):
         listed = values.sequence(value, remedy)
         if not listed:
             raise DesignError("there is no site", remedy=remedy)
     taken: dict[str, int] = {}
-    sites = []
+    sites: list[NodedSite] = []
+    drawings: list[Art | None] = []
     for k, item in enumerate(listed):
         with values.within(f"site[{k}]"):
             table = values.table(item, ("name", "tolerance", "strokes", "art"), remedy)
-            name = table.get("name", f"site{k + 1}")
             with values.within("name"):
-                _check_name(name, taken)
+                name = _read_name(table.get("name", f"site{k + 1}"), taken)
             taken[name] = k
             sites.append(_read_site(table, name, accuracy, lattice))
-    return tuple(sites)
+            with values.within("art"):
+                drawings.append(_read_art(table["art"]) if "art" in table else None)
+    return tuple(sites), tuple(drawings)
 
 
-def _read_art(listed: Sequence[Any]) -> tuple[Art | None, ...]:
-    """The art of sites that have been read."""
-    result: list[Art | None] = []
-    for k, item in enumerate(listed):
-        if "art" not in item:
-            result.append(None)
-            continue
-        with values.within(f"site[{k}]"), values.within("art"):
-            result.append(_one_art(item["art"]))
-    return tuple(result)
-
-
-def _one_art(value: object) -> Art:
+def _read_art(value: object) -> Art:
     remedy = 'Write art = "face.svg", or art = { file = "face.svg", translate = [5, 3] }.'
     if isinstance(value, str):
         value = {"file": value}
@@ -176,9 +164,8 @@ def _one_art(value: object) -> Art:
     return Art(**table)
 
 
-def _check_name(name: object, taken: Mapping[str, int]) -> None:
-    if not isinstance(name, str):
-        raise DesignError(f"must be a text, not {values.shown(name)}", remedy='Write name = "bird".')
+def _read_name(value: object, taken: Mapping[str, int]) -> str:
+    name = values.text(value, 'Write name = "bird".')
     if not 0 < len(name) <= 100 or not name.isprintable() or name != name.strip():
         raise DesignError(
             f"{values.shown(name)} is no name",
@@ -188,6 +175,7 @@ def _check_name(name: object, taken: Mapping[str, int]) -> None:
         raise DesignError(
             f'"{name}" is already the name of site[{taken[name]}]', remedy="Give each site a name of its own."
         )
+    return name
 
 
 def _read_site(table: values.Table, name: str, accuracy: float, lattice: Lattice) -> NodedSite:

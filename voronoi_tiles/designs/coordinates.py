@@ -38,9 +38,6 @@ PointLike: TypeAlias = complex | Sequence[float] | Floats | GeoInterface
 PointsLike: TypeAlias = Iterable[PointLike] | Complexes | Floats | GeoInterface
 """Points: a sequence of them, an array complex (n,) or float (n, 2), or a geometry of points or lines."""
 
-Pairs: TypeAlias = tuple[Any, ...]
-"""Points as pairs (x, y), where they are points."""
-
 
 def pair(point: object) -> object:
     """A point as (x, y); what is none as it is."""

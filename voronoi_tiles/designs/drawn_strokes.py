@@ -18,7 +18,8 @@ from typing import Any, Literal, get_args
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import Placement
 from voronoi_tiles.designs.coordinates import GeoInterface, PathData, PointLike, PointsLike, lines, pair, pairs
-from voronoi_tiles.designs.keys import Keys, keys_of, keys_of_placement, placement_of
+from voronoi_tiles.designs.keys import Keys, keys_of, keys_of_placement
+from voronoi_tiles.designs.schema import placement
 
 StrokeKind = Literal["point", "segment", "polyline", "bezier", "hermite", "catmull_rom", "bspline", "circle", "path"]
 
@@ -66,7 +67,7 @@ class Stroke:
 
     def placed(self, by: Placement) -> Stroke:
         """The same stroke, moved after it has been placed where it is."""
-        table = {**self.table, **keys_of_placement(by @ placement_of(self.keys))}
+        table = {**self.table, **keys_of_placement(by @ placement(self.table))}
         return Stroke(self.kind, keys_of(table), tuple(stroke.placed(by) for stroke in self.others))
 
     def mirrored(self) -> Stroke:
@@ -78,7 +79,7 @@ class Stroke:
         table[self.kind] = _flipped([own])[0] if self.kind in ("point", "circle") else _flipped(own)
         if "tangents" in table:
             table["tangents"] = _flipped(table["tangents"])
-        table.update(keys_of_placement(placement_of(self.keys).mirrored))
+        table.update(keys_of_placement(placement(self.table).mirrored))
         return Stroke(self.kind, keys_of(table), tuple(stroke.mirrored() for stroke in self.others))
 
 
@@ -92,9 +93,9 @@ def stroke_of(table: Mapping[str, Any]) -> Stroke:
     return Stroke(next(kind for kind in get_args(StrokeKind) if kind in table), keys_of(table))
 
 
-def _stroke(kind: StrokeKind, own: object, **others: object) -> Stroke:
-    """The stroke of a kind with the value of its own key, and the others, None for those that it has not."""
-    return Stroke(kind, keys_of({kind: own, **{name: value for name, value in others.items() if value is not None}}))
+def _stroke(kind: StrokeKind, own: object, *, translate: object = 0j, **others: object) -> Stroke:
+    """The stroke of a kind with the values of its own key and of the others."""
+    return Stroke(kind, keys_of({kind: own, **others, "translate": pair(translate)}))
 
 
 def _joined(strokes: list[Stroke]) -> Stroke:
@@ -128,15 +129,15 @@ def _controlled(kind: StrokeKind, points: PointsLike, **others: object) -> Strok
 def point(place: PointLike, *, scale: float = 1.0, rotate: float = 0.0, translate: PointLike = 0j) -> Stroke:
     """An isolated point; several for a geometry of several."""
     found = [line for line, _ in lines(place)] if isinstance(place, GeoInterface) else [(pair(place),)]
-    others = {"scale": scale, "rotate": rotate, "translate": pair(translate)}
-    return _joined([_stroke("point", line[0] if len(line) == 1 else line, **others) for line in found])
+    own = [line[0] if len(line) == 1 else line for line in found]
+    return _joined([_stroke("point", one, scale=scale, rotate=rotate, translate=translate) for one in own])
 
 
 def segment(
     start: PointLike, end: PointLike, *, scale: float = 1.0, rotate: float = 0.0, translate: PointLike = 0j
 ) -> Stroke:
     """A straight line between two points."""
-    return _stroke("segment", (pair(start), pair(end)), scale=scale, rotate=rotate, translate=pair(translate))
+    return _stroke("segment", (pair(start), pair(end)), scale=scale, rotate=rotate, translate=translate)
 
 
 def polyline(
@@ -148,12 +149,12 @@ def polyline(
     translate: PointLike = 0j,
 ) -> Stroke:
     """Straight lines from point to point; `closed` joins the ends, None where the points are a ring."""
-    return _along("polyline", points, closed, scale=scale, rotate=rotate, translate=pair(translate))
+    return _along("polyline", points, closed, scale=scale, rotate=rotate, translate=translate)
 
 
 def bezier(points: PointsLike, *, scale: float = 1.0, rotate: float = 0.0, translate: PointLike = 0j) -> Stroke:
     """Cubic Bezier curves in a chain: 3n + 1 control points, every third of which lies on the curve."""
-    return _controlled("bezier", points, scale=scale, rotate=rotate, translate=pair(translate))
+    return _controlled("bezier", points, scale=scale, rotate=rotate, translate=translate)
 
 
 def hermite(
@@ -165,8 +166,8 @@ def hermite(
     translate: PointLike = 0j,
 ) -> Stroke:
     """The cubic curve through points with a tangent at each: the derivative by a parameter that grows by 1 a piece."""
-    others = {"scale": scale, "rotate": rotate, "translate": pair(translate)}
-    return _controlled("hermite", points, tangents=pairs(tangents), **others)
+    own = pairs(tangents)
+    return _controlled("hermite", points, tangents=own, scale=scale, rotate=rotate, translate=translate)
 
 
 def catmull_rom(
@@ -179,8 +180,7 @@ def catmull_rom(
     translate: PointLike = 0j,
 ) -> Stroke:
     """The smooth curve through points; `alpha` 0 is uniform, 0.5 centripetal, 1 chordal; `closed` as in `polyline`."""
-    others = {"scale": scale, "rotate": rotate, "translate": pair(translate)}
-    return _along("catmull_rom", points, closed, alpha=alpha, **others)
+    return _along("catmull_rom", points, closed, alpha=alpha, scale=scale, rotate=rotate, translate=translate)
 
 
 def bspline(
@@ -192,14 +192,14 @@ def bspline(
     translate: PointLike = 0j,
 ) -> Stroke:
     """The uniform cubic B-spline of control points, which starts near the second; `closed` as in `polyline`."""
-    return _along("bspline", points, closed, scale=scale, rotate=rotate, translate=pair(translate))
+    return _along("bspline", points, closed, scale=scale, rotate=rotate, translate=translate)
 
 
 def circle(
     centre: PointLike, radius: float, *, scale: float = 1.0, rotate: float = 0.0, translate: PointLike = 0j
 ) -> Stroke:
     """A circle about a point."""
-    return _stroke("circle", pair(centre), radius=radius, scale=scale, rotate=rotate, translate=pair(translate))
+    return _stroke("circle", pair(centre), radius=radius, scale=scale, rotate=rotate, translate=translate)
 
 
 def path(data: str | PathData, *, scale: float = 1.0, rotate: float = 0.0, translate: PointLike = 0j) -> Stroke:
@@ -208,4 +208,4 @@ def path(data: str | PathData, *, scale: float = 1.0, rotate: float = 0.0, trans
     Coordinates are taken as they are, y up: what was copied from an SVG file comes out as its mirror image.
     """
     text = data.d() if isinstance(data, PathData) else data
-    return _stroke("path", text, scale=scale, rotate=rotate, translate=pair(translate))
+    return _stroke("path", text, scale=scale, rotate=rotate, translate=translate)

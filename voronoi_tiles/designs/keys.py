@@ -21,7 +21,6 @@ DEFAULTS: Final[Mapping[str, Any]] = {
 }
 """What the keys of strokes and art mean where they are not written."""
 
-
 _LAST: Final = ("tangents", "radius", "alpha", "closed", "scale", "rotate", "translate")
 
 
@@ -45,12 +44,6 @@ def _frozen(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         value = value.tolist()
     return tuple(map(_frozen, value)) if isinstance(value, list | tuple) else value
-
-
-def placement_of(keys: Keys) -> Placement:
-    """Where something is laid, by its keys, which have been checked."""
-    table = {**DEFAULTS, **dict(keys)}
-    return Placement(table["scale"], table["rotate"], complex(*table["translate"]))
 
 
 def keys_of_placement(placement: Placement) -> dict[str, Any]:

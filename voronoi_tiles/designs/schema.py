@@ -15,7 +15,7 @@ from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import Placement
 from voronoi_tiles.base.tolerance import COORDINATE_MAX
-from voronoi_tiles.base.values import Table, number, positive, required, sequence, shown, table, within
+from voronoi_tiles.base.values import Table, each, flag, number, positive, required, sequence, table, text, within
 from voronoi_tiles.designs import strokes as curves
 
 
@@ -25,13 +25,7 @@ def point(value: object) -> complex:
     pair = sequence(value, remedy)
     if len(pair) != 2:
         raise DesignError(f"a point has 2 coordinates, not {len(pair)}", remedy=remedy)
-    index = 0
-    try:
-        x = number(pair[0], remedy)
-        index = 1
-        return complex(x, number(pair[1], remedy))
-    except DesignError as error:
-        raise error.under(f"[{index}]") from None
+    return complex(*each(pair, lambda coordinate: number(coordinate, remedy)))
 
 
 def points(value: object, least: int, most: int | None = None) -> Complexes:
@@ -41,14 +35,7 @@ def points(value: object, least: int, most: int | None = None) -> Complexes:
     if len(listed) < least or (most is not None and len(listed) > most):
         wanted = f"{least}" if most == least else f"at least {least}"
         raise DesignError(f"needs {wanted} points, not {len(listed)}", remedy=remedy)
-    result = np.empty(len(listed), dtype=np.complex128)
-    index = 0
-    try:
-        for index, item in enumerate(listed):
-            result[index] = point(item)
-    except DesignError as error:
-        raise error.under(f"[{index}]") from None
-    return result
+    return np.array(each(listed, point), np.complex128)
 
 
 # --- strokes --------------------------------------------------------------------------------------------------
@@ -68,14 +55,8 @@ class _StrokeKind:
 
     @property
     def closed(self) -> bool:
-        value = self.table.get("closed", False)
-        if not isinstance(value, bool):
-            raise DesignError(
-                f"must be true or false, not {shown(value)}",
-                key="closed",
-                remedy="Write closed = true, or leave it out.",
-            )
-        return value
+        with within("closed"):
+            return flag(self.table.get("closed", False), "Write closed = true, or leave it out.")
 
 
 def _point(stroke: _StrokeKind) -> Complexes:
@@ -132,10 +113,8 @@ def _circle(stroke: _StrokeKind) -> Complexes:
 
 
 def _path(stroke: _StrokeKind) -> Complexes:
-    data = stroke.table["path"]
     with within("path"):
-        if not isinstance(data, str):
-            raise DesignError(f"must be a text, not {shown(data)}", remedy='Write path = "M 1 1 L 5 3".')
+        data = text(stroke.table["path"], 'Write path = "M 1 1 L 5 3".')
         return stroke.placement(curves.path_pieces(data, stroke.accuracy / abs(stroke.placement.scale)))
 
 

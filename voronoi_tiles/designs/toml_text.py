@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+import re
+from collections.abc import Mapping
 from typing import Any, Final
 
 from voronoi_tiles.base.errors import DesignError
@@ -56,18 +57,11 @@ def _wrapped(stroke: str) -> str:
     """A stroke with line breaks between its points, where it is long; TOML allows them inside an array."""
     if len(stroke) <= _WIDTH:
         return stroke
-    return "\n    ".join(_filled(stroke.split("], ["), "], ["))
-
-
-def _filled(parts: Iterable[str], joint: str) -> list[str]:
-    """Parts joined to lines of up to _WIDTH characters; a line ends with the first half of a joint."""
-    before, after = joint.split(" ")
-    lines = [""]
-    for k, part in enumerate(parts):
-        lead = "" if k == 0 else joint
-        if k and len(lines[-1]) + len(lead) + len(part) > _WIDTH:
-            lines[-1] += before
-            lines.append(after + part)
+    first, *others = re.split(r"(?<=\],) (?=\[)", stroke)
+    lines = [first]
+    for part in others:
+        if len(lines[-1]) + 1 + len(part.removesuffix("],")) > _WIDTH:
+            lines.append(part)
         else:
-            lines[-1] += lead + part
-    return lines
+            lines[-1] += f" {part}"
+    return "\n    ".join(lines)

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from voronoi_tiles.base.errors import OutputError
 from voronoi_tiles.base.files import STDOUT, is_special, writing
@@ -14,11 +14,14 @@ from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.job import ACCURACY_MM, Job
 from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.formats.page import Drawing
-from voronoi_tiles.formats.writing import FORMATS, write_drawing
+from voronoi_tiles.formats.presets import FORMATS, Format
+from voronoi_tiles.formats.writing import write_drawing
 from voronoi_tiles.vector.tessellation import Tessellation
 
 if TYPE_CHECKING:
     from voronoi_tiles.fabrication.product import Product
+
+Name = TypeVar("Name", bound=str)
 
 
 class Exported(NamedTuple):
@@ -28,14 +31,14 @@ class Exported(NamedTuple):
     product: Product | None
 
 
-def format_of(path: str | os.PathLike[str], formats: Iterable[str]) -> str:
+def format_of(path: str | os.PathLike[str], formats: Sequence[Name]) -> Name:
     """The format that a file's suffix names. Raises OutputError where it names none of these."""
     suffix = Path(path).suffix.lower().removeprefix(".")
-    formats = tuple(formats)
-    if suffix not in formats:
-        suffixes = " or ".join(f".{name}" for name in formats)
-        raise OutputError(f"cannot tell the format of {os.fspath(path)!r}: give it the suffix {suffixes}", path=path)
-    return suffix
+    for name in formats:
+        if name == suffix:
+            return name
+    suffixes = " or ".join(f".{name}" for name in formats)
+    raise OutputError(f"cannot tell the format of {os.fspath(path)!r}: give it the suffix {suffixes}", path=path)
 
 
 def write_products(
@@ -44,12 +47,13 @@ def write_products(
     path: str,
     file_format: str,
     job: Job,
-    finish: Callable[[Product], Product],
+    evidence: Mapping[str, Any] | None,
 ) -> tuple[Exported, ...]:
     """Write the files of a job: one, or one for each colour, with its number before the suffix.
 
-    `finish` is what is still done to a product. A job that cannot be done leaves nothing, and no file takes its place
-    before all are written. Raises JobError, and OutputError where a file cannot be written, or the job reads it.
+    What was proved and checked, `evidence`, goes into each. A job that cannot be done leaves nothing, and no file takes
+    its place before all are written. Raises JobError, and OutputError where a file cannot be written, or the job reads
+    it.
     """
     from voronoi_tiles.fabrication.product import make, make_colours
 
@@ -69,7 +73,8 @@ def write_products(
     refuse_overwriting(design, job, products)
     with ExitStack() as stack:
         for name, product in products.items():
-            finish(product).write(stack.enter_context(writing(name)))
+            written = product if evidence is None else product.with_evidence(evidence)
+            written.write(stack.enter_context(writing(name)))
     return tuple(Exported(name, product) for name, product in products.items())
 
 
@@ -86,7 +91,7 @@ def refuse_overwriting(design: Design, job: Job | None, targets: Iterable[str]) 
             )
 
 
-def drawing_format(path: str | os.PathLike[str]) -> str:
+def drawing_format(path: str | os.PathLike[str]) -> Format:
     """The format of a drawing by its file's suffix, SVG without one. Raises OutputError for another."""
     return format_of(path, FORMATS) if Path(path).suffix else "svg"
 

@@ -55,3 +55,11 @@ def decimals(values: NDArray[np.float64], *, point: bool = False) -> tuple[Bytes
     used = (column >= begin[:, None]) & (column < stop[:, None])
     used[:, 0] = scaled < 0
     return text, used
+
+
+def decimal_texts(values: NDArray[np.float64], *, point: bool = False) -> list[str]:
+    """The texts of numbers, as `decimals` writes them."""
+    text, used = decimals(values, point=point)
+    breaks = np.full((len(values), 1), ord("\n"), np.uint8)
+    lines = np.hstack((text, breaks))[np.hstack((used, breaks > 0))]
+    return lines.tobytes().decode("ascii").split("\n")[:-1]

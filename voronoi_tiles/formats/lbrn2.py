@@ -7,7 +7,6 @@ and after it, and a list of the segments between them.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import BinaryIO, Final
@@ -16,8 +15,9 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.base.text import xml_text
 from voronoi_tiles.formats.cubics import cubic_blocks
-from voronoi_tiles.formats.decimals import WIDTH, decimals
+from voronoi_tiles.formats.decimals import decimal_texts
 from voronoi_tiles.formats.page import Drawing, Layer
 from voronoi_tiles.paths.paths import CUBIC, Paths
 
@@ -29,7 +29,6 @@ PALETTE: Final = (
 )
 """The colours of LightBurn's layers, in the order of their numbers."""
 
-_NOT_XML: Final = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 _USUAL: Final = {"cut": 0, "engrave": 2, "score": 3}
 _XFORM: Final = "<XForm>1 0 0 1 0 0</XForm>"
 
@@ -100,7 +99,7 @@ def _setting(layer: Layer, index: int, priority: int) -> str:
 
 def _attribute(text: str) -> str:
     """A text as an XML attribute; what XML cannot carry is replaced."""
-    return quoteattr(_NOT_XML.sub("\ufffd", text))
+    return quoteattr(xml_text(text))
 
 
 # --- shapes -----------------------------------------------------------------------------------------------------
@@ -137,7 +136,8 @@ def _shapes(cubics: Paths, index: int, number: int) -> list[str]:
     ring = filled[cubics.closed[filled]]
     before[first[ring]] = before[last[ring]]
     vertices = [
-        f"V{x} {y}{a}{b}" for x, y, a, b in zip(*map(_decimals, (points.real, points.imag)), after, before, strict=True)
+        f"V{x} {y}{a}{b}"
+        for x, y, a, b in zip(*map(decimal_texts, (points.real, points.imag)), after, before, strict=True)
     ]
     letters = np.where(cubics.kind == CUBIC, "B", "L").tolist()
     return [
@@ -163,12 +163,4 @@ def _shape(vertices: list[str], letters: list[str], index: int, number: int) -> 
 
 def _controls(points: Complexes, name: str) -> list[str]:
     """Control points; `name` is c0 for the one after a vertex, c1 for the one before it."""
-    return [f"{name}x{x}{name}y{y}" for x, y in zip(_decimals(points.real), _decimals(points.imag), strict=True)]
-
-
-def _decimals(values: np.ndarray[tuple[int], np.dtype[np.float64]]) -> list[str]:
-    """Numbers rounded to a nanometre."""
-    texts = np.full((len(values), WIDTH + 1), ord("\n"), np.uint8)
-    used = np.ones(texts.shape, np.bool_)
-    texts[:, :WIDTH], used[:, :WIDTH] = decimals(values)
-    return texts[used].tobytes().decode("ascii").split("\n")[:-1]
+    return [f"{name}x{x}{name}y{y}" for x, y in zip(*map(decimal_texts, (points.real, points.imag)), strict=True)]

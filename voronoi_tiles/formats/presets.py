@@ -13,11 +13,11 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import resources
 from pathlib import Path
-from typing import Any, Final, Literal, TypeVar, cast
+from typing import Any, Final, Literal, TypeVar, cast, get_args
 
 from voronoi_tiles.base.documents import parse_document, read_document
 from voronoi_tiles.base.errors import DesignError
-from voronoi_tiles.base.values import closest, number, shown, table, within
+from voronoi_tiles.base.values import each, flag, number, shown, suggestion, table, within
 
 Role = Literal["cut", "inner", "score", "engrave"]
 Format = Literal["svg", "dxf", "pdf", "lbrn2"]
@@ -26,12 +26,10 @@ _Value = TypeVar("_Value")
 SvgCurves = Literal["exact", "arc", "cubic", "polyline"]
 DxfCurves = Literal["arc", "spline", "polyline"]
 
-ROLES: Final[tuple[Role, ...]] = ("cut", "inner", "score", "engrave")
-FORMATS: Final[tuple[Format, ...]] = ("svg", "dxf", "pdf", "lbrn2")
+ROLES: Final[tuple[Role, ...]] = get_args(Role)
+FORMATS: Final[tuple[Format, ...]] = get_args(Format)
 DEFAULT: Final = "plain"
 
-_SVG_CURVES: Final = ("exact", "arc", "cubic", "polyline")
-_DXF_CURVES: Final = ("arc", "spline", "polyline")
 _KEYS: Final = ("colours", "stroke", "stroke_kerf", "layers", "dxf_layers", "curves", "unread", "fill_engraving")
 _TABLES: Final = ("colours", "layers", "dxf_layers", "curves")
 _STROKE_MAX: Final = 10.0  # a line of more millimetres hides what it draws
@@ -101,11 +99,8 @@ def _known(name: str, key: str) -> Mapping[str, Any]:
     presets = _built_in()
     if name in presets:
         return cast("Mapping[str, Any]", presets[name])
-    close = closest(name, presets)
     listed = f"Presets are {', '.join(presets)}, or the path of a file that ends in .toml."
-    raise DesignError(
-        f"unknown preset {shown(name)}", key=key, remedy=f'Did you mean "{close}"? {listed}' if close else listed
-    )
+    raise DesignError(f"unknown preset {shown(name)}", key=key, remedy=suggestion(name, presets) + listed)
 
 
 # --- a user's file ----------------------------------------------------------------------------------------------
@@ -145,8 +140,8 @@ def _read(name: str, values: Mapping[str, Any]) -> Preset:
         palette = _palette(colours["palette"])
         chosen = {role: _at(role, _colour, colours[role]) for role in ROLES}
     with within("curves"):
-        svg = _at("svg", lambda value: _choice(value, _SVG_CURVES), curves["svg"])
-        dxf = _at("dxf", lambda value: _choice(value, _DXF_CURVES), curves["dxf"])
+        svg = _at("svg", lambda value: _choice(value, get_args(SvgCurves)), curves["svg"])
+        dxf = _at("dxf", lambda value: _choice(value, get_args(DxfCurves)), curves["dxf"])
     return Preset(
         name=name,
         colours=chosen,
@@ -197,7 +192,7 @@ def _palette(value: object) -> tuple[str, ...]:
     with within("palette"):
         if not isinstance(value, list):
             raise DesignError(f"must be an array, not {shown(value)}", remedy='Write ["#0000ff", "#00ff00"].')
-        return tuple(_at(f"[{k}]", _colour, colour) for k, colour in enumerate(value))
+        return tuple(each(value, _colour))
 
 
 def _colour(value: object) -> str:
@@ -217,9 +212,7 @@ def _width(value: object) -> float:
 
 
 def _flag(value: object) -> bool:
-    if not isinstance(value, bool):
-        raise DesignError(f"must be true or false, not {shown(value)}", remedy="Write true or false, without quotes.")
-    return value
+    return flag(value, "Write true or false, without quotes.")
 
 
 def _text(value: object) -> str:
@@ -230,9 +223,6 @@ def _text(value: object) -> str:
 
 def _choice(value: object, known: Collection[str]) -> str:
     if not isinstance(value, str) or value not in known:
-        close = closest(value, known)
-        listed = f"Write one of {', '.join(known)}."
-        raise DesignError(
-            f"must not be {shown(value)}", remedy=f'Did you mean "{close}"? {listed}' if close else listed
-        )
+        remedy = f"{suggestion(value, known)}Write one of {', '.join(known)}."
+        raise DesignError(f"must not be {shown(value)}", remedy=remedy)
     return value

@@ -5,13 +5,11 @@ The limits that keep hostile files from filling time or memory stand here as wel
 
 from __future__ import annotations
 
-import os
-import sys
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any, BinaryIO, Final
+from typing import Any, Final
 
+from voronoi_tiles.base.documents import read_bytes
 from voronoi_tiles.base.errors import DesignError, why_not_opened
 from voronoi_tiles.paths.paths import Paths
 
@@ -98,27 +96,12 @@ def load_bytes(name: str) -> bytes:
 
     Raises DrawingError where it cannot be read or is larger.
     """
+    shown = "standard input" if name == "-" else name or repr(name)
     try:
-        if name == "-":
-            return _bounded(sys.stdin.buffer, "standard input")
-        with Path(name).open("rb") as file:
-            return _bounded(file, name)
+        data = read_bytes(name, BYTES_MAX + 1)
     except (OSError, ValueError) as error:
-        if isinstance(error, DrawingError):
-            raise
         reason = why_not_opened(name, error)
-        raise DrawingError(f"cannot be read: {reason}", file=name or repr(name), remedy="Check the name.") from error
-
-
-def _bounded(file: BinaryIO, name: str) -> bytes:
-    """All bytes of an open file."""
-    too_large = DrawingError(
-        f"larger than {BYTES_MAX >> 20} MiB", file=name, remedy="Split it, or simplify its curves."
-    )
-    status = os.fstat(file.fileno()) if name != "standard input" else None
-    if status is not None and status.st_size > BYTES_MAX:
-        raise too_large
-    data = file.read(BYTES_MAX + 1)
+        raise DrawingError(f"cannot be read: {reason}", file=shown, remedy="Check the name.") from error
     if len(data) > BYTES_MAX:
-        raise too_large
+        raise DrawingError(f"larger than {BYTES_MAX >> 20} MiB", file=shown, remedy="Split it, or simplify its curves.")
     return data

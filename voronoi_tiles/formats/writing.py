@@ -4,18 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 from io import RawIOBase
-from typing import BinaryIO, Literal, cast, get_args
+from typing import BinaryIO, cast, get_args
 
 from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
 from voronoi_tiles.formats.page import Drawing
-from voronoi_tiles.formats.presets import FORMATS as FILE_FORMATS
-from voronoi_tiles.formats.presets import Format, Role, load_preset
+from voronoi_tiles.formats.presets import FORMATS, DxfCurves, Format, Role, load_preset
 from voronoi_tiles.paths.conversion import to_cubics
 from voronoi_tiles.paths.paths import ARC
-
-FORMATS: tuple[Format, ...] = FILE_FORMATS
-
-DxfCurves = Literal["arc", "spline", "polyline"]
 
 
 def write_drawing(
@@ -46,20 +41,18 @@ def write_drawing(
             raise ValueError(f"no drawing can be written as {form!r}: use one of {', '.join(FORMATS)}")
 
 
-def recoloured(drawing: Drawing, preset_name: str, form: str) -> Drawing:
+def recoloured(drawing: Drawing, preset_name: str, form: Format) -> Drawing:
     """A drawing whose layers "engrave", "inside" and "cut" have the names and colours of a preset.
 
     Raises DesignError where the preset is broken or does not read the format.
     """
-    assert form in FORMATS
-    file_format = form
     preset = load_preset(preset_name)
-    preset.require(file_format)
+    preset.require(form)
     roles: dict[str, Role] = {"engrave": "engrave", "inside": "inner", "cut": "cut"}
     layers = []
     for layer in drawing.layers:
         role = roles[layer.name]
-        name = preset.layer_name(role, file_format)
+        name = preset.layer_name(role, form)
         layers.append(replace(layer, name=name, colour=preset.colours[role], stroke=preset.stroke_width()))
     return replace(drawing, layers=tuple(layers))
 

@@ -76,7 +76,7 @@ def tiling_picture(tiles: Sequence[tuple[Outline, Floats]], copies: Iterable[Out
     canvas = _Canvas((*low, *high))
     for outline in copies:
         canvas.outline(outline, _PAPER)
-    fills = [_TILE] if len(tiles) == 1 else [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in palette(len(tiles)).tolist()]
+    fills = [_TILE] if len(tiles) == 1 else [f"#{bytes(row).hex()}" for row in palette(len(tiles))]
     for (outline, elements), fill in zip(tiles, fills, strict=True):
         canvas.outline(outline, fill)
         canvas.segments(_segments(elements), _SITE, 3)

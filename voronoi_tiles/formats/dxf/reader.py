@@ -252,12 +252,12 @@ class _DxfWalk:
 
         colour = self._own_colour(visit)
         if not isinstance(colour, int):
-            red, green, blue = colour
+            rgb = colour
         elif colour == _FOREGROUND or not 0 < colour < _BY_LAYER:
-            red = green = blue = 0
+            rgb = (0, 0, 0)
         else:
-            red, green, blue = aci2rgb(colour)
-        return f"#{red:02x}{green:02x}{blue:02x}"
+            rgb = aci2rgb(colour)
+        return f"#{bytes(rgb).hex()}"
 
     def _width(self, entity: Any) -> float | None:
         """The width of the line; millimetres."""

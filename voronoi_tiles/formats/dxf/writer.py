@@ -14,23 +14,22 @@ import unicodedata
 from collections.abc import Iterator, Sequence
 from decimal import Decimal
 from itertools import pairwise
-from typing import Any, BinaryIO, Final, Literal
+from typing import Any, BinaryIO, Final
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, Floats, Ints
 from voronoi_tiles.formats.cubics import all_cubic
-from voronoi_tiles.formats.decimals import decimals
+from voronoi_tiles.formats.decimals import decimal_texts
 from voronoi_tiles.formats.page import Drawing, Layer
+from voronoi_tiles.formats.presets import DxfCurves
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
-
-Curves = Literal["arc", "spline", "polyline"]
 
 GRID_MM: Final = 1e-6
 """The last decimal that is written; millimetres."""
 
 _NAMES: Final = {LINE: "LINE", QUAD: "QUAD", CUBIC: "CUBIC", ARC: "ARC"}
-_TAKES: Final[dict[Curves, tuple[int, ...]]] = {
+_TAKES: Final[dict[DxfCurves, tuple[int, ...]]] = {
     "arc": (LINE, ARC),
     "spline": (LINE, QUAD, CUBIC),
     "polyline": (LINE,),
@@ -44,7 +43,7 @@ _EPOCH: Final = "2451545.0"  # the Julian date of 2000-01-01
 _NO_GUID: Final = "{00000000-0000-0000-0000-000000000000}"
 
 
-def write_dxf(drawing: Drawing, file: BinaryIO, *, curves: Curves, accuracy: float) -> None:
+def write_dxf(drawing: Drawing, file: BinaryIO, *, curves: DxfCurves, accuracy: float) -> None:
     """Write a drawing as DXF in millimetres, y up, an entity for each path, in the order of the drawing.
 
     "arc": R2000, an LWPOLYLINE with bulges for each path of LINE and ARC. "spline": R2000, a SPLINE of degree 3 in
@@ -78,7 +77,7 @@ def write_dxf(drawing: Drawing, file: BinaryIO, *, curves: Curves, accuracy: flo
     file.write(tail.encode("ascii"))
 
 
-def _refuse_others(layer: Layer, curves: Curves) -> None:
+def _refuse_others(layer: Layer, curves: DxfCurves) -> None:
     """Raise ValueError where a layer has segments that the entities cannot hold."""
     others = set(np.unique(layer.paths.kind).tolist()) - set(_TAKES[curves])
     if others:
@@ -108,7 +107,7 @@ def _with_head(body: str, handle: int, owner: str, layer: str) -> str:
 def _lwpolylines(paths: Paths, layer: str) -> list[str]:  # noqa: ARG001 - the signature of _BODIES
     """LWPOLYLINE entities without their heads; shape (p,)."""
     points, first, last = _vertices(paths)
-    rows = [f" 10\n{x}\n 20\n{y}\n" for x, y in zip(_reals(points.real), _reals(points.imag), strict=True)]
+    rows = _plane_points(points)
     bulges, bent = paths.bulges(), np.flatnonzero(paths.kind == ARC)
     # Vertices of open paths, one more than their segments, push the later ones on.
     places = bent + (np.cumsum(~paths.closed) - ~paths.closed)[paths.owner[bent]]
@@ -177,15 +176,13 @@ def _vertices(paths: Paths) -> tuple[Complexes, Ints, Ints]:
 
 def _points(points: Complexes) -> list[str]:
     """Points as groups 10, 20 and 30."""
-    return [f" 10\n{x}\n 20\n{y}\n 30\n0.0\n" for x, y in zip(_reals(points.real), _reals(points.imag), strict=True)]
+    return [f"{row} 30\n0.0\n" for row in _plane_points(points)]
 
 
-def _reals(values: Floats) -> list[str]:
-    """Numbers rounded to six decimals, without exponent; "12.5", "3.0"."""
-    text, used = decimals(values, point=True)
-    breaks = np.full((len(values), 1), ord("\n"), np.uint8)
-    lines = np.hstack((text, breaks))[np.hstack((used, breaks > 0))]
-    return lines.tobytes().decode("ascii").split("\n")[:-1]
+def _plane_points(points: Complexes) -> list[str]:
+    """Points as groups 10 and 20; "12.5", "3.0"."""
+    x, y = (decimal_texts(values, point=True) for values in (points.real, points.imag))
+    return [f" 10\n{u}\n 20\n{v}\n" for u, v in zip(x, y, strict=True)]
 
 
 def _figures(values: Floats) -> list[str]:
@@ -286,7 +283,7 @@ def nearest_index(colour: str) -> int:
     return int(((shades - wanted) ** 2).sum(axis=1).argmin()) or 7
 
 
-def _comments(drawing: Drawing, curves: Curves, accuracy: float) -> str:
+def _comments(drawing: Drawing, curves: DxfCurves, accuracy: float) -> str:
     """The recipe as JSON in comments: what follows "recipe " in all of them, joined."""
     recipe = {"title": drawing.title, **drawing.recipe, "curves": curves, "accuracy_mm": accuracy}
     text = json.dumps(recipe)

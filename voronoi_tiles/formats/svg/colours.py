@@ -52,8 +52,8 @@ def parse_colour(text: str) -> str | None:
     parts = re.split(r"[\s,/]+", match[1].strip())
     if len(parts) not in {3, 4}:
         return None
-    channels = [_channel(part) for part in parts[:3]]
-    return None if None in channels else "#" + "".join(f"{channel:02x}" for channel in channels)
+    channels = [channel for channel in map(_channel, parts[:3]) if channel is not None]
+    return f"#{bytes(channels).hex()}" if len(channels) == 3 else None
 
 
 def _channel(text: str) -> int | None:

@@ -7,7 +7,6 @@ images, nested drawings and what lies outside the file are counted and left out;
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 from voronoi_tiles.base.maps import Affine
@@ -89,14 +88,13 @@ class _SvgVisit(NamedTuple):
     symbol_size: tuple[str | None, str | None] | None = None
 
 
-@dataclass(frozen=True)
-class _Look:
-    """What is known of a shape before its paths are."""
-
-    style: Style
-    scale: float
-    layer: str
-    node: Node
+def _transformed(visit: _SvgVisit) -> Affine:
+    """The map to the page from the coordinates inside an element."""
+    text = visit.node.attributes.get("transform")
+    to_page = visit.to_page if text is None else visit.to_page @ parse_transform(text)
+    if not abs(to_page.c) < float("inf"):
+        raise DrawingError("transforms beyond all measure", remedy="Draw in units that keep numbers small.")
+    return to_page
 
 
 class _SvgWalk:
@@ -110,7 +108,7 @@ class _SvgWalk:
         self._sheet = StyleSheet()
         self._targets: dict[str, Node] = {}
         self._ignored: Counter[str] = Counter()
-        self._looks: list[_Look] = []
+        self._drawn: list[_SvgVisit] = []
         self._clones = 0
         self._stack: list[_SvgVisit] = []
 
@@ -156,15 +154,15 @@ class _SvgWalk:
         except DrawingError as error:
             raise error.with_file(self._file) from None
         shapes = []
-        for look, paths in zip(self._looks, drawn, strict=True):
+        for visit, paths in zip(self._drawn, drawn, strict=True):
             if not len(paths):
                 continue
+            node, style = visit.node, visit.style
             try:
-                width = abs(length(look.style.width, self._page.view[0])) * look.scale
+                width = abs(length(style.width, self._page.view[0])) * visit.to_page.scale
             except DrawingError as error:
-                raise _at(error.under("stroke-width"), look.node, self._file) from None
-            stroke, fill = look.style.stroke, look.style.fill
-            shapes.append(Shape(paths, look.layer, stroke, fill, width, _source(look.node, _tag(look.node))))
+                raise _at(error.under("stroke-width"), node, self._file) from None
+            shapes.append(Shape(paths, visit.layer, style.stroke, style.fill, width, _source(node, _tag(node))))
         return tuple(shapes)
 
     def _index(self) -> None:
@@ -183,8 +181,6 @@ class _SvgWalk:
 
     def _push_children(self, visit: _SvgVisit) -> None:
         """Have the children drawn next, in their order."""
-        if visit.depth >= DEPTH_MAX:
-            raise DrawingError(f"clones and groups nested more than {DEPTH_MAX:,} deep", remedy="Ungroup the drawing.")
         self._stack.extend(
             visit._replace(node=child, depth=visit.depth + 1, symbol_size=None)
             for child in reversed(visit.node.children)
@@ -192,6 +188,8 @@ class _SvgWalk:
 
     def _visit(self, visit: _SvgVisit) -> None:
         """Draw one element, or have its content drawn."""
+        if visit.depth > DEPTH_MAX:
+            raise DrawingError(f"clones and groups nested more than {DEPTH_MAX:,} deep", remedy="Ungroup the drawing.")
         node = visit.node
         tag = _tag(node)
         if tag == "symbol" and visit.symbol_size is not None:
@@ -208,12 +206,7 @@ class _SvgWalk:
         for effect in _EFFECTS:
             if node.attributes.get(effect, "none") != "none":
                 self._ignored[effect] += 1
-        to_page = visit.to_page
-        if "transform" in node.attributes:
-            to_page = to_page @ parse_transform(node.attributes["transform"])
-            if not abs(to_page.c) < float("inf"):
-                raise DrawingError("transforms beyond all measure", remedy="Draw in units that keep numbers small.")
-        visit = visit._replace(to_page=to_page, style=inherited(visit.style, said))
+        visit = visit._replace(to_page=_transformed(visit), style=inherited(visit.style, said))
         if tag in DRAWN:
             self._draw(visit, tag)
         elif tag == "use":
@@ -231,7 +224,7 @@ class _SvgWalk:
             return
         self._pen.begin(visit.to_page)
         draw_shape(self._pen, tag, visit.node.attributes, self._page.view)
-        self._looks.append(_Look(visit.style, visit.to_page.scale, visit.layer, visit.node))
+        self._drawn.append(visit)
 
     def _use(self, visit: _SvgVisit) -> None:
         """Have the target of a clone drawn."""
@@ -246,8 +239,6 @@ class _SvgWalk:
             return
         if id(node) in visit.users:
             raise DrawingError(f"the clone {target[:60]!r} contains itself", remedy="Remove it.")
-        if visit.depth >= DEPTH_MAX:
-            raise DrawingError(f"clones and groups nested more than {DEPTH_MAX:,} deep", remedy="Ungroup the drawing.")
         across, down = self._page.view
         shift = complex(length(attributes.get("x", "0"), across), length(attributes.get("y", "0"), down))
         self._clones += 1
@@ -267,9 +258,7 @@ class _SvgWalk:
         said = properties(node, "symbol", self._sheet)
         if said.get("display") == "none":
             return
-        to_page = visit.to_page
-        if "transform" in node.attributes:
-            to_page = to_page @ parse_transform(node.attributes["transform"])
+        to_page = _transformed(visit)
         box = view_box(node.attributes)
         if box is not None and visit.symbol_size is not None:
             size = [

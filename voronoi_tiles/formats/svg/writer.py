@@ -15,6 +15,7 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from voronoi_tiles.base.text import xml_text
 from voronoi_tiles.formats.decimals import PLACES
 from voronoi_tiles.formats.page import Drawing, Layer
 from voronoi_tiles.formats.svg.path_text import decimal_text, path_data, path_texts
@@ -24,8 +25,6 @@ if TYPE_CHECKING:
 
 RECIPE_NAMESPACE = "urn:voronoi-tiles:recipe"
 INKSCAPE_NAMESPACE = "http://www.inkscape.org/namespaces/inkscape"
-
-_NOT_XML = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 _ODD = re.compile("[^0-9A-Za-z_-]+")
 _MARK = "paths-of-layer-"
@@ -117,8 +116,3 @@ def document_text(document: svgwrite.Drawing) -> str:
     root: Any = document.get_xml()
     ET.indent(root)
     return '<?xml version="1.0" encoding="utf-8"?>\n' + ET.tostring(root, encoding="unicode") + "\n"
-
-
-def xml_text(text: str) -> str:
-    """Replace the characters that XML 1.0 cannot carry."""
-    return _NOT_XML.sub("\ufffd", text)
