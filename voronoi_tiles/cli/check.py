@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from voronoi_tiles.cli.common import PATH, print_figures, refuse_output, reporting, say, say_written, shown, tessellate
+from voronoi_tiles.cli.common import PATH, print_figures, refuse_output, reporting, say, say_written, tessellate
 from voronoi_tiles.cli.options import with_method, with_renderer
 
 if TYPE_CHECKING:
@@ -41,6 +41,7 @@ def check(
     Every figure is printed with its limit and what that follows from. The exit code is 1 where they differ.
     """
     from voronoi_tiles.cli.tables import check_text
+    from voronoi_tiles.tiling import require
 
     refuse_output(design, output, (".png",), stream=False)
     with reporting(design):
@@ -50,6 +51,5 @@ def check(
             tiling.difference(report).save(output)
             say_written(output)
     print_figures(tiling.evidence(report), check_text, as_json=as_json)
-    if not report.passed:
-        say(f"Error: {shown(design)}: the outlines failed the cross-check: {', '.join(report.failures)}.")
-        raise click.exceptions.Exit(1)
+    with reporting(design):
+        require(report)

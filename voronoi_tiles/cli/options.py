@@ -10,6 +10,7 @@ import click
 
 from voronoi_tiles.cli.common import as_options
 from voronoi_tiles.fabrication.job import Job
+from voronoi_tiles.fabrication.job_options import Option
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -73,25 +74,19 @@ _SPELLINGS = {"colours": ("--colours", "--colors")}
 _HIDDEN = ("only_colour",)
 
 
-def _job_options() -> dict[str, tuple[tuple[str, ...], dict[str, Any]]]:
-    """The flags and settings of each option of a job, in the order of its fields."""
-    found: dict[str, tuple[tuple[str, ...], dict[str, Any]]] = {}
-    for name, option in Job.options().items():
-        settings: dict[str, Any] = {"help": as_options(option.help)}
-        match option.kind:
-            case "word":
-                # "none" is what the option means when it is left out; for art it is what one may want.
-                settings["type"] = click.Choice([w for w in option.words if w != option.default or w != "none"])
-            case "flag":
-                settings |= {"is_flag": True, "default": None}
-            case kind:
-                settings |= {"type": _TYPES.get(kind), "metavar": option.shown}
-        if name not in _HIDDEN:
-            found[name] = (_SPELLINGS.get(name, (f"--{name.replace('_', '-')}",)), settings)
-    return found
+_OPTIONS = {name: option for name, option in Job.options().items() if name not in _HIDDEN}
 
 
-_OPTIONS = _job_options()
+def _settings(option: Option[Any, Any]) -> dict[str, Any]:
+    """What click is told of an option of a job."""
+    match option.kind:
+        case "word":
+            # "none" is what the option means when it is left out; for art it is what one may want.
+            return {"type": click.Choice([w for w in option.words if w != option.default or w != "none"])}
+        case "flag":
+            return {"is_flag": True, "default": None}
+        case kind:
+            return {"type": _TYPES[kind], "metavar": option.shown}
 
 
 def with_job(command: Command) -> Command:
@@ -102,6 +97,7 @@ def with_job(command: Command) -> Command:
         given = {name: value for name in _OPTIONS if (value := arguments.pop(name)) is not None}
         return command(job=Job(**given) if given else None, **arguments)
 
-    for flags, settings in reversed(_OPTIONS.values()):
-        run = click.option(*flags, **settings)(run)
+    for name, option in reversed(_OPTIONS.items()):
+        flags = _SPELLINGS.get(name, (f"--{name.replace('_', '-')}",))
+        run = click.option(*flags, help=as_options(option.help), **_settings(option))(run)
     return run  # type: ignore[return-value]

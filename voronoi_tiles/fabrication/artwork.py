@@ -32,16 +32,16 @@ GUIDE: Final = "guide"
 
 @dataclass(frozen=True, eq=False)
 class Works:
-    """Art by what is done with it; shape k that is filled are the closed paths from items[k] up to items[k + 1].
+    """Lines and shapes by what is done with them, and what is to be said of them, in sentences.
 
-    `left_out` says in sentences what of the drawings is no path, and is not there.
+    Shape k that is `filled` are the closed paths from items[k] up to items[k + 1].
     """
 
     engraved: Paths
     scored: Paths
     filled: Paths
     items: Ints
-    left_out: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
 
     @classmethod
     def joined(cls, parts: list[Works]) -> Works:
@@ -52,7 +52,7 @@ class Works:
             Paths.concatenate([part.scored for part in parts]),
             Paths.concatenate([part.filled for part in parts]),
             np.append(0, np.cumsum(np.concatenate(counts)) if counts else []).astype(np.intp),
-            tuple(dict.fromkeys(line for part in parts for line in part.left_out)),
+            tuple(dict.fromkeys(line for part in parts for line in part.notes)),
         )
 
     def moved(self, factor: complex, shift: complex, *, conj: bool = False) -> Works:
@@ -77,12 +77,12 @@ class Works:
             _clipped_lines(self.scored, region, accuracy),
             Paths.concatenate(filled),
             np.array(items, np.intp),
-            self.left_out,
+            self.notes,
         )
 
     def _changed(self, change: Callable[[Paths], Paths], items: Ints) -> Works:
         """The same with all paths changed."""
-        return Works(change(self.engraved), change(self.scored), change(self.filled), items, self.left_out)
+        return Works(change(self.engraved), change(self.scored), change(self.filled), items, self.notes)
 
 
 def draw_art(layout: Layout, shown: Bools, *, fills: bool) -> Works:
@@ -158,8 +158,8 @@ def read_art(art: Art, folder: str, site: int, unit_mm: float, *, fills: bool) -
     items = np.append(0, np.cumsum([len(paths) for paths in filled])).astype(np.intp)
     engraved, scored = Paths.concatenate(lines["engrave"]), Paths.concatenate(lines["score"])
     what = ", ".join(f"{name} ({count:,})" for name, count in sorted(drawing.ignored.items()))
-    left_out = (f"{art.file}: left out what is no path: {what}; convert texts to paths",) if what else ()
-    works = Works(engraved, scored, Paths.concatenate(filled), items, left_out)
+    notes = (f"{art.file}: left out what is no path: {what}; convert texts to paths",) if what else ()
+    works = Works(engraved, scored, Paths.concatenate(filled), items, notes)
     return works.moved(art.placement.scale * unit_at(art.placement.rotate) / unit_mm, art.placement.translate)
 
 

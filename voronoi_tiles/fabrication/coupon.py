@@ -234,7 +234,7 @@ def _engraving(plan: _Coupon) -> Paths:
         lettering(text, height=_LETTERS_MM).moved(1.0, place)
         for text, place in zip(_captions(plan.thickness), plan.captions, strict=True)
     ]
-    bar = reference_bar(BAR_MM, letters=_LETTERS_MM).moved(1.0, plan.bar)
+    bar = reference_bar(_LETTERS_MM).moved(1.0, plan.bar)
     rows = np.array([plan.numbers, *plan.plug_rows])
     places = (plan.columns + 1j * rows[:, None]).ravel()
     numbers = place_labels(_labels(plan.kerfs) * len(rows), places, height=plan.number_height)

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
-from voronoi_tiles.fabrication.artwork import draw_art
+from voronoi_tiles.fabrication.artwork import Works, draw_art
 from voronoi_tiles.fabrication.job import LABEL_MIN, Job, JobError
 from voronoi_tiles.fabrication.layout import Contours, Layout, Sheet
 from voronoi_tiles.fabrication.lettering import fitting_height, label_position, place_labels, printable
@@ -31,21 +31,7 @@ _FREE_MM: Final = 1.0
 """The bar's distance from what is beside it."""
 
 
-@dataclass(frozen=True, eq=False)
-class Engraving:
-    """What is engraved and scored on the page, and what is to be said of it, in sentences.
-
-    Shape k that is `filled` are the closed paths from items[k] up to items[k + 1].
-    """
-
-    engraved: Paths
-    scored: Paths
-    filled: Paths
-    items: Ints
-    notes: tuple[str, ...] = ()
-
-
-def engrave(layout: Layout, contours: Contours | None, sheet: Sheet, shown: Bools, *, fills: bool) -> Engraving:
+def engrave(layout: Layout, contours: Contours | None, sheet: Sheet, shown: Bools, *, fills: bool) -> Works:
     """Draw what a job asks for beside its cuts; art on those tiles on the page that are `shown`.
 
     With `fills` the target engraves what is filled: then all lines are scored. Raises DesignError where the art of a
@@ -54,7 +40,7 @@ def engrave(layout: Layout, contours: Contours | None, sheet: Sheet, shown: Bool
     job = layout.job
     art = draw_art(layout, shown, fills=fills)
     lines: list[Paths] = []
-    notes: list[str] = list(art.left_out)
+    notes = list(art.notes)
     if job.labels != "none":
         labels, small = _labels(layout, contours if contours is not None else layout.contours)
         lines.append(labels)
@@ -62,7 +48,7 @@ def engrave(layout: Layout, contours: Contours | None, sheet: Sheet, shown: Bool
             notes.append(f"{small} pieces are too small for a label of {LABEL_MIN:g} mm")
     lines += _beside(layout, contours, sheet)
     engraved, scored = ([art.engraved], [art.scored, *lines]) if fills else ([art.engraved, *lines], [art.scored])
-    return Engraving(Paths.concatenate(engraved), Paths.concatenate(scored), art.filled, art.items, tuple(notes))
+    return replace(art, engraved=Paths.concatenate(engraved), scored=Paths.concatenate(scored), notes=tuple(notes))
 
 
 # --- labels -----------------------------------------------------------------------------------------------------
@@ -144,7 +130,7 @@ def _bar(layout: Layout, contours: Contours | None, sheet: Sheet) -> Paths:
         paths = contours.paths if contours is not None else layout.contours.paths
         low_x, low_y, _, _ = paths.bounds
         height = bar_height(_LETTERS_MM)
-        return reference_bar(letters=_LETTERS_MM).moved(1.0, complex(low_x, low_y - height - 2 * _FREE_MM))
+        return reference_bar(_LETTERS_MM).moved(1.0, complex(low_x, low_y - height - 2 * _FREE_MM))
     letters = min(_LETTERS_MM, (job.margin - 2 * _FREE_MM) / 2)
     beside = 2 * (job.margin + _MARK_MM) if job.marks else 2 * _FREE_MM
     if letters < 1.0 or sheet.width < BAR_MM + beside or not sheet.region.is_rectangle:
@@ -153,4 +139,4 @@ def _bar(layout: Layout, contours: Contours | None, sheet: Sheet) -> Paths:
             remedy="Give a rectangular sheet that is wide enough a `margin` of 8mm, at least 4mm.",
         )
     place = complex(sheet.width / 2 - BAR_MM / 2, (job.margin - bar_height(letters)) / 2)
-    return reference_bar(letters=letters).moved(1.0, place)
+    return reference_bar(letters).moved(1.0, place)

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, Final, Generic, Literal, TypeAlias, TypeVar, cast, get_args
 
 from voronoi_tiles.base.errors import ArgumentError, DesignError
@@ -32,25 +33,17 @@ class JobError(ArgumentError):
     """A job that cannot be done; `message` without a full stop, `remedy` a sentence, `fields` names its options."""
 
 
+@dataclass(eq=False)
 class Option(Generic[Given, Kept]):
     """An option of a job: `read` makes what is kept of what is given under a name; `words` are those that it takes."""
 
-    def __init__(
-        self,
-        default: Kept,
-        read: Callable[[str, Any], Kept],
-        help: str,  # noqa: A002 - the word that click has for it
-        *,
-        kind: Kind,
-        shown: str = "",
-        words: tuple[str, ...] = (),
-    ) -> None:
-        self.default = default
-        self.help = help
-        self.kind = kind
-        self.shown = shown
-        self.words = words
-        self._read = read
+    default: Kept
+    read: Callable[[str, Any], Kept]
+    help: str
+    _: KW_ONLY
+    kind: Kind
+    shown: str = ""
+    words: tuple[str, ...] = ()
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
@@ -59,7 +52,7 @@ class Option(Generic[Given, Kept]):
         return self.default if job is None else cast("Kept", job.__dict__[self.name])
 
     def __set__(self, job: object, value: Given) -> None:
-        job.__dict__[self.name] = self._read(self.name, value)
+        job.__dict__[self.name] = self.read(self.name, value)
 
 
 Length: TypeAlias = Option[float | str, float]

@@ -12,55 +12,46 @@ from voronoi_tiles.paths.paths import ARC, LINE, Paths
 
 BAR_MM: Final = 100.0
 TICK_STEP_MM: Final = 10.0
-_MOST_TICKS: Final = 1000
 
 
-def reference_bar(length: float = BAR_MM, *, letters: float = 3.0) -> Paths:
-    """A bar of `length` millimetres with end ticks, a tick every 10 mm and its length as a caption, lower left at 0.
+def reference_bar(letters: float) -> Paths:
+    """A bar of BAR_MM with end ticks, a tick every 10 mm and its length as a caption, its lower left at 0.
 
     The distance of the two end ticks is the length. `letters` is the height of the caption's capitals, which scales the
     ticks too; the whole is `bar_height(letters)` high. All paths are open; ticks touch the bar, and nothing crosses.
-    Raises ValueError for lengths and letters that are not more than 0, and for bars with more than a thousand ticks.
+    Raises ValueError for letters that are not more than 0 mm high.
     """
-    if not (0 < letters < math.inf and 0 < length <= _MOST_TICKS * TICK_STEP_MM):
-        raise ValueError(
-            f"a bar of {length:g} mm with letters of {letters:g} mm cannot be drawn. "
-            f"Lengths go up to {_MOST_TICKS * TICK_STEP_MM:g} mm, letters are higher than 0 mm."
-        )
-    end, inner = letters, letters / 2
-    bar = np.array([1j * end, 0, length, length + 1j * end])
-    places = np.arange(TICK_STEP_MM, length - TICK_STEP_MM / 10, TICK_STEP_MM)
-    ticks = [np.array([x, x + 1j * inner]) for x in places]
-    caption = lettering(f"{length:g} mm", height=letters, align="centre")
-    return Paths.concatenate([Paths.polylines([bar, *ticks]), caption.moved(1.0, length / 2 + 1j * end)])
+    caption = lettering(f"{BAR_MM:g} mm", height=letters, align="centre")
+    bar = np.array([1j * letters, 0, BAR_MM, BAR_MM + 1j * letters])
+    ticks = [np.array([x, x + 0.5j * letters]) for x in np.arange(TICK_STEP_MM, BAR_MM, TICK_STEP_MM)]
+    return Paths.concatenate([Paths.polylines([bar, *ticks]), caption.moved(1.0, BAR_MM / 2 + 1j * letters)])
 
 
-def bar_height(letters: float = 3.0) -> float:
+def bar_height(letters: float) -> float:
     """The height of a reference bar with these letters, in millimetres."""
     return 2 * letters
 
 
-def registration_marks(width: float, height: float, *, size: float = 6.0, inset: float | None = None) -> Paths:
+def registration_marks(width: float, height: float, *, size: float, inset: float) -> Paths:
     """Crosses at three corners of a page of `width` times `height` millimetres, to align passes or sheets.
 
-    Their centres are `inset` from the page's edges (`size` without it), their arms reach `size / 2` from there. Those
-    at the lower left and lower right have a circle about them, that at the upper left a square: a sheet that is turned
-    or flipped in any way shows it, square ones too. Each mark is two open lines and one closed path. Raises ValueError
-    where the marks would leave the page or meet.
+    Their centres are `inset` from the page's edges, their arms reach `size / 2` from there. Those at the lower left
+    and lower right have a circle about them, that at the upper left a square: a sheet that is turned or flipped in any
+    way shows it, square ones too. Each mark is two open lines and one closed path. Raises ValueError where the marks
+    would leave the page or meet.
     """
-    margin = size if inset is None else inset
-    if not (0 < size < math.inf and size / 2 <= margin < math.inf):
+    if not (0 < size < math.inf and size / 2 <= inset < math.inf):
         raise ValueError(
-            f"marks of {size:g} mm do not fit {margin:g} mm from the edge. The inset is half the size or more."
+            f"marks of {size:g} mm do not fit {inset:g} mm from the edge. The inset is half the size or more."
         )
-    if not (2 * margin + size <= width < math.inf and 2 * margin + size <= height < math.inf):
+    if not (2 * inset + size <= width < math.inf and 2 * inset + size <= height < math.inf):
         raise ValueError(
             f"three marks of {size:g} mm do not fit on a page of {width:g} x {height:g} mm. "
             "Take a larger page or smaller marks."
         )
-    lower_left = complex(margin, margin)
-    lower_right = complex(width - margin, margin)
-    upper_left = complex(margin, height - margin)
+    lower_left = complex(inset, inset)
+    lower_right = complex(width - inset, inset)
+    upper_left = complex(inset, height - inset)
     parts = []
     for centre in (lower_left, lower_right, upper_left):
         arms = [np.array([-1, 1]), np.array([-1j, 1j])]

@@ -15,8 +15,9 @@ from voronoi_tiles.base.arrays import Bools, ranges
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.arc_fitting import curve_fit
+from voronoi_tiles.fabrication.artwork import Works
 from voronoi_tiles.fabrication.cutting import Cut, cut_once, cut_pieces, toured
-from voronoi_tiles.fabrication.engraving import Engraving, engrave
+from voronoi_tiles.fabrication.engraving import engrave
 from voronoi_tiles.fabrication.exact import design_recipe
 from voronoi_tiles.fabrication.inventory import Inventory, contour_pieces, cut_free
 from voronoi_tiles.fabrication.job import Job, JobError
@@ -25,8 +26,8 @@ from voronoi_tiles.fabrication.sheets import read_sheet
 from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_tiles
 from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
 from voronoi_tiles.formats.page import Drawing, Layer, Work
-from voronoi_tiles.formats.presets import Format, Preset, Role, load_preset
-from voronoi_tiles.formats.writing import FORMATS, write_drawing
+from voronoi_tiles.formats.presets import FORMATS, Format, Preset, Role, load_preset
+from voronoi_tiles.formats.writing import write_drawing
 from voronoi_tiles.groups.periodic_colouring import palette
 from voronoi_tiles.paths.biarcs import to_arcs
 from voronoi_tiles.paths.conversion import to_cubics, to_lines
@@ -101,13 +102,6 @@ def make_colours(
     """
     plan = _Plan.of(design, tessellation, job, _format(file_format))
     return [(name, plan.product(replace(job, only_colour=number))) for number, name in plan.colours()]
-
-
-def colour_names(
-    design: Design, tessellation: Tessellation, job: Job, file_format: str = "svg"
-) -> list[tuple[int, str]]:
-    """The colours that a job has pieces of, each with a name for its file; FRAME for the frame."""
-    return _Plan.of(design, tessellation, job, _format(file_format)).colours()
 
 
 @dataclass(frozen=True, eq=False)
@@ -225,7 +219,7 @@ def _converter(curves: str, budget: AccuracyBudget) -> Callable[[Paths], Paths]:
 
 
 def _layers(
-    preset: Preset, form: Format, job: Job, cuts: list[Cut], engraving: Engraving, convert: Callable[[Paths], Paths]
+    preset: Preset, form: Format, job: Job, cuts: list[Cut], engraving: Works, convert: Callable[[Paths], Paths]
 ) -> list[Layer]:
     """The layers in the order of work: engraving, scores, cuts inside, cuts around."""
     stroke = preset.stroke_width(job.kerf)
@@ -255,8 +249,7 @@ def _palette(preset: Preset, number: int) -> str:
     colours = (preset.colours["cut"], *preset.palette)
     if number < len(colours):
         return colours[number]
-    red, green, blue = palette(number + 1)[number].tolist()
-    return f"#{red:02x}{green:02x}{blue:02x}"
+    return f"#{bytes(palette(number + 1)[number]).hex()}"
 
 
 def _page(layers: list[Layer], sheet: Sheet, job: Job, design: Design) -> Drawing:
