@@ -282,11 +282,11 @@ def test_an_unreadable_file_does_not_lose_the_batch(tmp_path: Path) -> None:
         (tmp_path / name).write_text(SEGMENT)
     (tmp_path / "out").mkdir()
     body = (
-        "import os, pathlib\nos.access = lambda *_, **__: False\nreal = pathlib.Path.open\n"
-        "def refuse(path, *a, **k):\n"
-        "    if path.name == 'bad.toml':\n        raise PermissionError(13, 'Permission denied')\n"
-        "    return real(path, *a, **k)\n"
-        "pathlib.Path.open = refuse\n"
+        "import builtins, os\nos.access = lambda *_, **__: False\nreal = builtins.open\n"
+        "def refuse(name, *a, **k):\n"
+        "    if name == 'bad.toml':\n        raise PermissionError(13, 'Permission denied')\n"
+        "    return real(name, *a, **k)\n"
+        "builtins.open = refuse\n"
     )
     result = script(body, "export", *BATCH, "-o", "out", "-q", cwd=tmp_path)
     assert result.returncode == 2

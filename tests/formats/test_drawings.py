@@ -252,6 +252,8 @@ def test_compressed_files_and_doctypes_are_read(tmp_path: Path) -> None:
     for name, reason in (("none.svg", "No such file"), ("a\0b", "its name has a null byte")):
         with pytest.raises(DrawingError, match=f"cannot be read: {reason}"):
             read_drawing(tmp_path / name)
+    with pytest.raises(DrawingError, match="'': cannot be read: No such file"):
+        read_drawing("")
 
 
 def all_kinds(document: Any, space: Any) -> None:

@@ -6,7 +6,6 @@ import json
 import re
 import sys
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any, cast
 
 from voronoi_tiles.base.errors import DesignError, why_not_opened
@@ -18,7 +17,7 @@ def read_bytes(file: str, most: int) -> bytes:
     """The first bytes of a file, or of standard input, "-". Raises OSError, and ValueError for what is no name."""
     if file == "-":
         return sys.stdin.buffer.read(most)
-    with Path(file).open("rb") as stream:
+    with open(file, "rb") as stream:  # noqa: PTH123 - Path takes an empty name for the folder
         return stream.read(most)
 
 

@@ -9,8 +9,10 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 
+from voronoi_tiles.base.documents import read_bytes
+from voronoi_tiles.base.errors import why_not_opened
 from voronoi_tiles.formats.recipe import job_of
-from voronoi_tiles.formats.shapes import DrawingError, ReadDrawing, Shape, load_bytes
+from voronoi_tiles.formats.shapes import BYTES_MAX, DrawingError, ReadDrawing, Shape
 
 __all__ = ["DrawingError", "ReadDrawing", "Shape", "read_drawing"]
 
@@ -21,8 +23,14 @@ def read_drawing(path: str | os.PathLike[str]) -> ReadDrawing:
     Raises DrawingError for what cannot be read.
     """
     name = os.fspath(path)
-    data = load_bytes(name)
-    shown = "standard input" if name == "-" else name
+    shown = "standard input" if name == "-" else name or repr(name)
+    try:
+        data = read_bytes(name, BYTES_MAX + 1)
+    except (OSError, ValueError) as error:
+        reason = why_not_opened(name, error)
+        raise DrawingError(f"cannot be read: {reason}", file=shown, remedy="Check the name.") from error
+    if len(data) > BYTES_MAX:
+        raise DrawingError(f"larger than {BYTES_MAX >> 20} MiB", file=shown, remedy="Split it, or simplify its curves.")
     head = data[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
     suffix = os.path.splitext(name)[1].lower()  # noqa: PTH122 - a name that is no path is no error here
     is_xml = head.startswith((b"<", b"\x1f\x8b", b"\xff\xfe<", b"\xfe\xff\x00<"))

@@ -9,8 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final
 
-from voronoi_tiles.base.documents import read_bytes
-from voronoi_tiles.base.errors import DesignError, why_not_opened
+from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.paths.paths import Paths
 
 BYTES_MAX: Final = 256 * 2**20
@@ -89,19 +88,3 @@ class ReadDrawing:
 
     def __repr__(self) -> str:
         return f"<ReadDrawing {self.format}: {len(self.shapes)} shapes>"
-
-
-def load_bytes(name: str) -> bytes:
-    """The content of a file, `-` being standard input; at most BYTES_MAX.
-
-    Raises DrawingError where it cannot be read or is larger.
-    """
-    shown = "standard input" if name == "-" else name or repr(name)
-    try:
-        data = read_bytes(name, BYTES_MAX + 1)
-    except (OSError, ValueError) as error:
-        reason = why_not_opened(name, error)
-        raise DrawingError(f"cannot be read: {reason}", file=shown, remedy="Check the name.") from error
-    if len(data) > BYTES_MAX:
-        raise DrawingError(f"larger than {BYTES_MAX >> 20} MiB", file=shown, remedy="Split it, or simplify its curves.")
-    return data
