@@ -316,6 +316,7 @@ def one(*strokes: Any, **site: Any) -> Callable[[], object]:
         (lambda: bird().scaled(0), "factor", "greater than 0"),
         (lambda: bird(vt.path("M 1 1 L 2 2")).moved(mirror=True), "path", "cannot be mirrored"),
         (lambda: bird(art="face.svg").moved(mirror=True), "art", "cannot be mirrored"),
+        (lambda: vt.Site([vt.point(1j, rotate="x")]).moved(), "rotate", "must be a number"),  # type: ignore[arg-type]
     ],
 )
 def test_what_is_refused_is_named_as_the_argument(make: Callable[[], object], key: str | None, message: str) -> None:
