@@ -17,7 +17,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from voronoi_tiles.base.arrays import Complexes, Floats, Ints, owned_ranges
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints, offsets_of, owned_ranges, starts
 from voronoi_tiles.raster.frame import BLOCK, Frame
 from voronoi_tiles.raster.scene import Scene, distances, from_feet, lengths
 
@@ -117,7 +117,7 @@ def _roots(scene: Scene, frame: Frame, column: Ints, row: Ints, level: int, loos
         everything[_keep(scene.label, from_feet(z, scene.middle, scene.half), np.zeros(1, np.intp), radius, loose)]
         for z in centre.tolist()
     ]
-    start = np.append(0, np.cumsum([len(part) for part in kept]))
+    start = offsets_of([len(part) for part in kept])
     return _Lists(column, row, centre, start, np.concatenate(kept))
 
 
@@ -147,7 +147,7 @@ def _children(scene: Scene, frame: Frame, parents: _Lists, level: int, across: i
         keep = _keep(scene.label[element], away, start, radius, loose)
         elements.append(element[keep])
         counts.append(np.add.reduceat(keep, start, dtype=np.intp))
-    return _Lists(column, row, centre, np.append(0, np.cumsum(np.concatenate(counts))), np.concatenate(elements))
+    return _Lists(column, row, centre, offsets_of(np.concatenate(counts)), np.concatenate(elements))
 
 
 _PORTION = 2_000_000
@@ -193,8 +193,7 @@ def _second_smallest(nearest: Floats, start: Ints, run_start: Ints) -> Floats:
 
 def _first_of_each(index: Ints, start: Ints) -> Ints:
     """Of ascending indices the first in each of the segments that begin at `start`."""
-    segment = np.searchsorted(start, index, side="right")
-    return np.asarray(index[np.append(True, segment[1:] != segment[:-1])])
+    return np.asarray(index[starts(np.searchsorted(start, index, side="right"))])
 
 
 def _in_order(scene: Scene, lists: _Lists, order: Ints, columns: int, radius: float) -> BlockLists:

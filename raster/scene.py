@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from voronoi_tiles.base.arrays import Complexes, Floats, Ints, counting, starts
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints, counting, plane, starts
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import Isometry
 from voronoi_tiles.base.operations import Operation
@@ -72,11 +72,6 @@ class Pattern:
                 return k, int(i), int(j)
         raise KeyError(str(operation))
 
-    def name(self, placement: int, i: int, j: int) -> tuple[str, Operation]:
-        """The site's name and the operation of a copy."""
-        row = self.placements[placement]
-        return self.sites[row.site].name, row.operation.translated(i, j)
-
     @cached_property
     def _placement_of(self) -> dict[tuple[int, Operation], int]:
         return {(row.site, row.operation.reduced()): k for k, row in enumerate(self.placements)}
@@ -101,7 +96,7 @@ class Pattern:
         middle = nodes[len(nodes) // 2]
         local = nodes - middle
         centre = complex(local.mean())
-        tree = cKDTree(np.stack((local.real, local.imag), axis=1))
+        tree = cKDTree(plane(local))
         near = SAME_POINT * max(abs(self.lattice.a), abs(self.lattice.b), site.extent) + 8 * EPSILON * self.scale
         segments = {(min(s), max(s)) for s in site.segments.tolist()}
         found = []
@@ -110,7 +105,7 @@ class Pattern:
             moved = operation.translated(round(x), round(y))
             isometry = self.lattice.isometry(moved)
             turned = isometry.a * (local.conj() if isometry.conj else local) + (isometry(complex(middle)) - middle)
-            distance, image = tree.query(np.stack((turned.real, turned.imag), axis=1))
+            distance, image = tree.query(plane(turned))
             if float(distance.max()) > near or len(np.unique(image)) < len(nodes):
                 continue
             ends = np.sort(image[site.segments], axis=1).tolist()
@@ -179,8 +174,8 @@ def gather(pattern: Pattern, origin: complex, middle: complex, radius: float, *,
     if most is None and any(len(site.elements) > _FEW for site in pattern.sites):
         # With some of the elements a better bound than the lattice's is found.
         some = gather(pattern, origin, middle, radius, most=_FEW)
-        d2 = _second_smallest(some, middle)
-        reach = min(reach, d2 + 2 * radius)
+        second = float(np.partition(some.copy_distances(middle), 1)[1])
+        reach = min(reach, second + 2 * radius)
     parts = [_images(pattern, k, origin, middle, reach, most) for k in range(len(pattern.placements))]
     shifts = np.concatenate([np.insert(part[2], 0, k, axis=1) for k, part in enumerate(parts)])
     half = np.concatenate([part[1] for part in parts])
@@ -204,11 +199,10 @@ def _images(
 ) -> tuple[Complexes, Complexes, Ints]:
     """The translates of one placement's elements within `reach` of a point: middles, halves, (i, j)."""
     placement = pattern.placements[number]
-    elements = pattern.sites[placement.site].elements
-    if most is not None and len(elements) > most:
-        elements = elements[np.linspace(0, len(elements) - 1, most).astype(np.intp)]
-    start: Complexes = elements[:, 0] + 1j * elements[:, 1]
-    end: Complexes = elements[:, 2] + 1j * elements[:, 3]
+    ends = pattern.sites[placement.site].ends
+    if most is not None and len(ends) > most:
+        ends = ends[np.linspace(0, len(ends) - 1, most).astype(np.intp)]
+    start, end = ends.T
     # About one of the site's own points: differences of a site's coordinates are exact, or nearly.
     own = complex(start[0])
     unit, conj = placement.isometry.a, placement.isometry.conj
@@ -273,11 +267,6 @@ def lengths(vectors: Complexes) -> Floats:
 def distances(z: Complexes | complex, middle: Complexes, half: Complexes) -> Floats:
     """The distances of points from elements middle +- half; all broadcast."""
     return lengths(from_feet(z, middle, half))
-
-
-def _second_smallest(scene: Scene, point: complex) -> float:
-    """The second smallest of the copies' distances from a point."""
-    return float(np.partition(scene.copy_distances(point), 1)[1])
 
 
 def merge_copies(tables: Sequence[Ints]) -> tuple[Ints, list[Labels]]:

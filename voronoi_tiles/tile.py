@@ -131,11 +131,11 @@ class Tile:
         from voronoi_tiles.pictures.plotting import axes_of, plot_tiles
 
         ax = axes_of(ax)
-        plot_tiles(ax, [(self.outline, self.site.elements)], ["#f3ead8"])
+        plot_tiles(ax, [(self.outline, self.site.ends)], ["#f3ead8"])
         return ax
 
     def _repr_svg_(self) -> str:
         """Draw the tile and its site: notebooks show this."""
-        from voronoi_tiles.pictures.notebook import tile_picture
+        from voronoi_tiles.pictures.notebook import tiling_picture
 
-        return tile_picture(self.outline, self.site.elements)
+        return tiling_picture([(self.outline, self.site.ends)])

@@ -291,7 +291,7 @@ class Tiling:
         if region is not None:
             copies = self.copies(region)
             plot_tiles(ax, [(copy.outline, None) for copy in copies], [colours[copy.site] for copy in copies])
-        plot_tiles(ax, [(tile.outline, tile.site.elements) for tile in self], colours.values())
+        plot_tiles(ax, [(tile.outline, tile.site.ends) for tile in self], colours.values())
         return ax
 
     def _repr_svg_(self) -> str:
@@ -300,7 +300,7 @@ class Tiling:
 
         bounds = np.array([tile.outline.bounds for tile in self])
         copies = self.copies((*bounds[:, :2].min(axis=0), *bounds[:, 2:].max(axis=0)))
-        return tiling_picture([(tile.outline, tile.site.elements) for tile in self], [copy.outline for copy in copies])
+        return tiling_picture([(tile.outline, tile.site.ends) for tile in self], [copy.outline for copy in copies])
 
     def export(
         self,

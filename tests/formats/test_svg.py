@@ -17,7 +17,7 @@ from voronoi_tiles.fabrication.exact import exact_drawing
 from voronoi_tiles.formats.page import page_length
 from voronoi_tiles.formats.svg.path_text import decimal_text, path_data
 from voronoi_tiles.formats.svg.writer import write_svg
-from voronoi_tiles.pictures.notebook import tile_picture
+from voronoi_tiles.pictures.notebook import tiling_picture
 from voronoi_tiles.vector.arcs import LineArc, ParabolaArc
 from voronoi_tiles.vector.outline import Outline
 
@@ -193,7 +193,7 @@ def test_the_same_recipe_gives_the_same_bytes(mixed: Outline) -> None:
 
 def test_a_preview_is_a_picture(lens: Outline) -> None:
     """Notebooks get the tile and its site, at a size to look at."""
-    text = tile_picture(lens, np.array([[-1.0, 0.0, 1.0, 0.0], [0.5, 0.25, 0.5, 0.25]]))
+    text = tiling_picture([(lens, np.array([[-1, 1], [0.5 + 0.25j, 0.5 + 0.25j]]))])
     root = parse(text)
     tile, site = root.findall(f"{SVG}path")
     assert root.get("width") == "312"

@@ -51,6 +51,12 @@ def pattern_of(design: dict[str, Any]) -> Pattern:
     return Pattern(read.noded, read.group, read.lattice)
 
 
+def named(pattern: Pattern, placement: int, i: int, j: int) -> tuple[str, Operation]:
+    """The site's name and the operation of a copy."""
+    row = pattern.placements[placement]
+    return pattern.sites[row.site].name, row.operation.translated(i, j)
+
+
 def one(group: str, *strokes: dict[str, Any], **cell: float) -> Pattern:
     """One site in a cell of 60."""
     return pattern_of({"schema": 1, "group": group, "cell": {"a": 60.0, **cell}, "site": [{"strokes": list(strokes)}]})
@@ -114,7 +120,7 @@ class Truth:
         """Read the row of a copy (placement, i, j), a translate of what the pattern gives the name of."""
         k, i, j = copy
         if k not in self._named:
-            name, operation = self.pattern.name(k, 0, 0)
+            name, operation = named(self.pattern, k, 0, 0)
             site, motion = self.plane.names.index(name), brute.read_operation(self.plane.group, str(operation))
             self._named[k] = self.key(site, motion), site, motion
         key, site, motion = self._named[k]
@@ -335,19 +341,19 @@ def test_copies_are_those_of_brute_force(group: str) -> None:
 
 @GROUP
 def test_every_operation_has_its_copy(group: str) -> None:
-    """`locate` finds the copy under any operation of the group, `name` names it: the same copy."""
+    """`locate` finds the copy under any operation of the group: a translate of its placement that is the same copy."""
     for pattern, rng in random_patterns(4, group, "plain", "special", "polygon", "far", "several"):
         truth = Truth(pattern)
         for site in range(len(pattern.sites)):
             for operation in pattern.group.operations:
                 moved = operation.translated(*(int(n) for n in rng.integers(-4000, 4000, 2)))
-                name, found = pattern.name(*pattern.locate(site, moved))
+                name, found = named(pattern, *pattern.locate(site, moved))
                 assert name == pattern.sites[site].name
                 wanted = truth.key(site, brute.read_operation(group, str(moved)))
                 assert truth.key(site, brute.read_operation(group, str(found))) == wanted
                 assert truth.read(list(pattern.locate(site, moved)))[0] == wanted
         for copy in ((0, 0, 0), (len(pattern.placements) - 1, -3, 8)):
-            name, operation = pattern.name(*copy)
+            name, operation = named(pattern, *copy)
             site = [row.name for row in pattern.sites].index(name)
             assert pattern.locate(site, operation) == copy
 

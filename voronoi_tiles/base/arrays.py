@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Complexes = NDArray[np.complex128]
 Floats = NDArray[np.float64]
 Ints = NDArray[np.intp]
 Bools = NDArray[np.bool_]
+
+
+def offsets_of(counts: ArrayLike) -> Ints:
+    """Where rows of these lengths begin that stand one after the other, and where the last ends: intp (rows + 1)."""
+    return np.append(0, np.cumsum(np.asarray(counts, np.intp)))
+
+
+def plane(points: Complexes) -> Floats:
+    """Points as rows of x and y, float64 (..., 2)."""
+    return np.stack((points.real, points.imag), axis=-1)
 
 
 def ranges(first: Ints, counts: Ints) -> Ints:

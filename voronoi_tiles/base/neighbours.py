@@ -6,7 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints, plane
 
 _FEW: Final = 1000
 """Up to this many points all distances are taken; a count. It is quicker than a tree, whose import takes 0.3 s."""
@@ -21,7 +21,7 @@ class Neighbours:
         if len(among) > _FEW:
             from scipy.spatial import cKDTree
 
-            self._tree = cKDTree(_plane(among))
+            self._tree = cKDTree(plane(among))
 
     def nearest(self, points: Complexes, count: int = 1) -> tuple[Floats, Ints]:
         """The distances of the `count` nearest to each of n points, nearest first, and which they are: both (n, count).
@@ -29,7 +29,7 @@ class Neighbours:
         There must be as many to choose from.
         """
         if self._tree is not None:
-            distance, index = self._tree.query(_plane(points), k=np.arange(1, count + 1))
+            distance, index = self._tree.query(plane(points), k=np.arange(1, count + 1))
             return np.asarray(distance), np.asarray(index, np.intp)
         away = np.abs(points[:, None] - self._among)
         if count == 1:
@@ -39,8 +39,3 @@ class Neighbours:
             order = np.take_along_axis(away, near, axis=1).argsort(axis=1, kind="stable")
             index = np.take_along_axis(near, order, axis=1)
         return np.take_along_axis(away, index, axis=1), index
-
-
-def _plane(points: Complexes) -> Floats:
-    """Points as rows of x and y, (n, 2)."""
-    return np.column_stack((points.real, points.imag))

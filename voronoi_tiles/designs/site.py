@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
-from voronoi_tiles.base.arrays import Complexes, Ints
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints, plane
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.tolerance import EPSILON, NODE_MERGE, NODE_MERGE_ULPS, STRAIGHT_ULPS
 from voronoi_tiles.designs.noding import noded
@@ -39,14 +38,14 @@ class NodedSite:
         return np.flatnonzero(~used)
 
     @cached_property
-    def elements(self) -> NDArray[np.float64]:
-        """The elements x0, y0, x1, y1, float64 of shape (k, 4): segments, then isolated points (both ends equal)."""
-        ends = np.concatenate([self.segments, np.stack([self.isolated] * 2, axis=1)])
-        points = self.nodes[ends]
-        elements = np.empty((len(ends), 4))
-        elements[:, 0::2] = points.real
-        elements[:, 1::2] = points.imag
-        return elements
+    def ends(self) -> Complexes:
+        """The ends of the elements, complex128 of shape (k, 2): segments, then isolated points (both ends equal)."""
+        return self.nodes.take(np.concatenate([self.segments, np.stack([self.isolated] * 2, axis=1)]))
+
+    @cached_property
+    def elements(self) -> Floats:
+        """The elements x0, y0, x1, y1, float64 of shape (k, 4), in the order of `ends`."""
+        return plane(self.ends).reshape(-1, 4)
 
     @property
     def extent(self) -> float:

@@ -42,9 +42,7 @@ def art_template(site: NodedSite, outline: Outline, unit_mm: float) -> tuple[Dra
     Also gives what `translate` the art needs in the design, in its units, to lie where it was drawn.
     """
     paths = outline.paths.moved(unit_mm, 0j)
-    elements = site.elements
-    ends = (elements[:, [0, 2]] + 1j * elements[:, [1, 3]]) * unit_mm
-    strokes = Paths.polylines([line for line in ends if line[0] != line[1]])
+    strokes = Paths.polylines([line for line in site.ends * unit_mm if line[0] != line[1]])
     low_x, low_y, high_x, high_y = Paths.concatenate([paths, strokes]).bounds
     # A whole millimetre, so that what is to be written into the design is short.
     corner = complex(np.floor(low_x - MARGIN_MM), np.floor(low_y - MARGIN_MM))

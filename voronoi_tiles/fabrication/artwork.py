@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints, offsets_of
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import unit_at
 from voronoi_tiles.designs.art import Art
@@ -46,12 +46,12 @@ class Works:
     @classmethod
     def joined(cls, parts: list[Works]) -> Works:
         """All of several."""
-        counts = [np.diff(part.items) for part in parts]
+        counts = np.concatenate([np.zeros(0, np.intp), *(np.diff(part.items) for part in parts)])
         return cls(
             Paths.concatenate([part.engraved for part in parts]),
             Paths.concatenate([part.scored for part in parts]),
             Paths.concatenate([part.filled for part in parts]),
-            np.append(0, np.cumsum(np.concatenate(counts)) if counts else []).astype(np.intp),
+            offsets_of(counts),
             tuple(dict.fromkeys(line for part in parts for line in part.notes)),
         )
 
@@ -62,7 +62,7 @@ class Works:
     def stamped(self, places: Complexes) -> Works:
         """The same at many places, one after the other."""
         counts = np.tile(np.diff(self.items), len(places))
-        return self._changed(lambda part: _stamped(part, places), np.append(0, np.cumsum(counts)).astype(np.intp))
+        return self._changed(lambda part: _stamped(part, places), offsets_of(counts))
 
     def clipped(self, region: Region, accuracy: float) -> Works:
         """What lies in a region; curves but lines and quadratic ones become arcs within an accuracy."""
@@ -155,7 +155,7 @@ def read_art(art: Art, folder: str, site: int, unit_mm: float, *, fills: bool) -
             filled.append(shape.paths)
         elif work is not None:
             lines[work].append(shape.paths)
-    items = np.append(0, np.cumsum([len(paths) for paths in filled])).astype(np.intp)
+    items = offsets_of([len(paths) for paths in filled])
     engraved, scored = Paths.concatenate(lines["engrave"]), Paths.concatenate(lines["score"])
     what = ", ".join(f"{name} ({count:,})" for name, count in sorted(drawing.ignored.items()))
     notes = (f"{art.file}: left out what is no path: {what}; convert texts to paths",) if what else ()

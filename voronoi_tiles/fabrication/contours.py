@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Ints
+from voronoi_tiles.base.arrays import Ints, offsets_of
 from voronoi_tiles.fabrication.clipping import OUTSIDE, Strands, outer_strands
 from voronoi_tiles.fabrication.region import Region, beside_border
 from voronoi_tiles.paths.areas import ring_areas
@@ -73,7 +73,7 @@ def _joined(strands: Strands, walks: list[list[int]]) -> Paths:
     """Join the halves of each walk to a closed path."""
     halves = np.array([half for walk in walks for half in walk], np.intp)
     parts = strands.paths.take(halves // 2).reversed(halves % 2 == 1)
-    bounds = np.append(0, np.cumsum([len(walk) for walk in walks])).astype(np.intp)
+    bounds = offsets_of([len(walk) for walk in walks])
     return replace(parts, offsets=parts.offsets[bounds], closed=np.ones(len(walks), np.bool_))
 
 
@@ -91,7 +91,7 @@ def _grouped(paths: Paths, owner: Ints) -> ClosedPieces:
         around = rivals[(item_winding(candidates, candidates.offsets, places) > 0).mean(axis=1) > 0.5]
         holes[int(around[np.argmin(area[around])])].append(k)
     order = [ring for k in outer.tolist() for ring in (k, *holes[k])]
-    items = np.append(0, np.cumsum([1 + len(holes[k]) for k in outer.tolist()])).astype(np.intp)
+    items = offsets_of([1 + len(holes[k]) for k in outer.tolist()])
     return ClosedPieces(paths.take(np.array(order, np.intp)), items, owner[outer])
 
 

@@ -7,6 +7,7 @@ from typing import Final
 
 import numpy as np
 
+from voronoi_tiles.base.arrays import offsets_of
 from voronoi_tiles.base.version import __version__
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.formats.page import Drawing, Layer, page_length
@@ -41,7 +42,7 @@ def exact_drawing(tiles: Sequence[tuple[str, Outline]], unit_mm: float, recipe: 
         colour=CUT_COLOUR,
         stroke=HAIRLINE_MM,
         paths=paths.moved(1.0, -complex(left, top)).moved(unit_mm, 0j),
-        items=np.append(0, np.cumsum([len(outline.paths) for outline in outlines])).astype(np.intp),
+        items=offsets_of([len(outline.paths) for outline in outlines]),
         labels=tuple(name for name, _ in tiles),
     )
     return Drawing(width, height, (layer,), recipe=recipe, bottom=-height)

@@ -8,7 +8,7 @@ from math import fsum
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Floats, Ints
-from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, piece_areas
+from voronoi_tiles.fabrication.layout import FRAME, Layout, piece_areas
 from voronoi_tiles.fabrication.tile_colouring import TileColouring
 
 
@@ -31,11 +31,6 @@ class Inventory:
         return fsum(self.area[self.site != FRAME].tolist())
 
 
-def contour_pieces(layout: Layout, contours: Contours, colouring: TileColouring) -> Inventory:
-    """What the pieces are that have contours of their own."""
-    return _described(layout, colouring, contours.copy, contours.area)
-
-
 def cut_free(layout: Layout, colouring: TileColouring) -> Inventory:
     """What the pieces are that are cut free when every line is cut once."""
     whole = np.flatnonzero(layout.copies.whole)
@@ -43,11 +38,11 @@ def cut_free(layout: Layout, colouring: TileColouring) -> Inventory:
     rest = layout.rest()
     if rest is not None:
         copy, area = np.append(copy, rest.tile), np.append(area, piece_areas(rest))
-    return _described(layout, colouring, copy, area)
+    return inventory(layout, colouring, copy, area)
 
 
-def _described(layout: Layout, colouring: TileColouring, copy: Ints, area: Floats) -> Inventory:
-    """Pieces of copies on the page, FRAME for those of a frame."""
+def inventory(layout: Layout, colouring: TileColouring, copy: Ints, area: Floats) -> Inventory:
+    """What is to be said of pieces of copies on the page, negative for those of a frame, that have these areas."""
     inside = copy >= 0
     known = np.where(inside, copy, 0)
     return Inventory(

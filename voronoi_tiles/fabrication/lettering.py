@@ -15,7 +15,7 @@ from typing import Final, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, plane, ranges
 from voronoi_tiles.paths.paths import Paths
 
 Align = Literal["left", "centre"]
@@ -168,7 +168,7 @@ def label_position(rings: Sequence[Complexes]) -> tuple[complex, float]:
 
     if not rings or any(len(ring) < 3 or not np.isfinite(ring).all() for ring in rings):
         raise ValueError("a tile's rings have three points at least, and finite ones")
-    outer, *holes = (np.column_stack((ring.real, ring.imag)) for ring in rings)
+    outer, *holes = map(plane, rings)
     polygon = shapely.Polygon(outer, holes)
     if not shapely.is_valid(polygon) or not polygon.area > 0:
         raise ValueError(f"the rings bound no tile: {shapely.is_valid_reason(polygon)}")

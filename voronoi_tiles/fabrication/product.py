@@ -11,7 +11,7 @@ from typing import Any, BinaryIO
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, ranges
+from voronoi_tiles.base.arrays import Bools, offsets_of, ranges
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.arc_fitting import curve_fit
@@ -19,11 +19,11 @@ from voronoi_tiles.fabrication.artwork import Works
 from voronoi_tiles.fabrication.cutting import Cut, cut_once, cut_pieces, toured
 from voronoi_tiles.fabrication.engraving import engrave
 from voronoi_tiles.fabrication.exact import design_recipe
-from voronoi_tiles.fabrication.inventory import Inventory, contour_pieces, cut_free
+from voronoi_tiles.fabrication.inventory import Inventory, cut_free, inventory
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, Sheet, lay_out
 from voronoi_tiles.fabrication.sheets import read_sheet
-from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_tiles
+from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_period
 from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
 from voronoi_tiles.formats.page import Drawing, Layer, Work
 from voronoi_tiles.formats.presets import FORMATS, Format, Preset, Role, load_preset
@@ -123,7 +123,7 @@ class _Plan:
         budget = AccuracyBudget.of(job, curves)
         fit = curve_fit(job, curves, budget, design.unit_mm)
         layout = lay_out(design, tessellation, job, read_sheet(job, budget), budget, fit)
-        return cls(form, preset, curves, layout, colour_tiles(layout))
+        return cls(form, preset, curves, layout, TileColouring(colour_period(layout.period), layout.copies))
 
     def colours(self) -> list[tuple[int, str]]:
         """The colours that the page has pieces of, each with a name for its file; FRAME for the frame."""
@@ -139,7 +139,7 @@ class _Plan:
         if job.pieces:
             contours = _of_colour(layout.contours, colouring, job)
             cuts = cut_pieces(contours, colouring, job)
-            pieces = contour_pieces(layout, contours, colouring)
+            pieces = inventory(layout, colouring, contours.copy, contours.area)
         else:
             cuts = [Cut("cut", "", None, cut_once(layout, job))]
             contours = None
@@ -184,7 +184,7 @@ def _of_colour(contours: Contours, colouring: TileColouring, job: Job) -> Contou
             remedy=f"The tessellation has {colouring.count} colours, and a sheet perhaps not all of them.",
         )
     rings = ranges(contours.items[chosen], np.diff(contours.items)[chosen])
-    items = np.append(0, np.cumsum(np.diff(contours.items)[chosen])).astype(np.intp)
+    items = offsets_of(np.diff(contours.items)[chosen])
     return Contours(contours.paths.take(rings), items, contours.copy[chosen], contours.area[chosen])
 
 

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, plane
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.vector.complex.period import Period
 
@@ -219,10 +219,7 @@ def _shape(contour: Paths) -> Any:
     """The filled shape of rings of lines, the outer one first of each part."""
     import shapely
 
-    rings = [
-        shapely.LinearRing(np.column_stack((points.real, points.imag)))
-        for points in np.split(contour.start, contour.offsets[1:-1])
-    ]
+    rings = [shapely.LinearRing(plane(points)) for points in np.split(contour.start, contour.offsets[1:-1])]
     return shapely.build_area(shapely.GeometryCollection(rings)) if len(rings) > 1 else shapely.Polygon(rings[0])
 
 
@@ -230,7 +227,7 @@ def _moved(shape: Any, shifts: Complexes) -> Any:
     """The images of a shape, each moved by another vector."""
     import shapely
 
-    places = shapely.get_coordinates(shape) + np.column_stack((shifts.real, shifts.imag))[:, None]
+    places = shapely.get_coordinates(shape) + plane(shifts)[:, None]
     return shapely.set_coordinates(np.full(len(shifts), shape), places.reshape(-1, 2))
 
 
@@ -245,6 +242,6 @@ def _pairs(boxes: Floats, basis: Complexes, reach: float) -> tuple[Ints, Ints, C
     once = (two > one) | ((two == one) & ((i > 0) | ((i == 0) & (j > 0))))
     one, two, step = one[once], two[once], (i * a + j * b)[once]
     low, high = boxes[two, :2] - boxes[one, 2:], boxes[one, :2] - boxes[two, 2:]
-    shift = np.column_stack((step.real, step.imag))
+    shift = plane(step)
     near = np.maximum(low + shift, high - shift).max(axis=1) <= reach
     return one[near], two[near], step[near]

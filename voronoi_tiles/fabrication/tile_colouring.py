@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from voronoi_tiles.base.arrays import Ints
-from voronoi_tiles.fabrication.layout import FRAME, Layout, PlacedTiles
+from voronoi_tiles.fabrication.layout import FRAME, PlacedTiles
 from voronoi_tiles.groups.periodic_colouring import PeriodicColouring, colour_pairs
 from voronoi_tiles.vector.complex.period import Period
 
@@ -32,13 +32,11 @@ class TileColouring:
         return np.where(inside, self.repeating.of(rows), FRAME)
 
 
-def colour_tiles(layout: Layout) -> TileColouring:
-    """Colour all tiles of the plane, with the fewest colours that repeat within four by four cells."""
-    return TileColouring(colour_period(layout.period), layout.copies)
-
-
 def colour_period(period: Period) -> PeriodicColouring:
-    """Colour the tiles of a period, and all their translates: those that share an edge differ."""
+    """Colour the tiles of a period, and all their translates: those that share an edge differ.
+
+    The colours are the fewest that repeat within four by four cells.
+    """
     pairs = neighbour_pairs(period)
     # Two tiles that share an edge with each other and with a third need three colours.
     here = {(p, q, i, j) for p, q, i, j in pairs.tolist()} | {(q, p, -i, -j) for p, q, i, j in pairs.tolist()}

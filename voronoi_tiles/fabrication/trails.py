@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints, offsets_of
 from voronoi_tiles.base.neighbours import Neighbours
 from voronoi_tiles.paths.paths import Paths
 
@@ -43,7 +43,7 @@ def find_trails(first: Ints, last: Ints, place: Complexes) -> Trails:
     trails = [trail for circuit in circuits for trail in _cut(circuit, count)]
     strands = np.array([strand for trail in trails for strand, _ in trail], np.intp)
     forward = np.array([sense for trail in trails for _, sense in trail], np.bool_)
-    trails_of = Trails(strands, forward, np.append(0, np.cumsum([len(trail) for trail in trails])).astype(np.intp))
+    trails_of = Trails(strands, forward, offsets_of([len(trail) for trail in trails]))
     if len(circuits) == 1:
         return trails_of
     return _nearest_next(trails_of, first, last, place)
@@ -155,5 +155,5 @@ def _nearest_next(trails: Trails, first: Ints, last: Ints, place: Complexes) -> 
     return Trails(
         trails.strand[places],
         trails.forward[places] ^ flip,
-        np.append(0, np.cumsum([len(part) for part in parts])).astype(np.intp),
+        offsets_of([len(part) for part in parts]),
     )

@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, offsets_of
 from voronoi_tiles.base.maps import Affine
 from voronoi_tiles.base.tolerance import COORDINATE_MAX
 from voronoi_tiles.formats.shapes import CURVE_ACCURACY, SEGMENTS_MAX, DrawingError
@@ -194,7 +194,7 @@ class Pen(PathPen):
         image[2, curves.kind == LINE] = image[3, curves.kind != CUBIC] = 0.0
         counts = np.bincount(curves.path, minlength=paths)
         drawn = counts > 0
-        offsets = np.append(0, np.cumsum(counts[drawn])).astype(np.intp)
+        offsets = offsets_of(counts[drawn])
         everything = Paths(
             start=image[0],
             end=image[1],
@@ -203,7 +203,7 @@ class Pen(PathPen):
             offsets=offsets,
             closed=curves.closed[drawn],
         )
-        bounds = np.append(0, np.cumsum(np.bincount(shape[drawn], minlength=len(self._maps))))
+        bounds = offsets_of(np.bincount(shape[drawn], minlength=len(self._maps)))
         return [everything.part(low, high) for low, high in pairwise(bounds.tolist())]
 
 

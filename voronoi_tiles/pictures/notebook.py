@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, Floats
+from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.formats.page import page_length
 from voronoi_tiles.formats.svg.path_text import decimal_text, path_data
@@ -59,27 +59,17 @@ class _Canvas:
         self._drawing.add(self._drawing.path(d=data, **style))
 
 
-def _segments(elements: Floats) -> Complexes:
-    """Elements (k, 4) as segments (k, 2)."""
-    return np.asarray(elements[:, 0::2] + 1j * elements[:, 1::2])
-
-
-def tile_picture(outline: Outline, elements: Floats) -> str:
-    """Draw one tile, filled, and its site's elements (k, 4) in it."""
-    return tiling_picture([(outline, elements)], [])
-
-
-def tiling_picture(tiles: Sequence[tuple[Outline, Floats]], copies: Iterable[Outline]) -> str:
-    """Draw the tiles, filled, each with its site's elements (k, 4), over copies that lie about them."""
+def tiling_picture(tiles: Sequence[tuple[Outline, Complexes]], copies: Iterable[Outline] = ()) -> str:
+    """Draw the tiles, filled, each with the ends of its site's elements (k, 2), over copies that lie about them."""
     bounds = np.array([outline.bounds for outline, _ in tiles])
     low, high = bounds[:, :2].min(axis=0).tolist(), bounds[:, 2:].max(axis=0).tolist()
     canvas = _Canvas((*low, *high))
     for outline in copies:
         canvas.outline(outline, _PAPER)
     fills = [_TILE] if len(tiles) == 1 else [f"#{bytes(row).hex()}" for row in palette(len(tiles))]
-    for (outline, elements), fill in zip(tiles, fills, strict=True):
+    for (outline, ends), fill in zip(tiles, fills, strict=True):
         canvas.outline(outline, fill)
-        canvas.segments(_segments(elements), _SITE, 3)
+        canvas.segments(ends, _SITE, 3)
     return canvas.text()
 
 
@@ -90,7 +80,7 @@ def design_picture(design: Design) -> str:
 
     a, b = design.lattice.a, design.lattice.b
     corners = np.array([0, a, a + b, b, 0])
-    own = [_segments(site.elements) for site in design.noded]
+    own = [site.ends for site in design.noded]
     shown = np.concatenate([corners, *(segments.ravel() for segments in own)])
     region = (shown.real.min(), shown.imag.min(), shown.real.max(), shown.imag.max())
     canvas = _Canvas((float(region[0]), float(region[1]), float(region[2]), float(region[3])))

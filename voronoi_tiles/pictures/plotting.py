@@ -7,7 +7,7 @@ from typing import Any, assert_never
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Floats
+from voronoi_tiles.base.arrays import Complexes, plane
 from voronoi_tiles.base.errors import MissingLibraryError
 from voronoi_tiles.vector.arcs import LineArc, ParabolaArc
 from voronoi_tiles.vector.outline import Outline
@@ -29,8 +29,8 @@ def axes_of(axes: Any) -> Any:
     return axes
 
 
-def plot_tiles(axes: Any, tiles: Iterable[tuple[Outline, Floats | None]], colours: Iterable[Any]) -> None:
-    """Draw outlines, filled with a colour each, and the elements (k, 4) of their sites, where they are given.
+def plot_tiles(axes: Any, tiles: Iterable[tuple[Outline, Complexes | None]], colours: Iterable[Any]) -> None:
+    """Draw outlines, filled with a colour each, and the ends of their sites' elements (k, 2), where they are given.
 
     A parabola's arc is exactly one curve of matplotlib's. Coordinates are the design's, y up.
     """
@@ -38,7 +38,7 @@ def plot_tiles(axes: Any, tiles: Iterable[tuple[Outline, Floats | None]], colour
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
-    for (outline, elements), colour in zip(tiles, colours, strict=False):
+    for (outline, ends), colour in zip(tiles, colours, strict=False):
         points: list[complex] = []
         codes: list[int] = []
         for ring in outline.rings:
@@ -56,16 +56,14 @@ def plot_tiles(axes: Any, tiles: Iterable[tuple[Outline, Floats | None]], colour
                         assert_never(arc)
             points.append(ring[0].start)
             codes.append(Path.CLOSEPOLY)
-        place = np.array(points)
         axes.add_patch(
             PathPatch(
-                Path(np.stack((place.real, place.imag), axis=1), codes),
+                Path(plane(np.array(points)), codes),
                 facecolor=colour,
                 edgecolor="black",
                 linewidth=0.8,
             )
         )
-        if elements is not None:
-            lines = elements.reshape(-1, 2, 2)
-            axes.add_collection(LineCollection(lines, colors="#b03020", linewidths=1.5, capstyle="round"))
+        if ends is not None:
+            axes.add_collection(LineCollection(plane(ends), colors="#b03020", linewidths=1.5, capstyle="round"))
     axes.autoscale_view()

@@ -286,10 +286,7 @@ def _dots(pattern: Pattern, region: Region, style: PictureStyle) -> list[Overlay
     """Draw isolated points larger than strokes are wide, or they would not be seen; nothing where strokes are not."""
     if not style.site:
         return []
-    flat = []
-    for site in pattern.sites:
-        start, end = (site.elements[:, k] + 1j * site.elements[:, k + 1] for k in (0, 2))
-        flat.append(np.stack((start, end), axis=1)[start == end])
+    flat = [site.ends[site.ends[:, 0] == site.ends[:, 1]] for site in pattern.sites]
     return [Overlay(on_all_copies(flat, pattern, region), _DOT * style.site, INK)]
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, plane
 from voronoi_tiles.paths.conversion import chord_counts, chords
 from voronoi_tiles.paths.paths import Paths
 
@@ -105,10 +105,7 @@ class Chords:
 
 def lines(start: Complexes, end: Complexes) -> NDArray[np.object_]:
     """Segments as shapely's lines."""
-    coordinates = np.empty((len(start), 2, 2))
-    for k, points in enumerate((start, end)):
-        coordinates[:, k, 0], coordinates[:, k, 1] = points.real, points.imag
-    return np.asarray(shapely.linestrings(coordinates), dtype=object)
+    return np.asarray(shapely.linestrings(plane(np.stack((start, end), axis=1))), dtype=object)
 
 
 def counts_of(paths: Paths, accuracy: float) -> Ints:

@@ -7,7 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 import shapely
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, plane, ranges
 from voronoi_tiles.preflight.chord_distance import Nearest, distinct, divisor, dot, nearest, runs
 from voronoi_tiles.preflight.chord_search import FOUND_MAX, pairs, too_dense, too_many
 from voronoi_tiles.preflight.chords import Chords, lines
@@ -104,7 +104,7 @@ class _Joints:
     def __init__(self, chords: Chords) -> None:
         points = np.concatenate((chords.start, chords.end))
         # Points that are equal to a nanometre are one; lines that are joined have the same bits, or a writer's digits.
-        grid = np.round(np.stack((points.real, points.imag), axis=1) / 1e-6)
+        grid = np.round(plane(points) / 1e-6)
         _, joint = np.unique(grid, axis=0, return_inverse=True)
         joint = joint.ravel()
         self._of_start, self._of_end = joint[: len(chords.start)], joint[len(chords.start) :]
@@ -166,7 +166,7 @@ def _is_material(chords: Chords, place: Complexes) -> Bools:
         return np.ones(len(place), np.bool_)
     counts = np.diff(chords.first)[rings]
     which = ranges(chords.first[rings], counts)
-    points = np.stack((chords.start[which].real, chords.start[which].imag), axis=1)
+    points = plane(chords.start[which])
     polygons = shapely.polygons(shapely.linearrings(points, indices=np.repeat(np.arange(len(rings)), counts)))
     inside, _ = shapely.STRtree(polygons).query(shapely.points(place.real, place.imag), predicate="within")
     return np.asarray(np.bincount(inside, minlength=len(place)) % 2 == 1, np.bool_)

@@ -10,7 +10,7 @@ from decimal import Decimal
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Ints
+from voronoi_tiles.base.arrays import Ints, offsets_of
 from voronoi_tiles.formats.decimals import WIDTH, decimals
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
 
@@ -126,7 +126,7 @@ def _texts(paths: Paths, items: Ints, height: float) -> Iterator[bytes]:
     begin = at[paths.offsets[items[:-1]]]
     used[begin, 0] = False
     stops = np.append(begin[1:], total)
-    length = np.append(0, np.cumsum(used.sum(axis=1)))
+    length = offsets_of(used.sum(axis=1))
     data = text[used].tobytes()
     for a, b in zip(length[begin].tolist(), length[stops].tolist(), strict=True):
         yield data[a:b]
