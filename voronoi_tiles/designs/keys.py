@@ -26,12 +26,9 @@ _LAST: Final = ("tangents", "radius", "alpha", "closed", "scale", "rotate", "tra
 
 def keys_of(table: Mapping[str, Any]) -> Keys:
     """The keys of a table that say something."""
-    frozen = ((name, _frozen(table[name])) for name in sorted(table, key=_rank))
+    ordered = sorted(table, key=lambda name: _LAST.index(name) if name in _LAST else -1)
+    frozen = ((name, _frozen(table[name])) for name in ordered)
     return tuple((name, value) for name, value in frozen if not _is_default(name, value))
-
-
-def _rank(name: str) -> int:
-    return _LAST.index(name) if name in _LAST else -1
 
 
 def _is_default(name: str, value: object) -> bool:

@@ -42,7 +42,8 @@ def write_pdf(drawing: Drawing, file: BinaryIO) -> None:
     for part in _content(drawing, names):
         content += packer.compress(part)
     content += packer.flush()
-    _write_objects(file, [*_objects(drawing, names), _stream(bytes(content))])
+    stream = b"<< /Length %d /Filter /FlateDecode >>\nstream\n%s\nendstream" % (len(content), content)
+    _write_objects(file, [*_objects(drawing, names), stream])
 
 
 def _content(drawing: Drawing, names: list[str]) -> Iterator[bytes]:
@@ -138,11 +139,6 @@ def _information(title: str, recipe: Mapping[str, str]) -> str:
 def _text(text: str) -> str:
     """A text string in hexadecimal digits: UTF-16 with its mark, which holds every character."""
     return f"<FEFF{text.encode('utf-16-be', 'replace').hex().upper()}>"
-
-
-def _stream(packed: bytes) -> bytes:
-    """A compressed stream."""
-    return b"<< /Length %d /Filter /FlateDecode >>\nstream\n%s\nendstream" % (len(packed), packed)
 
 
 def _write_objects(file: BinaryIO, objects: list[bytes]) -> None:

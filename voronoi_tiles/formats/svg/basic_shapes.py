@@ -51,7 +51,7 @@ class _Sizes:
 
     def __init__(self, attributes: dict[str, str], view: tuple[float, float]) -> None:
         self._attributes = attributes
-        self._view = view
+        self.view = view
 
     def _length(self, name: str, whole: float) -> float:
         text = self._attributes.get(name)
@@ -63,10 +63,10 @@ class _Sizes:
             raise error.under(name) from None
 
     def across(self, name: str) -> float:
-        return self._length(name, self._view[0])
+        return self._length(name, self.view[0])
 
     def down(self, name: str) -> float:
-        return self._length(name, self._view[1])
+        return self._length(name, self.view[1])
 
     def size(self, name: str, whole: float) -> float:
         """A length that must not be negative."""
@@ -75,17 +75,11 @@ class _Sizes:
             raise DrawingError(f"must not be negative, but is {value:g}", key=name, remedy="Remove the object.")
         return value
 
-    def size_across(self, name: str) -> float:
-        return self.size(name, self._view[0])
-
-    def size_down(self, name: str) -> float:
-        return self.size(name, self._view[1])
-
     def radii(self) -> tuple[float, float]:
         """The radii rx, ry; one that is missing is as the other."""
         said = [self._attributes.get(name, "auto").strip() != "auto" for name in ("rx", "ry")]
-        rx = self.size("rx", self._view[0]) if said[0] else 0.0
-        ry = self.size("ry", self._view[1]) if said[1] else rx
+        rx = self.size("rx", self.view[0]) if said[0] else 0.0
+        ry = self.size("ry", self.view[1]) if said[1] else rx
         return (rx if said[0] else ry), ry
 
 
@@ -109,7 +103,7 @@ def _draw_points(pen: Pen, text: str, closed: bool) -> None:
 def _draw_rect(pen: Pen, sizes: _Sizes) -> None:
     """A rectangle, its corners rounded where it has radii."""
     x, y = sizes.across("x"), sizes.down("y")
-    across, down = sizes.size_across("width"), sizes.size_down("height")
+    across, down = sizes.size("width", sizes.view[0]), sizes.size("height", sizes.view[1])
     if across == 0.0 or down == 0.0:
         return
     rx, ry = sizes.radii()
