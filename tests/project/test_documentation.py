@@ -575,3 +575,17 @@ def test_pictures_are_there_small_and_shown() -> None:
     for picture in drawn:
         assert picture.resolve() in shown, picture.name
         assert picture.stat().st_size <= {".svg": 60_000, ".png": 40_000}[picture.suffix], picture.name
+
+
+def test_every_option_of_a_job_has_its_row() -> None:
+    """In the table of the page on Python, in the order of the fields, with the words that it takes and its default."""
+    page = (ROOT / "docs" / "python.md").read_text(encoding="utf-8").split("### What a job takes")[1].split("\n#")[0]
+    rows = [row.split(" | ") for row in re.findall(r"^\| (`\w+` \| .*) \|$", page, re.MULTILINE)]
+    options = vt.Job.options()
+    assert [row[0].strip("`") for row in rows] == list(options)
+    for (_, takes, default, what), (name, option) in zip(rows, options.items(), strict=True):
+        if option.words:
+            assert takes == ", ".join(f'`"{word}"`' for word in option.words), name
+        if option.default is not None and f"`{option.default!r}`".replace("'", '"') != default:
+            assert default == option.help.split("[default: ")[1].rstrip("]."), name
+        assert what.rstrip(".") in option.help, name

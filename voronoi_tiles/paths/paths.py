@@ -29,10 +29,10 @@ ARC: Final = 3
 class Paths:
     """p paths of n segments altogether.
 
-    `start` and `end` are complex128 (n,). `kind` (uint8, n) says what lies between: LINE; QUAD, a quadratic Bezier
-    curve with the control point `control[:, 0]`; CUBIC, a cubic one with both of `control` (complex128, n x 2); ARC, a
-    circular arc over the point `control[:, 0]`, which is the middle of it. What a kind does not use is 0. The
-    segments of path k are those from `offsets[k]` up to, not including, `offsets[k + 1]` (intp, p + 1); each starts
+    `start` and `end` are complex128 (n,). `kind` (uint8, n) says what lies between: LINE, 0; QUAD, 1, a quadratic
+    Bezier curve with the control point `control[:, 0]`; CUBIC, 2, a cubic one with both of `control` (complex128, n x
+    2); ARC, 3, a circular arc over the point `control[:, 0]`, which is the middle of it. What a kind does not use is 0.
+    The segments of path k are those from `offsets[k]` up to, not including, `offsets[k + 1]` (intp, p + 1); each starts
     where the one before ends, bit for bit, and where `closed` (bool, p), the first where the last ends.
     """
 
@@ -44,7 +44,7 @@ class Paths:
     closed: Bools
 
     def __repr__(self) -> str:
-        return f"<Paths: {len(self)} paths of {len(self.start)} pieces>"
+        return f"<Paths: {len(self)} paths of {len(self.start)} segments>"
 
     @classmethod
     def empty(cls) -> Self:
