@@ -19,6 +19,7 @@ from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.maps import Isometry
 from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.base.values import is_number, shown
 from voronoi_tiles.paths.conversion import chord_counts, chords
 from voronoi_tiles.paths.paths import LINE, QUAD, Paths
 from voronoi_tiles.vector.arcs import Arc, LineArc, Neighbour, ParabolaArc
@@ -40,7 +41,8 @@ class Outline:
     `start`, `control`, `end`, `focus` are complex128 (n,), `directrix` complex128 (n, 2), in the design's units;
     where `curved` (bool, n) is False, the control point is the midpoint and focus and directrix are 0. `neighbour`
     (intp, n) indexes `neighbours`. The arcs of ring k are those from `ring_offsets[k]` up to, not including,
-    `ring_offsets[k + 1]` (intp, r + 1). Outer rings run counter-clockwise and come first, holes run clockwise.
+    `ring_offsets[k + 1]` (intp, r + 1). Outer rings run counter-clockwise and come first, holes run clockwise. The
+    arrays can only be read.
     """
 
     start: Complexes
@@ -52,6 +54,11 @@ class Outline:
     neighbour: NDArray[np.intp]
     neighbours: tuple[Neighbour, ...]
     ring_offsets: NDArray[np.intp]
+
+    def __post_init__(self) -> None:
+        # What was proved stays as it is.
+        for name in ("start", "control", "end", "curved", "focus", "directrix", "neighbour", "ring_offsets"):
+            getattr(self, name).setflags(write=False)
 
     @classmethod
     def from_rings(cls, rings: Iterable[Iterable[Arc]]) -> Outline:
@@ -180,8 +187,8 @@ class Outline:
         the coordinates' own resolution. See `paths.conversion.chords`.
         """
         size = float(np.abs(self.start).max(initial=0.0))
-        if not accuracy > 4 * np.finfo(np.float64).eps * size:
-            raise ArgumentError(f"`accuracy` {accuracy!r} must be positive and above the coordinates' resolution")
+        if not (is_number(accuracy) and accuracy > 4 * np.finfo(np.float64).eps * size):
+            raise ArgumentError(f"`accuracy` {shown(accuracy)} must be positive and above the coordinates' resolution")
         counts = np.maximum(np.ceil(chord_counts(self.paths, accuracy)), 1.0).astype(np.intp)
         lines = chords(self.paths, counts)
         return np.split(lines.start, lines.offsets[1:-1]) if len(self) else []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 import numpy as np
@@ -11,11 +11,16 @@ import numpy as np
 from voronoi_tiles.base.arrays import Ints
 from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.base.tolerance import COORDINATE_MAX
+from voronoi_tiles.base.values import shown
 from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, to_operation
 from voronoi_tiles.vector.tessellation import Tessellation
 
-COPIES_MAX: Final = 1_000_000
-"""Most copies that are looked at for one region; a count. Their outlines take gigabytes."""
+COPIES_MAX: Final = 100_000
+"""Most copies that are looked at for one region; a count. Their outlines take gigabytes, and a minute."""
+
+_AT_ONCE: Final = 1_000_000
+"""Points of moved regions that are held at once; a count."""
 
 
 def read_region(region: Any) -> Any:
@@ -27,17 +32,34 @@ def read_region(region: Any) -> Any:
 
     remedy = "Give x0, y0, x1, y1 with x0 <= x1 and y0 <= y1, or a valid geometry of shapely's."
     if hasattr(region, "__geo_interface__"):
-        found = region if isinstance(region, shapely.Geometry) else shapely.geometry.shape(region)
+        try:
+            found = region if isinstance(region, shapely.Geometry) else _united(region.__geo_interface__)
+        except Exception as error:  # whatever a geometry of others is made of
+            raise ArgumentError("the `region` is no geometry that shapely reads", remedy=remedy) from error
+        farthest = max(map(abs, found.bounds), default=0.0)
+        if farthest > COORDINATE_MAX:
+            raise ArgumentError(
+                f"the `region` reaches to {farthest:g}", remedy=f"Its coordinates must be within {COORDINATE_MAX:g}."
+            )
         if not shapely.is_valid(found):
             raise ArgumentError(f"the `region` is no valid geometry: {shapely.is_valid_reason(found)}", remedy=remedy)
         return found
     try:
         x0, y0, x1, y1 = (float(side) for side in region)
-    except (TypeError, ValueError):
-        raise ArgumentError(f"the `region` {region!r} is no rectangle", remedy=remedy) from None
-    if not (all(map(math.isfinite, (x0, y0, x1, y1))) and x0 <= x1 and y0 <= y1):
+    except (TypeError, ValueError, OverflowError):
+        raise ArgumentError(f"the `region` {shown(region)} is no rectangle", remedy=remedy) from None
+    if not (max(map(abs, (x0, y0, x1, y1))) <= COORDINATE_MAX and x0 <= x1 and y0 <= y1):
         raise ArgumentError(f"the `region` {x0:g}, {y0:g}, {x1:g}, {y1:g} is no rectangle", remedy=remedy)
     return shapely.box(x0, y0, x1, y1) if x0 < x1 and y0 < y1 else shapely.LineString([(x0, y0), (x1, y1)])
+
+
+def _united(geometry: Mapping[str, Any]) -> Any:
+    """A geometry as GeoJSON has it, or the union of a FeatureCollection's, such as a tiling's own."""
+    import shapely
+
+    if geometry.get("type") == "FeatureCollection":
+        return shapely.union_all([_united(feature) for feature in geometry["features"]])
+    return shapely.geometry.shape(geometry["geometry"] if geometry.get("type") == "Feature" else geometry)
 
 
 def copies_in_region(tessellation: Tessellation, region: Any) -> Iterator[tuple[int, Operation]]:
@@ -53,6 +75,7 @@ def copies_in_region(tessellation: Tessellation, region: Any) -> Iterator[tuple[
         return
     action = tessellation.action
     low_x, low_y, high_x, high_y = region.bounds
+    looked_at = 0
     for tile, placed in enumerate(tessellation.placed):
         back = (*IDENTITY[:4], -2 * placed.shift[0], -2 * placed.shift[1])
         for motion in placed.representatives:
@@ -62,37 +85,46 @@ def copies_in_region(tessellation: Tessellation, region: Any) -> Iterator[tuple[
             left, bottom, right, top = outline.bounds
             box = (low_x - right - near, low_y - top - near, high_x - left + near, high_y - bottom + near)
             steps = _steps_in(box, action)
-            away = action.cartesian(steps[:, 0], steps[:, 1])
-            # The region is moved, not the tile: one of them has to be, and a rectangle has fewer points.
-            moved = _moved(region, -away)
-            for i, j in steps[shapely.dwithin(moved, shape, near)].tolist():
-                there: Motion = (*motion[:4], motion[4] + 2 * i, motion[5] + 2 * j)
-                yield tile, to_operation(compose(there, back))
+            looked_at += len(steps)
+            _refuse_too_many(looked_at)
+            # One of the two is moved: the region back to the tile, or the tile, whichever has fewer points.
+            points, others = shapely.get_num_coordinates([region, shape]).tolist()
+            moving, still, sign = (region, shape, -1) if points < others else (shape, region, 1)
+            shapely.prepare(still)
+            for part in np.array_split(steps, 1 + len(steps) * min(points, others) // _AT_ONCE):
+                moved = _moved(moving, sign * action.cartesian(part[:, 0], part[:, 1]))
+                for i, j in part[shapely.dwithin(still, moved, near)].tolist():
+                    there: Motion = (*motion[:4], motion[4] + 2 * i, motion[5] + 2 * j)
+                    yield tile, to_operation(compose(there, back))
+
+
+def _refuse_too_many(copies: int) -> None:
+    """Raise ArgumentError for more copies than COPIES_MAX."""
+    if copies > COPIES_MAX:
+        raise ArgumentError(
+            f"the `region` holds more than {COPIES_MAX:,} copies of tiles", remedy="Take smaller ones, one by one."
+        )
 
 
 def _steps_in(box: tuple[float, float, float, float], action: Action) -> Ints:
-    """The lattice vectors i a + j b in a box, and at most those about it: (i, j) as intp (n, 2)."""
+    """The lattice vectors i a + j b in a box: (i, j) as intp (n, 2). Raises ArgumentError for too many."""
     x0, y0, x1, y1 = box
     corners = np.array([complex(x, y) for x in (x0, x1) for y in (y0, y1)])
     # Over the shortest basis, in which the box is hardly longer than it is.
-    ranges = [
-        np.arange(math.floor(part.min()), math.ceil(part.max()) + 1)
-        for part in action.lattice.reduced.fractional(corners)
-    ]
-    if len(ranges[0]) * len(ranges[1]) > COPIES_MAX:
-        raise ArgumentError(
-            "the `region` holds millions of tiles", remedy=f"Take a smaller one: {COPIES_MAX:,} copies are the most."
-        )
-    steps = np.stack(np.meshgrid(*ranges, indexing="ij"), axis=-1).reshape(-1, 2) @ np.array(action.reduced)
+    u, v = (
+        range(math.floor(part.min()), math.ceil(part.max()) + 1) for part in action.lattice.reduced.fractional(corners)
+    )
+    _refuse_too_many(len(u) * len(v))
+    steps = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2) @ np.array(action.reduced)
     z = action.cartesian(steps[:, 0], steps[:, 1])
     return np.asarray(steps[(z.real >= x0) & (z.real <= x1) & (z.imag >= y0) & (z.imag <= y1)], np.intp)
 
 
-def _moved(region: Any, shifts: Any) -> Any:
+def _moved(geometry: Any, shifts: Any) -> Any:
     """A geometry moved by each of some vectors, complex (n,)."""
     import shapely
 
-    moved = np.repeat(region, len(shifts))
-    points = shapely.get_coordinates(region)
+    moved = np.repeat(geometry, len(shifts))
+    points = shapely.get_coordinates(geometry)
     shift = np.stack((shifts.real, shifts.imag), axis=1)
     return shapely.set_coordinates(moved, (points[None] + shift[:, None]).reshape(-1, 2))

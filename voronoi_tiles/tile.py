@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from voronoi_tiles.base.arguments import instance
 from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.base.tolerance import COORDINATE_MAX
 from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.vector.outline import Outline
 from voronoi_tiles.vector.tessellation import TileRecord
@@ -23,6 +25,11 @@ class TileCopy(NamedTuple):
     site: str
     operation: Operation
     outline: Outline
+
+    @property
+    def __geo_interface__(self) -> dict[str, Any]:
+        """The outline as GeoJSON names it, Polygon or MultiPolygon, within `outline.display_accuracy`."""
+        return self.outline.__geo_interface__
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -65,6 +72,11 @@ class Tile:
         return self.outline.perimeter
 
     @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """The smallest upright rectangle around it: least x, least y, greatest x, greatest y, in units."""
+        return self.outline.bounds
+
+    @property
     def __geo_interface__(self) -> dict[str, Any]:
         """The outline as GeoJSON names it, Polygon or MultiPolygon, within `outline.display_accuracy`."""
         return self.outline.__geo_interface__
@@ -83,9 +95,17 @@ class Tile:
         if isinstance(operation, str):
             operation = Operation.parse(operation)
         group = self._record.tessellation.action.group
-        if operation.reduced() not in {own.reduced() for own in group.operations}:
+        if instance("operation", operation, Operation).reduced() not in {own.reduced() for own in group.operations}:
+            own = "; ".join(map(str, group.operations))
             raise ArgumentError(
-                f"{operation} is no operation of the group {group.name}", remedy="Take one of its operations, moved."
+                f"{operation} is no operation of the group {group.name}",
+                remedy=f"Take one of {own}, moved by whole numbers.",
+            )
+        x, y = operation.translation
+        if not max(abs(x), abs(y)) * self._record.tessellation.action.size <= COORDINATE_MAX:
+            raise ArgumentError(
+                f"{operation} leads beyond {COORDINATE_MAX:g}, where coordinates lose their digits",
+                remedy="Take a copy that is nearer.",
             )
         return self._record.copy(operation)
 

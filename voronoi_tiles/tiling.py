@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any, Literal, Unpack, get_args, overload
 
 import numpy as np
 
+from voronoi_tiles.base.arguments import instance, path_name
 from voronoi_tiles.base.errors import ArgumentError, CheckError, UnknownNameError
-from voronoi_tiles.base.files import write_whole
+from voronoi_tiles.base.files import refuse_overwriting, write_whole
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.tile import Tile, TileCopy
 from voronoi_tiles.vector.proof import ProofReport
@@ -61,7 +62,15 @@ class Tiling:
     def __iter__(self) -> Iterator[Tile]:
         return iter(self.tiles)
 
-    def __getitem__(self, key: int | str) -> Tile:
+    def __contains__(self, item: object) -> bool:
+        """Whether there is such a tile, or one of this name."""
+        return any(item is tile or item == tile.name for tile in self.tiles)
+
+    @overload
+    def __getitem__(self, key: int | str) -> Tile: ...
+    @overload
+    def __getitem__(self, key: slice) -> tuple[Tile, ...]: ...
+    def __getitem__(self, key: int | str | slice) -> Tile | tuple[Tile, ...]:
         """The tile of a number, or of the name of its site. Raises UnknownNameError, IndexError."""
         if not isinstance(key, str):
             return self.tiles[key]
@@ -147,10 +156,21 @@ class Tiling:
         )
 
     def difference(self, check: CheckReport) -> Rendering:
-        """The picture of where a cross-check has found differences, and by how much: white where they agree."""
+        """The picture of where a cross-check has found differences, and by how much: white where they agree.
+
+        Raises ArgumentError for the report of another design.
+        """
         from voronoi_tiles.pictures.rendering import difference
 
+        self._require_own(check)
         return difference(self.design, [tile.outline for tile in self.tiles], check)
+
+    def _require_own(self, check: CheckReport) -> None:
+        """Raise ArgumentError for a cross-check of another design, which is evidence of nothing here."""
+        from voronoi_tiles.crosscheck.check_report import CheckReport
+
+        if instance("check", check, CheckReport).source != self.design.source:
+            raise ArgumentError("the `check` is of another design", remedy="Give the report of this tiling's check().")
 
     def _proof_rows(self) -> list[dict[str, Any]]:
         """The figures of the proof in the types of JSON."""
@@ -160,7 +180,11 @@ class Tiling:
         ]
 
     def evidence(self, check: CheckReport) -> dict[str, Any]:
-        """What was proved and checked, in the types of JSON, as `voronoi-tiles check --json` prints it."""
+        """What was proved and checked, in the types of JSON, as `voronoi-tiles check --json` prints it.
+
+        Raises ArgumentError for the report of another design.
+        """
+        self._require_own(check)
         return {
             "design": self.design.name,
             "group": self.design.group.name,
@@ -230,7 +254,7 @@ class Tiling:
         from voronoi_tiles.fabrication.job import Job
         from voronoi_tiles.fabrication.product import make
 
-        return make(self.design, self.tessellation, Job() if job is None else job, file_format)
+        return make(self.design, self.tessellation, Job() if job is None else instance("job", job, Job), file_format)
 
     def report(
         self, job: Job | None = None, *, speeds: Mapping[str, float] | None = None, pierce_s: float | None = None
@@ -249,7 +273,7 @@ class Tiling:
         from voronoi_tiles.fabrication.job import Job
         from voronoi_tiles.fabrication.job_report import report_figures
 
-        job = Job() if job is None else job
+        job = Job() if job is None else instance("job", job, Job)
         # What goes into a file of its own is on a layer of its own in the one drawing that is reported of.
         product = self.make(replace(job, colours="layers") if job.colours == "files" else job)
         return report_figures(self.design, product, speeds=speeds, pierce_s=pierce_s)
@@ -322,20 +346,23 @@ class Tiling:
         JobError for a job that cannot be done, or that comes with JSON; and CheckError, before anything is written,
         where the report has failures.
         """
-        from voronoi_tiles.fabrication.exporting import Exported, format_of, refuse_overwriting, write_products
+        from voronoi_tiles.fabrication.exporting import Exported, format_of, write_products
         from voronoi_tiles.fabrication.job import Job
         from voronoi_tiles.fabrication.job_options import JobError
 
-        name = os.fspath(path)
+        name = path_name("path", path)
         form = format_of(path, FORMATS) if file_format is None else file_format
         if check is not None:
+            self._require_own(check)
             require(check)
+        if job is not None:
+            instance("job", job, Job)
         if edges is not None:
             job = Job(edges=edges) if job is None else replace(job, edges=edges)
         drawn = any(art is not None for art in self.design.art)
         if job is None and (form == "json" or (form == "svg" and not drawn)):
-            refuse_overwriting(self.design, None, [name])
-            write_whole(path, self.text(form, check).encode())
+            refuse_overwriting([name], self.design.files)
+            write_whole(name, self.text(form, check).encode())
             return (Exported(name, None),)
         if form == "json":
             raise JobError(

@@ -224,6 +224,48 @@ def test_a_geometry_is_a_stroke_for_each_line(
         assert vt.Site(geometry).strokes == vt.Site([draw(geometry)]).strokes
 
 
+class Geometry:
+    """What another library may hand over."""
+
+    def __init__(self, geometry: Any) -> None:
+        self.__geo_interface__ = geometry
+
+
+def test_rings_and_coordinates_as_others_have_them() -> None:
+    """A ring that leaves its last point out keeps all of them; coordinates may be arrays."""
+    square = [(0, 0), (9, 0), (9, 9), (0, 9)]
+    closed = vt.polyline(square, closed=True)
+    for ring in (square, [*square, square[0]], np.array([*square, square[0]], float)):
+        assert vt.polyline(Geometry({"type": "Polygon", "coordinates": [ring]})) == closed
+
+
+@pytest.mark.parametrize(
+    "geometry",
+    [
+        None,
+        [],
+        {"type": "Polygon"},
+        {"type": "Polygon", "coordinates": None},
+        {"type": "LineString", "coordinates": 5},
+        {"type": "Feature"},
+        {"type": "GeometryCollection", "geometries": 5},
+        {"type": "Blob", "coordinates": []},
+    ],
+)
+def test_broken_geometries_are_refused(geometry: Any) -> None:
+    """With an error of ours, whatever they lack."""
+    with pytest.raises(vt.DesignError, match="geometry"):
+        vt.polyline(Geometry(geometry))
+
+
+def test_a_geometry_within_itself_is_refused() -> None:
+    """However deep."""
+    endless: dict[str, Any] = {"type": "GeometryCollection"}
+    endless["geometries"] = [endless]
+    with pytest.raises(vt.DesignError, match="geometry"):
+        vt.Site([Geometry(endless)])
+
+
 def test_a_ring_can_be_left_open_and_a_line_closed() -> None:
     """`closed` overrules the geometry."""
     assert vt.bspline(shapely.LinearRing(RING), closed=False) == vt.bspline(RING)
@@ -422,6 +464,15 @@ def test_scaled_scales_the_tiles() -> None:
     assert twice.scaled(0.5) == design
 
 
+@pytest.mark.parametrize("factor", [np.int8(5), np.uint8(10), np.float16(1.1), np.float32(1.1), np.int64(3), 7])
+def test_scaled_takes_all_numbers_alike(factor: Any) -> None:
+    """Cell and strokes grow by the same, without the overflow of small integers."""
+    design = bird(vt.segment(5 + 3j, 25 + 11j))
+    big = design.scaled(factor)
+    assert big.cell["a"] == 60 * float(factor)
+    assert big.sites[0].strokes[0].table["scale"] == float(factor)
+
+
 def test_art_moves_with_its_strokes() -> None:
     """Its placement is that of the strokes."""
     design = bird(art=vt.Art("face.svg", rotate=30, translate=(1, 2)))
@@ -448,6 +499,27 @@ def test_save_writes_a_design_file(tmp_path: FilePath) -> None:
     assert vt.Design.load(drawings / "bird.toml") == design
     with pytest.raises(vt.OutputError):
         design.save(tmp_path / "none" / "bird.toml")
+
+
+def test_json_is_saved_as_json(tmp_path: FilePath) -> None:
+    """By the suffix, and text is read as what it is."""
+    design = bird(vt.segment(5 + 3j, 25 + 11j), vt.path("M 1 1 L 5 2"))
+    design.save(tmp_path / "a.json")
+    assert json.loads((tmp_path / "a.json").read_text())["group"] == "p4"
+    assert vt.Design.load(tmp_path / "a.json") == design
+    assert vt.Design.loads(design.source) == vt.Design.loads(design.to_toml()) == design
+
+
+def test_art_is_found_through_links_of_folders(tmp_path: FilePath) -> None:
+    """A design saved through one names its drawing as seen from where it lies."""
+    (tmp_path / "far" / "away").mkdir(parents=True)
+    (tmp_path / "link").symlink_to(tmp_path / "far" / "away")
+    (tmp_path / "face.svg").touch()
+    site = vt.Site([vt.segment(5 + 3j, 25 + 11j)], art="face.svg")
+    vt.Design("p4", 60, site, folder=tmp_path).save(tmp_path / "link" / "a.toml")
+    read = vt.Design.load(tmp_path / "link" / "a.toml")
+    assert FilePath(read.files[1]).resolve() == tmp_path / "face.svg"
+    assert read.files[0] == read.file == str(tmp_path / "link" / "a.toml")
 
 
 @pytest.mark.parametrize("name", ['a"b\\c.svg', "\t\x7f\x01.svg", "\U0001f426.svg", "ä.svg"])

@@ -69,7 +69,7 @@ def written(product: Product) -> bytes:
         ({"tabs": float("inf")}, "`tabs` inf mm cannot be"),
         ({"accuracy": 0.0}, "`accuracy` 0 mm cannot be"),
         ({"accuracy": 1e-7}, "`accuracy` 1e-07 mm cannot be"),
-        ({"rotate": float("nan")}, "not a number"),
+        ({"rotate": float("nan")}, "`rotate` nan cannot be"),
         ({"offset": complex(float("inf"), 0)}, "not a number"),
         ({"label_height": 0.0}, "`label_height` 0 mm cannot be"),
         ({"fit": "clip"}, "`fit` is about a sheet"),

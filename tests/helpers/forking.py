@@ -146,4 +146,5 @@ def _run(fds: list[int], words: list[str], cwd: str, environment: dict[str, str]
 
 
 if __name__ == "__main__":
-    _serve(socket.socket(fileno=int(sys.argv[1])))
+    with socket.socket(fileno=int(sys.argv[1])) as listening:
+        _serve(listening)

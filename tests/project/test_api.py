@@ -174,7 +174,7 @@ WRONG: list[Callable[[], object]] = [
     lambda: vt.render(vt.starter("p4"), renderer="cpu", region=(1, 1, 0, 0)),
     lambda: vt.render(vt.starter("p4"), renderer="cpu", region=(1, 1, 0)),  # type: ignore[call-overload]
     lambda: vt.render(vt.starter("p4"), renderer="cpu", size=(1, 1, 0)),  # type: ignore[call-overload]
-    lambda: vt.coupon(thickness=3, kerfs=["a"]),  # type: ignore[list-item]
+    lambda: vt.coupon(thickness=3, kerfs=["a"]),
     lambda: vt.starter("p4").moved(translate="x"),  # type: ignore[arg-type]
     lambda: vt.starter("p4").moved(scale=0),
     lambda: vt.Paths.empty().bounds,
@@ -192,6 +192,49 @@ WRONG: list[Callable[[], object]] = [
     lambda: pair()[0].copy("x+1/3,y"),
     lambda: pair()[0].to_shapely(accuracy=0),
     lambda: pair()[0].outline.flatten(accuracy=float("nan")),
+    lambda: pair().make((300, 200)),  # type: ignore[arg-type]
+    lambda: pair().report({"kerf": 1}),  # type: ignore[arg-type]
+    lambda: pair().export("a.svg", job=5),  # type: ignore[arg-type]
+    lambda: pair().export("a\0.svg"),
+    lambda: pair().export(b"a.svg"),  # type: ignore[arg-type]
+    lambda: pair().export("a.svg", check=True),  # type: ignore[arg-type]
+    lambda: pair().difference(None),  # type: ignore[arg-type]
+    lambda: pair().report(speeds={"cut": "fast"}),  # type: ignore[dict-item]
+    lambda: pair().report(pierce_s="5"),  # type: ignore[arg-type]
+    lambda: pair().check(renderer="cpu", samples="5"),  # type: ignore[arg-type]
+    lambda: pair().check(renderer="cpu", samples=32.5),  # type: ignore[arg-type]
+    lambda: pair()[0].copy(None),  # type: ignore[arg-type]
+    lambda: pair()[0].to_shapely(accuracy="1"),  # type: ignore[arg-type]
+    lambda: pair().copies((0, 0, 10**400, 1)),
+    lambda: vt.render(pair()),  # type: ignore[call-overload]
+    lambda: vt.render(vt.starter("p4"), "a.jpg"),
+    lambda: vt.render(vt.starter("p4"), size=True),
+    lambda: vt.render(vt.starter("p4"), size=(32,)),  # type: ignore[arg-type]
+    lambda: vt.render(vt.starter("p4"), size=10**400),
+    lambda: vt.render(vt.starter("p4"), overlay=[5, "x"]),  # type: ignore[list-item]
+    lambda: vt.render(vt.starter("p4"), region=(0, 0, 10**400, 5)),
+    lambda: vt.Operation.parse("x+" + "9" * 5000 + ",y"),
+    lambda: vt.Operation.parse("x+\u0663,y"),
+    lambda: vt.Operation.parse(5),  # type: ignore[arg-type]
+    lambda: vt.GROUPS["p1"].lattice(4, 5, float("nan")),
+    lambda: vt.Lattice(float("inf"), 1j),
+    lambda: vt.Limits(neck="2mm"),  # type: ignore[arg-type]
+    lambda: vt.Limits(neck=True),
+    lambda: vt.Limits(tolerance=1e300),
+    lambda: vt.Job(kerf=np.zeros((2, 2))),  # type: ignore[arg-type]
+    lambda: vt.Job(kerf=10**5000),
+    lambda: vt.Job(rotate="30deg"),  # type: ignore[arg-type]
+    lambda: vt.Job(fit=np.zeros(3)),  # type: ignore[arg-type]
+    lambda: vt.starter("p4").save("a\0.toml"),
+    lambda: vt.starter("p4").save(b"a.toml"),  # type: ignore[arg-type]
+    lambda: vt.starter("p4").replace(name=5),  # type: ignore[arg-type]
+    lambda: vt.starter("p4").replace(group=""),
+    lambda: vt.starter("p4").scaled(float("inf")),
+    lambda: vt.Design.loads(vt.starter("p4").to_toml(), name="a\0b"),
+    lambda: vt.Design.load(5),  # type: ignore[arg-type]
+    lambda: vt.Design("p4", 60, vt.Site([vt.point(10**400)])),
+    lambda: vt.Design("p4", 60, vt.Site([vt.segment(0, 1, rotate=np.float16("inf"))])),  # type: ignore[arg-type]
+    lambda: vt.Design("p4", 60, vt.Site([vt.point(0)], tolerance=np.timedelta64(1))),  # type: ignore[arg-type]
 ]
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import json
+import re
 import sys
 from pathlib import Path
 from typing import Any
@@ -134,7 +135,7 @@ def test_what_is_no_region(pair: vt.Tiling, region: object) -> None:
 
 def test_a_region_of_millions_of_tiles_is_refused(pair: vt.Tiling) -> None:
     """At once, before memory is filled; a strip in a skew cell is no such region."""
-    with pytest.raises(vt.ArgumentError, match="millions of tiles"):
+    with pytest.raises(vt.ArgumentError, match="more than 100,000 copies"):
         pair.copies((0, 0, 1e6, 1e6))
     skew = vt.Design("p1", (60, 6000, 0.6), vt.Site([vt.segment(5 + 3j, 25 + 11j)])).tessellate()
     assert len(skew.copies((0, 0, 600, 600))) == pytest.approx(100, abs=50)
@@ -192,7 +193,10 @@ def test_notebooks_show_everything(pair: vt.Tiling) -> None:
     assert pair.design._repr_svg_().count("<path") == 3
     product = pair.make(vt.Job(sheet=(200, 100), kerf=0.2), "dxf")._repr_svg_()
     assert product.count("<path") > 4
-    assert 'width="200' in product
+    assert 'width="150mm"' in product
+    widths = [float(width) for width in re.findall(r'stroke-width="([\d.]+)"', product)]
+    assert len(widths) > 1
+    assert min(widths) >= 0.25  # a pixel of a screen
     assert pair.render(size=40, renderer="cpu")._repr_png_().startswith(b"\x89PNG")
 
 
@@ -267,8 +271,8 @@ def test_a_file_for_each_colour(pair: vt.Tiling, tmp_path: Path) -> None:
         pair.export("-", job=job, file_format="svg")
 
 
-def test_nothing_is_written_over_what_is_read(tmp_path: Path) -> None:
-    """The sheet's drawing, and the art."""
+def test_nothing_is_written_over_what_is_read(pair: vt.Tiling, tmp_path: Path) -> None:
+    """The sheet's drawing, the art, the design itself, what a preflight looks at; by whatever is written."""
     sheet = tmp_path / "sheet.svg"
     sheet.write_text(
         '<svg xmlns="http://www.w3.org/2000/svg" width="90mm" height="90mm" viewBox="0 0 90 90">'
@@ -276,11 +280,29 @@ def test_nothing_is_written_over_what_is_read(tmp_path: Path) -> None:
     )
     before = sheet.read_bytes()
     design = vt.Design("p4", 20, vt.Site([vt.segment(2 + 3j, 8 + 4j)], art="sheet.svg"), folder=tmp_path)
-    with pytest.raises(vt.OutputError, match="is read for this job"):
+    with pytest.raises(vt.OutputError, match="is read for this, and would be overwritten"):
         design.tessellate().export(sheet, job=vt.Job(sheet=sheet))
-    with pytest.raises(vt.OutputError, match="is read for this job"):
+    with pytest.raises(vt.OutputError, match="is read for this, and would be overwritten"):
         design.tessellate().export(sheet)
-    assert sheet.read_bytes() == before
+    picture = tmp_path / "art.png"
+    picture.write_bytes(before)
+    drawn = design.replace(sites=vt.Site([vt.segment(2 + 3j, 8 + 4j)], art="art.png"))
+    file, other = tmp_path / "own.json", tmp_path / "own.toml"
+    for name in (file, other):
+        pair.design.save(name)
+    kept = {path: path.read_bytes() for path in (sheet, picture, file, other)}
+    for write in (
+        lambda: drawn.tessellate().render(picture, size=20, renderer="cpu"),
+        lambda: design.save(sheet),
+        lambda: vt.Design.load(file).tessellate().export(file),
+        lambda: vt.Design.load(other).replace(name="other").tessellate().export(other, file_format="svg"),
+        lambda: vt.preflight(sheet, marked=sheet),
+    ):
+        with pytest.raises(vt.OutputError, match="is read for this, and would be overwritten"):
+            write()
+    assert {path: path.read_bytes() for path in kept} == kept
+    vt.Design.load(other).scaled(2).save(other)  # a design may be saved again
+    vt.Design.load(other).tessellate().export(tmp_path / "other.json")
 
 
 def test_a_template_gives_the_art_of_a_site(pair: vt.Tiling, tmp_path: Path) -> None:
@@ -370,3 +392,118 @@ def test_the_difference_picture(pair: vt.Tiling, tmp_path: Path) -> None:
     assert repr(report).startswith("<CheckReport: passed; exact on cpu")
     with pytest.raises(vt.UnknownNameError, match="no figure 'labls'"):
         report.figure("labls")
+
+
+# --- what is proved stays so --------------------------------------------------------------------------------------
+
+
+def test_what_was_proved_cannot_be_changed(pair: vt.Tiling) -> None:
+    """Neither the outlines, nor the geometry that they were computed from."""
+    outline, noded = pair[0].outline, pair.design.noded[0]
+    names = ("start", "control", "end", "curved", "focus", "directrix", "neighbour", "ring_offsets", "lengths")
+    for array in (*(getattr(outline, name) for name in names), noded.nodes, noded.segments, noded.elements):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = array[-1]
+    copy = pair[0].copy("-y,x")
+    with pytest.raises(ValueError, match="read-only"):
+        copy.start[0] = 0
+
+
+def test_a_check_is_evidence_for_its_own_design_alone(pair: vt.Tiling, tmp_path: Path) -> None:
+    """Neither a file nor a picture takes that of another; reports are compared by what they are."""
+    check = pair.check(samples=32, renderer="cpu")
+    again = pair.design.tessellate()
+    again.export(tmp_path / "good.svg", check=check)
+    assert check != again.check(samples=32, renderer="cpu")
+    assert {check: 1}[check] == 1
+    other = vt.starter("p6m").tessellate()
+    for use in (
+        lambda: other.export(tmp_path / "bad.svg", check=check),
+        lambda: other.export(tmp_path / "bad.dxf", job=vt.Job(), check=check),
+        lambda: other.json(check),
+        lambda: other.difference(check),
+    ):
+        with pytest.raises(vt.ArgumentError, match="of another design"):
+            use()
+    assert [path.name for path in tmp_path.iterdir()] == ["good.svg"]
+
+
+def test_tilings_hold_names_and_slices(pair: vt.Tiling) -> None:
+    """As they are indexed by them."""
+    assert "leaf" in pair
+    assert pair[1] in pair
+    assert "tree" not in pair
+    assert pair[0:2] == pair.tiles
+    assert pair[0].bounds == pair[0].outline.bounds
+    assert shapely.geometry.shape(pair.copies((0, 0, 1, 1))[0]).area > 0
+
+
+def test_regions_of_all_kinds(pair: vt.Tiling) -> None:
+    """The geometry of other libraries, and our own; what is too far, or none, is refused by name."""
+    tile = pair[0]
+    assert {copy.site for copy in pair.copies(tile)} == {"star", "leaf"}
+    assert len(pair.copies(pair)) >= len(pair)
+    for wrong in (
+        (0, 0, 1e308, 1e308),
+        (0, 0, 10**400, 1),
+        shapely.Point(1e300, 1e300),
+        np.zeros((4, 2)),
+        Geometry({"type": "Polygon"}),
+        Geometry({"type": "Blob", "coordinates": []}),
+    ):
+        with pytest.raises(vt.ArgumentError, match="`region`") as caught:
+            pair.copies(wrong)
+        assert "\n" not in str(caught.value)
+    with pytest.raises(vt.ArgumentError, match="lose their digits"):
+        tile.copy("x+10000000000000,y")
+
+
+class Geometry:
+    """What another library may hand over."""
+
+    def __init__(self, geometry: dict[str, Any]) -> None:
+        self.__geo_interface__ = geometry
+
+
+def test_products_are_saved_and_notes_can_be_followed(pair: vt.Tiling, tmp_path: Path) -> None:
+    """The bytes of `export`; a note never advises what is refused."""
+    job = vt.Job(sheet=(200, 100), colours="layers")
+    product = pair.make(job, "dxf")
+    product.save(tmp_path / "a.dxf")
+    pair.export(tmp_path / "b.dxf", job=job)
+    assert (tmp_path / "a.dxf").read_bytes() == (tmp_path / "b.dxf").read_bytes()
+    (note,) = product.notes
+    assert "gap='1mm'" in note
+    assert "once" not in note
+    assert not pair.make(vt.Job(sheet=(200, 100), colours="layers", gap="1mm")).notes
+
+
+def test_labels_that_the_font_lacks_are_told() -> None:
+    """What is engraved instead."""
+    design = vt.Design("p4", 60, vt.Site([vt.segment(5 + 3j, 25 + 11j)], name="été ☃"))
+    assert design.tessellate().make(vt.Job(labels="site")).notes == (
+        'the label of "été ☃" is engraved as "ete ?": the font has no more',
+    )
+    assert not design.tessellate().make(vt.Job(labels="number")).notes
+
+
+def test_pictures_have_bounds(pair: vt.Tiling, tmp_path: Path) -> None:
+    """Refused before memory and time are spent; words may come in any iterable."""
+    with pytest.raises(vt.ArgumentError, match="too much memory"):
+        pair.render(size=100_000, renderer="cpu")
+    with pytest.raises(vt.ArgumentError, match="drawn as a blot"):
+        pair.render(size=50, region=(0, 0, 300_000, 300_000), overlay="symmetry", renderer="cpu")
+    with pytest.raises(vt.OutputError, match=r"Give it the suffix \.png"):
+        pair.render(tmp_path / "a.jpg", size=20, renderer="cpu")
+    with pytest.raises(vt.JobError, match="64 times the cell"):
+        pair.make(vt.Job(sheet=(300, 200), gap=99_999))
+    one = pair.render(size=40, renderer="cpu", overlay=iter(["symmetry"]))  # type: ignore[call-overload]
+    assert (one.pixels == pair.render(size=40, renderer="cpu", overlay="symmetry").pixels).all()
+    assert (one.pixels != pair.render(size=40, renderer="cpu").pixels).any()
+
+
+def test_a_name_that_is_not_utf_8_goes_into_pictures() -> None:
+    """Escaped, as messages show it."""
+    design = vt.starter("p4").replace(name="\udcff")
+    picture = vt.render(design, size=20, renderer="cpu")
+    assert (b"tEXt", b"Title\0\\xff (p4)") in chunks_of(picture.png)

@@ -87,6 +87,16 @@ def writing(path: str | os.PathLike[str]) -> Iterator[io.RawIOBase]:
         raise
 
 
+def require_suffix(path: str | os.PathLike[str], suffixes: tuple[str, ...]) -> None:
+    """Raise OutputError where a file's name has none of the suffixes, but for standard output and devices."""
+    name = os.fspath(path)
+    if name != STDOUT and not is_special(name) and not str(name).lower().endswith(suffixes):
+        wanted = " or ".join(suffixes)
+        raise OutputError(
+            f"cannot write {name!r}: it is no {wanted} file", path=path, remedy=f"Give it the suffix {wanted}."
+        )
+
+
 def output_error(path: str, error: Exception) -> OutputError:
     """Say why a file could not be written, and what to do."""
     remedy = _REMEDIES.get(error.errno) if isinstance(error, OSError) and error.errno is not None else None
@@ -102,6 +112,17 @@ def refuse_existing(path: str | os.PathLike[str]) -> None:
     name = os.fspath(path)
     if name != STDOUT and not is_special(name) and os.path.lexists(name):
         raise OutputError(f"{name} exists already", path=name, remedy="Choose another name, or remove it first.")
+
+
+def refuse_overwriting(targets: Iterable[str], read: Iterable[str]) -> None:
+    """Refuse to write over what is read. Raises OutputError."""
+    with suppress(ValueError):  # a null byte in a name: no such file is read, and none is written
+        known = {os.path.realpath(name) for name in read}
+        for target in targets:
+            if target != STDOUT and os.path.realpath(target) in known:
+                raise OutputError(
+                    f"{target} is read for this, and would be overwritten", path=target, remedy="Choose another name."
+                )
 
 
 def is_special(name: str) -> bool:

@@ -94,21 +94,19 @@ class Placement:
         """Whether nothing moves."""
         return self.scale == 1.0 and self.rotate == 0.0 and self.translate == 0j
 
-    def __call__(self, z: Complexes) -> Complexes:
-        """The images of points, of the same shape."""
+    @overload
+    def __call__(self, z: complex) -> complex: ...
+    @overload
+    def __call__(self, z: Complexes) -> Complexes: ...
+    def __call__(self, z: complex | Complexes) -> complex | Complexes:
+        """The image of a point or of an array of points, of the same shape."""
         if self.is_identity:
             return z
-        unit = unit_at(self.rotate)
-        x, y = z.real * self.scale, z.imag * self.scale
-        image = np.empty(z.shape, dtype=np.complex128)
-        image.real = (unit.real * x - unit.imag * y) + self.translate.real
-        image.imag = (unit.imag * x + unit.real * y) + self.translate.imag
-        return image
+        return Isometry(unit_at(self.rotate), self.translate, conj=False)(z * self.scale)
 
     def __matmul__(self, inner: Placement) -> Placement:
         """First `inner`, then this one."""
-        shift = complex(self(np.array([inner.translate], dtype=np.complex128))[0])
-        return Placement(self.scale * inner.scale, self.rotate + inner.rotate, shift)
+        return Placement(self.scale * inner.scale, self.rotate + inner.rotate, self(inner.translate))
 
     @property
     def mirrored(self) -> Placement:

@@ -6,8 +6,10 @@ import re
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
+from typing import Any
 
 from voronoi_tiles.base.errors import ArgumentError
+from voronoi_tiles.base.values import shown
 
 _REMEDY = "Write one such as -y,x+1/2."
 
@@ -31,6 +33,9 @@ class Operation:
 
         Raises ArgumentError where the text is no triplet, or where the determinant is neither 1 nor -1.
         """
+        given: Any = text
+        if not (isinstance(given, str) and given.isascii() and len(given) <= _LONGEST):
+            raise ArgumentError(f"not a coordinate triplet: {shown(given)}", remedy=_REMEDY)
         return _parse(text)
 
     def __repr__(self) -> str:
@@ -77,6 +82,10 @@ class Operation:
     def reduced(self) -> Operation:
         """The same operation up to lattice translations, with its translation in [0, 1)."""
         return Operation(self.linear, (self.translation[0] % 1, self.translation[1] % 1))
+
+
+_LONGEST = 200
+"""Most characters of a triplet; more are none that anybody wrote."""
 
 
 @lru_cache(maxsize=4096)

@@ -91,7 +91,9 @@ def _millimetres(number: str, unit: str, text: str, remedy: str) -> float:
     unit = unit or "mm"
     if unit not in UNIT_MM:
         raise DesignError(f"unknown unit {unit!r} in {text!r}", remedy=f"Use {', '.join(UNIT_MM)}. {remedy}")
-    length = float(number) * UNIT_MM[unit]
+    length = float(number)
+    if unit != "mm" and abs(length) <= COORDINATE_MAX:
+        length = float(Fraction(number) * MILLIMETRES[unit])  # rounded once: 12in are 304.8
     if not math.isfinite(length) or abs(length) > COORDINATE_MAX:
         raise DesignError(f"{text!r} is beyond {COORDINATE_MAX:g} mm", remedy=remedy)
     return length

@@ -10,11 +10,11 @@ import math
 import reprlib
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from numbers import Real
 from typing import Any, TypeVar
 
-import numpy as np
-
 from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.base.text import printable
 from voronoi_tiles.base.tolerance import COORDINATE_MAX, NUMBER_MIN
 
 Table = Mapping[str, Any]
@@ -41,7 +41,7 @@ def shown(value: object) -> str:
     if value is None:
         return "nothing"
     try:
-        return reprlib.repr(value)
+        return " ".join(printable(reprlib.repr(value)).split())[:200]
     except Exception:  # noqa: BLE001 - a value whose own repr fails, as an int of 5,000 digits does
         return f"this {type(value).__name__}"
 
@@ -73,18 +73,26 @@ def required(of: Table, name: str, remedy: str) -> Any:
     return of[name]
 
 
+def is_number(value: object) -> bool:
+    """Whether a value is a real number, Python's or numpy's; true and false are none, nor are numpy's times."""
+    # Told without numpy, whose import would take most of the time of `--help`.
+    return isinstance(value, Real) and type(value).__name__ not in ("bool", "timedelta64")
+
+
 def number(
     value: Any, remedy: str = "Write a number, such as 60.0.", tiny: str = "Write 0, or use smaller units."
 ) -> float:
     """Read a finite number of sane size; true and false are none. `tiny` is the remedy for one too near to 0."""
-    if not isinstance(value, int | float | np.integer | np.floating) or isinstance(value, bool):
+    if not is_number(value):
         raise DesignError(f"must be a number, not {shown(value)}", remedy=remedy)
-    size: Any = abs(value)
-    if not size <= COORDINATE_MAX:
-        if isinstance(value, int) or math.isfinite(value):
+    try:
+        result = float(value)
+    except OverflowError:  # of a whole number
+        result = COORDINATE_MAX * 2
+    if not abs(result) <= COORDINATE_MAX:
+        if math.isfinite(result):
             raise DesignError(f"number beyond {COORDINATE_MAX:g}", remedy="Use units that keep the numbers small.")
-        raise DesignError(f"must be a finite number, not {float(value)}", remedy=remedy)
-    result = float(value)
+        raise DesignError(f"must be a finite number, not {result}", remedy=remedy)
     if result != 0.0 and abs(result) < NUMBER_MIN:
         raise DesignError(f"number below {NUMBER_MIN:g}", remedy=tiny)
     return result
@@ -114,8 +122,7 @@ def flag(value: object, remedy: str) -> bool:
 
 def sequence(value: object, remedy: str) -> list[Any] | tuple[Any, ...]:
     """Read an array."""
-    if isinstance(value, np.ndarray):
-        value = value.tolist()
+    value = getattr(value, "tolist", lambda: value)()  # of an array
     if not isinstance(value, list | tuple):
         raise DesignError(f"must be an array, not {shown(value)}", remedy=remedy)
     return value

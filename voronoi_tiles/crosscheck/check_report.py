@@ -27,7 +27,7 @@ class Marks(NamedTuple):
 NO_MARKS = Marks(np.zeros(0, complex), np.zeros(0))
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, eq=False, slots=True)
 class Figure:
     """One result: of `checked` things, `wrong` failed; `marks` says where.
 
@@ -68,13 +68,17 @@ class Figure:
         }
 
 
-@dataclass(frozen=True, slots=True, repr=False)
+@dataclass(frozen=True, eq=False, slots=True, repr=False)
 class CheckReport:
-    """The figures of a cross-check, and who made the image. `frame` is the image's, over one cell."""
+    """The figures of a cross-check, and who made the image.
+
+    `frame` is the image's, over one cell; `source` is that of the design that was checked.
+    """
 
     provenance: Provenance
     frame: Frame
     units: str
+    source: str
     figures: tuple[Figure, ...]
 
     def __repr__(self) -> str:

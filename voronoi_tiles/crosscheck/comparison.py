@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from voronoi_tiles.base.errors import ArgumentError
+from voronoi_tiles.base.values import is_number, shown
 from voronoi_tiles.crosscheck.borders import compare_crossings, compare_points
 from voronoi_tiles.crosscheck.check_report import CheckReport
 from voronoi_tiles.crosscheck.labels import compare_labels
@@ -42,8 +43,10 @@ def crosscheck(
     Raises RenderError where there is no image to be had, ArgumentError for fewer than one sample, or more than
     SAMPLES_MAX, and ValueError where an outline is open (which the proof refuses).
     """
-    if not 1 <= samples <= SAMPLES_MAX:
-        raise ArgumentError(f"`samples` {samples!r} cannot be", remedy=f"Give a number from 1 to {SAMPLES_MAX:,}.")
+    if not (is_number(samples) and float(samples).is_integer() and 1 <= samples <= SAMPLES_MAX):
+        raise ArgumentError(
+            f"`samples` {shown(samples)} cannot be", remedy=f"Give a whole number from 1 to {SAMPLES_MAX:,}."
+        )
     pattern = Pattern(design.noded, design.group, design.lattice)
     frame = cell_frame(design.lattice, samples, centre=complex(design.noded[0].nodes.mean()))
     image = Renderer(renderer, device=device, method=method, notice=notice).render(pattern, frame)
@@ -51,4 +54,4 @@ def crosscheck(
     owned, figures = compare_labels(subject)
     figures += compare_crossings(subject, owned)
     figures.append(compare_points(subject))
-    return CheckReport(image.provenance, frame, design.units, tuple(figures))
+    return CheckReport(image.provenance, frame, design.units, design.source, tuple(figures))

@@ -47,8 +47,13 @@ def pair(point: object) -> object:
     if isinstance(point, np.ndarray):
         point = point.tolist()
     if isinstance(point, int | float | complex | np.number) and not isinstance(point, bool):
-        return float(point.real), float(point.imag)
+        return _coordinate(point.real), _coordinate(point.imag)
     return tuple(point) if isinstance(point, list | tuple) else point
+
+
+def _coordinate(value: float) -> float:
+    """A number as a float; a whole one that is too large for that as it is."""
+    return value if isinstance(value, int) and abs(value) > 2**1000 else float(value)
 
 
 def pairs(points: object) -> object:
@@ -73,7 +78,12 @@ def lines(points: object) -> list[tuple[Any, bool]]:
     """
     if not isinstance(points, GeoInterface):
         return [(pairs(points), False)]
-    found = list(_lines(points.__geo_interface__))
+    try:
+        found = list(_lines(points.__geo_interface__))
+    except DesignError:
+        raise
+    except Exception as error:  # whatever a geometry of others is made of, and however deep
+        raise DesignError("the geometry cannot be read", remedy="Pass points or lines, as GeoJSON has them.") from error
     if not found:
         raise DesignError("the geometry is empty", remedy="Leave it out.")
     return found
@@ -102,9 +112,11 @@ def _lines(geometry: Mapping[str, Any]) -> Iterator[tuple[Any, bool]]:
         inner = geometry["geometries" if kind == "GeometryCollection" else "features"]
     elif kind in _LINES:
         ring = kind in _RINGS
-        yield from (
-            (pairs(line[:-1] if ring else line), ring) for line in _LINES[kind](geometry["coordinates"]) if line
-        )
+        for line in _LINES[kind](geometry["coordinates"]):
+            points: Any = pairs(line)
+            # A ring ends where it began; some leave that point out.
+            if len(points):
+                yield points[:-1] if ring and len(points) > 1 and points[-1] == points[0] else points, ring
         return
     else:
         raise DesignError(f"unknown type of geometry {kind!r}", remedy="Pass points or lines.")

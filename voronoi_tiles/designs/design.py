@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, get_args
 
 from voronoi_tiles.base import values
+from voronoi_tiles.base.arguments import path_name
 from voronoi_tiles.base.errors import DesignError
-from voronoi_tiles.base.files import write_whole
+from voronoi_tiles.base.files import refuse_overwriting, write_whole
 from voronoi_tiles.base.units import UNIT_MM, Units
 from voronoi_tiles.designs.art import Art
 from voronoi_tiles.designs.checking import CheckedDesign, checked
@@ -69,6 +70,7 @@ class Design:
     source: str
     name: str
     folder: str
+    file: str
 
     def __init__(
         self,
@@ -80,7 +82,6 @@ class Design:
         name: str = "design",
         folder: str | os.PathLike[str] = "",
     ) -> None:
-        _check_name(name)
         table = {
             "schema": 1,
             "group": group.name if isinstance(group, WallpaperGroup) else group,
@@ -92,7 +93,7 @@ class Design:
             parts = checked(table)
         except DesignError as error:
             raise error.with_key(_argument(error.key or "")) from None
-        _fill(self, parts, name, os.fspath(folder))
+        _fill(self, parts, name, path_name("folder", folder))
 
     def __repr__(self) -> str:
         sites = ", ".join(site.name for site in self.noded[:3]) + (", ..." if len(self.noded) > 3 else "")
@@ -104,6 +105,11 @@ class Design:
 
     def __hash__(self) -> int:
         return hash(self._content)
+
+    @property
+    def _parts(self) -> CheckedDesign:
+        """What was checked."""
+        return CheckedDesign(*(getattr(self, field) for field in CheckedDesign._fields))
 
     @property
     def _content(self) -> tuple[object, ...]:
@@ -127,6 +133,12 @@ class Design:
         return tuple(site_of(table, noded.name) for table, noded in zip(listed, self.noded, strict=True))
 
     @property
+    def files(self) -> tuple[str, ...]:
+        """The files that it was made from, which nothing overwrites: its own, and the drawings of its art."""
+        drawings = (os.path.join(self.folder, art.file) for art in self.art if art is not None)  # noqa: PTH118 - any name
+        return (*([self.file] if self.file else []), *drawings)
+
+    @property
     def cell(self) -> dict[str, float]:
         """The cell as it was given: the side a, and b and the angle where the group leaves them free."""
         cell: dict[str, float] = json.loads(self.source)["cell"]
@@ -138,32 +150,35 @@ class Design:
 
         Raises DesignError where the file cannot be read or used.
         """
-        file = os.fspath(path)
+        file = path_name("path", path)
         shown = "standard input" if file == "-" else file or repr(file)
         text = read_text(file, shown)
         suffix = Path(file).suffix.lower()
-        if suffix not in (".toml", ".json"):
-            suffix = ".json" if text.lstrip()[:1] == "{" else ".toml"
-        read = cls.loads(text, format=suffix[1:], file=shown)
-        return read if file == "-" else read.replace(name=Path(file).stem, folder=str(Path(file).parent))
+        read = cls.loads(text, format=suffix[1:] if suffix in (".toml", ".json") else None, file=shown)
+        if file == "-":
+            return read
+        return _fill(read, read._parts, Path(file).stem, str(Path(file).parent), file)  # noqa: SLF001 - it is one of us
 
     @classmethod
     def loads(
         cls,
         text: str,
         *,
-        format: str = "toml",  # noqa: A002 - the word that scripts expect
+        format: str | None = None,  # noqa: A002 - the word that scripts expect
         file: str | None = None,
         name: str = "design",
     ) -> Design:
-        """Read a design from text in "toml" or "json"; `file` is what messages call it. Raises DesignError."""
+        """Read a design from text in "toml" or "json", None to see which; `file` is what messages call it.
+
+        Raises DesignError.
+        """
         return cls.from_dict(parse(text, format, file), file=file, name=name)
 
     @classmethod
     def from_dict(cls, mapping: Mapping[str, Any], *, file: str | None = None, name: str = "design") -> Design:
         """Read a design from nested mappings and sequences, as TOML and JSON give them. Raises DesignError."""
         try:
-            return _fill(cls.__new__(cls), checked(mapping), name, "")
+            return _fill(cls.__new__(cls), checked(mapping), name)
         except DesignError as error:
             raise error.with_file(file) from None
 
@@ -187,16 +202,19 @@ class Design:
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the design file whole or not at all; the drawings of art are named as seen from its folder.
 
-        Raises OutputError where the file cannot be written.
+        It is JSON where the name ends in .json, else TOML. Raises OutputError where the file cannot be written.
         """
         table = self.to_dict()
-        folder = os.path.dirname(os.path.abspath(path))  # noqa: PTH100, PTH120 - the name may be any
+        name = path_name("path", path)
+        refuse_overwriting([name], self.files[1 if self.file else 0 :])
+        folder = os.path.realpath(os.path.dirname(name))  # noqa: PTH120 - the name may be any
         for site in table["site"]:
             if "art" in site:
                 file = site["art"]["file"]
                 if not os.path.isabs(file):  # noqa: PTH117 - same
-                    site["art"]["file"] = os.path.relpath(os.path.join(self.folder, file), folder)  # noqa: PTH118
-        write_whole(path, toml_text(table).encode())
+                    site["art"]["file"] = os.path.relpath(os.path.realpath(os.path.join(self.folder, file)), folder)  # noqa: PTH118
+        as_json = Path(name).suffix.lower() == ".json"
+        write_whole(name, (json.dumps(table, indent=1) + "\n" if as_json else toml_text(table)).encode())
 
     def replace(
         self,
@@ -212,13 +230,12 @@ class Design:
         name = self.name if name is None else name
         folder = self.folder if folder is None else folder
         if group is None and cell is None and sites is None and units is None:
-            parts = CheckedDesign(*(getattr(self, field) for field in CheckedDesign._fields))
-            return _fill(Design.__new__(Design), parts, name, os.fspath(folder))
+            return _fill(Design.__new__(Design), self._parts, name, path_name("folder", folder), self.file)
         return Design(
-            group or self.group,
+            self.group if group is None else group,
             self.cell if cell is None else cell,
             self.sites if sites is None else sites,
-            units=units or self.units,
+            units=self.units if units is None else units,
             name=name,
             folder=folder,
         )
@@ -229,7 +246,7 @@ class Design:
         Raises DesignError for another factor.
         """
         with values.within("factor"):
-            values.positive(factor)
+            factor = values.positive(factor)
         cell = {name: value if name == "angle" else value * factor for name, value in self.cell.items()}
         return self.replace(cell=cell, sites=[site.moved(scale=factor) for site in self.sites])
 
@@ -255,9 +272,10 @@ class Design:
         return tessellate(self)
 
 
-def _fill(design: Design, parts: CheckedDesign, name: str, folder: str) -> Design:
+def _fill(design: Design, parts: CheckedDesign, name: str, folder: str = "", file: str = "") -> Design:
     """Fill an empty design with what was checked; the same design."""
-    for field, value in {**parts._asdict(), "name": name or "design", "folder": folder}.items():
+    _check_name(name)
+    for field, value in {**parts._asdict(), "name": name or "design", "folder": folder, "file": file}.items():
         object.__setattr__(design, field, value)
     return design
 

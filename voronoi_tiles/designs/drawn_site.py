@@ -22,9 +22,9 @@ Drawn: TypeAlias = Stroke | GeoInterface | PathData
 class Site:
     """One tile shape: the strokes of a site, which may meet, cross and branch.
 
-    `strokes` are strokes, geometries, of which each point, line and ring is a stroke, or paths of svgpathtools. The
-    name None is "site1", "site2", ... by the place in the design. Curves are flattened to within `tolerance`, in the
-    design's units; None is 0.01 mm. `art` is a drawing that every copy carries, or its file.
+    `strokes` are one or several strokes, geometries, of which each point, line and ring is a stroke, or paths of
+    svgpathtools. The name None is "site1", "site2", ... by the place in the design. Curves are flattened to within
+    `tolerance`, in the design's units; None is 0.01 mm. `art` is a drawing that every copy carries, or its file.
 
     >>> import voronoi_tiles as vt
     >>> vt.Site([vt.segment(5 + 3j, 25 + 11j), vt.circle(9j, 2)], name="bird")
@@ -38,7 +38,7 @@ class Site:
 
     def __init__(
         self,
-        strokes: Iterable[Drawn],
+        strokes: Drawn | Iterable[Drawn],
         *,
         name: str | None = None,
         tolerance: float | None = None,

@@ -30,10 +30,15 @@ def read_text(file: str, shown: str) -> str:
         raise error.with_file(shown) from None
 
 
-def parse(text: str, form: str, file: str | None) -> Mapping[str, Any]:
-    """Read a text in "toml" or "json"; `file` is what messages call it. Raises DesignError."""
+def parse(text: str, form: str | None, file: str | None) -> Mapping[str, Any]:
+    """Read a text in "toml" or "json", None for what it looks like; `file` is its name in messages.
+
+    Raises DesignError.
+    """
     if not isinstance(text, str):
         raise DesignError(f"a design is text, not {values.shown(text)}", file=file, remedy="Pass a str.")
+    if form is None:
+        form = "json" if text.lstrip()[:1] == "{" else "toml"
     if form not in ("toml", "json"):
         raise DesignError(f"unknown format {values.shown(form)}", file=file, remedy='Use "toml" or "json".')
     try:

@@ -30,6 +30,11 @@ class NodedSite:
     def __repr__(self) -> str:
         return f"<NodedSite {self.name!r}: {len(self.nodes)} nodes, {len(self.segments)} segments>"
 
+    def __post_init__(self) -> None:
+        # Tiles are computed from these: they stay as they were checked.
+        self.nodes.setflags(write=False)
+        self.segments.setflags(write=False)
+
     @cached_property
     def isolated(self) -> Ints:
         """The indices of the nodes that belong to no segment, ascending; shape (k,)."""
@@ -40,12 +45,16 @@ class NodedSite:
     @cached_property
     def ends(self) -> Complexes:
         """The ends of the elements, complex128 of shape (k, 2): segments, then isolated points (both ends equal)."""
-        return self.nodes.take(np.concatenate([self.segments, np.stack([self.isolated] * 2, axis=1)]))
+        ends = self.nodes.take(np.concatenate([self.segments, np.stack([self.isolated] * 2, axis=1)]))
+        ends.setflags(write=False)
+        return ends
 
     @cached_property
     def elements(self) -> Floats:
         """The elements x0, y0, x1, y1, float64 of shape (k, 4), in the order of `ends`."""
-        return plane(self.ends).reshape(-1, 4)
+        elements = plane(self.ends).reshape(-1, 4)
+        elements.setflags(write=False)
+        return elements
 
     @property
     def extent(self) -> float:

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from typing import Final
@@ -88,22 +88,24 @@ def coupon(
     path: str | os.PathLike[str] | None = None,
     *,
     thickness: float | str,
-    kerfs: str | Sequence[float] = KERFS,
+    kerfs: str | float | Iterable[float | str] = KERFS,
     plug: float | str = PLUG_MM,
     preset: str = "plain",
 ) -> Drawing:
     """A test piece that shows the kerf: numbered plugs and holes for each of a range of kerfs, slots, and strips.
 
     Cut it, and try which plug just holds in its hole: its number is the kerf. `thickness` is the sheet's and `plug` the
-    plugs' size, in millimetres or as texts with a unit; `kerfs` are a range, "0.05:0.4:0.05", or the kerfs. With a path
-    the drawing is written, in the format of its suffix and with the names and colours of the preset. Raises
-    ArgumentError for sizes that cannot be, DesignError for a preset that cannot be used, and OutputError.
+    plugs' size, in millimetres or as texts with a unit; `kerfs` are a range, "0.05:0.4:0.05", or the kerfs, one or
+    several. With a path the drawing is written, in the format of its suffix and with the names and colours of the
+    preset. Raises ArgumentError for sizes that cannot be, DesignError for an unusable preset, and OutputError.
 
     >>> import voronoi_tiles as vt
     >>> vt.coupon(thickness="3mm", kerfs=[0.1, 0.15, 0.2])
     <Drawing 'kerf coupon, 3 mm': 138.8 x 126.5 mm, layers engrave, inner, cut>
     """
     sheet, width = read_number("thickness", thickness), read_number("plug", plug)
+    if not isinstance(kerfs, Iterable):
+        kerfs = [kerfs]
     widths = kerf_range(kerfs) if isinstance(kerfs, str) else [read_number("kerfs", kerf) for kerf in kerfs]
     drawing = coupon_drawing(widths, thickness=sheet, plug=width)
     form = "svg" if path is None else drawing_format(path)

@@ -46,6 +46,12 @@ def engrave(layout: Layout, contours: Contours | None, sheet: Sheet, shown: Bool
         lines.append(labels)
         if small:
             notes.append(f"{small} pieces are too small for a label of {LABEL_MIN:g} mm")
+        names = [site.name for site in layout.design.noded if layout.job.labels == "site"]
+        notes += [
+            f'the label of "{name}" is engraved as "{printable(name)}": the font has no more'
+            for name in names
+            if printable(name) != name
+        ]
     lines += _beside(layout, contours, sheet)
     engraved, scored = ([art.engraved], [art.scored, *lines]) if fills else ([art.engraved, *lines], [art.scored])
     return replace(art, engraved=Paths.concatenate(engraved), scored=Paths.concatenate(scored), notes=tuple(notes))

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
 from voronoi_tiles.base.errors import OutputError
-from voronoi_tiles.base.files import STDOUT, is_special, writing
+from voronoi_tiles.base.files import STDOUT, is_special, refuse_overwriting, writing
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.job import ACCURACY_MM, Job
 from voronoi_tiles.fabrication.job_options import JobError
@@ -70,7 +70,7 @@ def write_products(
             str(place.with_name(f"{place.stem}-{name}{place.suffix}")): product
             for name, product in make_colours(design, tessellation, job, file_format)
         }
-    refuse_overwriting(design, job, products)
+    refuse_overwriting(products, files_read(design, job))
     with ExitStack() as stack:
         for name, product in products.items():
             written = product if evidence is None else product.with_evidence(evidence)
@@ -78,17 +78,10 @@ def write_products(
     return tuple(Exported(name, product) for name, product in products.items())
 
 
-def refuse_overwriting(design: Design, job: Job | None, targets: Iterable[str]) -> None:
-    """Refuse to overwrite what a job is made from: the sheet's drawing, the preset, the art. Raises OutputError."""
-    read = [os.path.join(design.folder, art.file) for art in design.art if art is not None]  # noqa: PTH118 - any name
-    if job is not None:
-        read += [name for name in (job.sheet, job.preset) if isinstance(name, str)]
-    known = {os.path.realpath(name) for name in read}
-    for target in targets:
-        if os.path.realpath(target) in known:
-            raise OutputError(
-                f"{target} is read for this job, and would be overwritten", path=target, remedy="Choose another name."
-            )
+def files_read(design: Design, job: Job | None) -> list[str]:
+    """The files that a job is made from: the design's own and its art, the sheet's drawing, the preset."""
+    asked = () if job is None else (job.sheet, job.preset)
+    return [*design.files, *(name for name in asked if isinstance(name, str))]
 
 
 def drawing_format(path: str | os.PathLike[str]) -> Format:

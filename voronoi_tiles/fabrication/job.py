@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import Any, Final, Literal
@@ -112,7 +113,7 @@ class Job:
     curves: Choice[Curves | None] = choice(
         None, Curves, "Exact curves, circular arcs, cubic splines or chords [default: as the preset says]."
     )
-    preset: Option[str, str] = Option(
+    preset: Option[str | os.PathLike[str], str] = Option(
         "plain",
         read_text,
         "Colours, layers and curves for a target: plain, lightburn, redcut, ponoko, boxes, glowforge, cnc, or a .toml "
@@ -163,7 +164,7 @@ class Job:
         """Whether every tile is a closed contour of its own."""
         if self.edges is not None:
             return self.edges == "pieces"
-        return self.sheet is None or self._needs_pieces() is not None
+        return self.sheet is None or self.needs_pieces() is not None
 
     def recipe(self) -> dict[str, Any]:
         """What differs from the defaults, in the types of JSON."""
@@ -183,15 +184,15 @@ class Job:
             if value != option.default:
                 yield name, value
 
-    def _needs_pieces(self) -> str | None:
-        """Name an option that needs closed pieces."""
+    def needs_pieces(self) -> str | None:
+        """The name of an option that needs closed pieces, None where none does."""
         for name in ("kerf", "gap", "fillet"):
             if (getattr(self, name) or 0.0) > 0.0:
                 return name
         return "colours" if self.colours != "none" or self.only_colour is not None else None
 
     def _check_edges(self) -> None:
-        name = self._needs_pieces()
+        name = self.needs_pieces()
         if self.edges == "once" and name is not None:
             raise JobError(
                 f"`{name}` needs `edges='pieces'`: an edge that is cut once belongs to two of them",

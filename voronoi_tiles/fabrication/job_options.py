@@ -10,10 +10,12 @@ import math
 import os
 from collections.abc import Callable
 from dataclasses import KW_ONLY, dataclass
+from numbers import Integral
 from typing import Any, Final, Generic, Literal, TypeAlias, TypeVar, cast, get_args
 
 from voronoi_tiles.base.errors import ArgumentError, DesignError
 from voronoi_tiles.base.units import parse_length, parse_size
+from voronoi_tiles.base.values import is_number, shown
 
 SHEET_MAX: Final = 100_000.0
 """Largest side of a sheet, and largest length of an option; millimetres."""
@@ -86,8 +88,8 @@ def choice(default: Any, kind: Any, help: str) -> Option[Any, Any]:  # noqa: A00
     words = get_args(kind)
 
     def read(name: str, value: object) -> object:
-        if not (value in words or (value is None and default is None)):
-            raise JobError(f"`{name}` {value!r} is unknown", remedy=f"Use one of {', '.join(words)}.")
+        if not ((isinstance(value, str) and value in words) or (value is None and default is None)):
+            raise JobError(f"`{name}` {shown(value)} is unknown", remedy=f"Use one of {', '.join(words)}.")
         return value
 
     return Option(default, read, help, kind="word", words=words)
@@ -98,7 +100,7 @@ def flag(help: str) -> Flag:  # noqa: A002 - as in Option
 
     def read(name: str, value: object) -> bool:
         if not isinstance(value, bool):
-            raise JobError(f"`{name}` {value!r} cannot be", remedy="Use True or False.")
+            raise JobError(f"`{name}` {shown(value)} cannot be", remedy="Use True or False.")
         return value
 
     return Option(False, read, help, kind="flag")
@@ -109,23 +111,22 @@ def read_text(name: str, value: object) -> str:
     if isinstance(value, os.PathLike):
         value = os.fspath(value)
     if not isinstance(value, str):
-        raise JobError(f"`{name}` {value!r} cannot be", remedy="Give a name, or the path of a TOML file.")
+        raise JobError(f"`{name}` {shown(value)} cannot be", remedy="Give a name, or the path of a TOML file.")
     return value
 
 
-def read_angle(name: str, value: object) -> float:
+def read_angle(name: str, value: Any) -> float:
     """Read an angle; degrees. Raises JobError."""
-    angle = read_number(name, value)
-    if not math.isfinite(angle):
-        raise JobError(f"`{name}` {value!r} is not a number", remedy="Give a finite number of degrees.")
-    return angle
+    if not (is_number(value) and math.isfinite(value)):
+        raise JobError(f"`{name}` {shown(value)} cannot be", remedy="Give a finite number of degrees.")
+    return float(value)
 
 
 def read_colour(name: str, value: object) -> int | None:
     """Read the number of a colour. Raises JobError."""
-    if value is not None and (isinstance(value, bool) or not isinstance(value, int)):
-        raise JobError(f"`{name}` {value!r} cannot be", remedy="Give the number of a colour, from 0.")
-    return value
+    if value is not None and (isinstance(value, bool) or not isinstance(value, Integral)):
+        raise JobError(f"`{name}` {shown(value)} cannot be", remedy="Give the number of a colour, from 0.")
+    return None if value is None else int(value)
 
 
 def read_sheet(name: str, value: Any) -> tuple[float, float] | str | None:
@@ -142,7 +143,7 @@ def read_sheet(name: str, value: Any) -> tuple[float, float] | str | None:
     except DesignError as error:
         raise JobError(f"`{name}`: {error.message}", remedy=remedy) from error
     except (TypeError, ValueError) as error:
-        raise JobError(f"`{name}` {value!r} cannot be", remedy=remedy) from error
+        raise JobError(f"`{name}` {shown(value)} cannot be", remedy=remedy) from error
     width, height = read_number(name, width), read_number(name, height)
     if not (SHEET_MIN <= width <= SHEET_MAX and SHEET_MIN <= height <= SHEET_MAX):
         raise JobError(
@@ -163,21 +164,21 @@ def read_offset(name: str, value: Any) -> complex | None:
     try:
         x, y = value.split(",") if isinstance(value, str) else value
     except (TypeError, ValueError, AttributeError) as error:
-        raise JobError(f"`{name}` {value!r} cannot be", remedy="Give two lengths, such as 3mm,-2mm.") from error
+        raise JobError(f"`{name}` {shown(value)} cannot be", remedy="Give two lengths, such as 3mm,-2mm.") from error
     place = complex(read_number(name, x), read_number(name, y))
     if not abs(place) <= SHEET_MAX:
-        raise JobError(f"`{name}` {value!r} is not a number, or too large", remedy="Give finite numbers.")
+        raise JobError(f"`{name}` {shown(value)} is not a number, or too large", remedy="Give finite numbers.")
     return place
 
 
-def read_number(name: str, value: object) -> float:
+def read_number(name: str, value: Any) -> float:
     """Read a length, or an angle, that is a number or a text. Raises JobError."""
     remedy = 'Give a number of millimetres, or a text: "0.15mm".'
     try:
         if isinstance(value, str):
             return parse_length(value)
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise JobError(f"`{name}` {value!r} cannot be", remedy=remedy)
-        return float(value)
+        if is_number(value):
+            return float(value)
     except (DesignError, OverflowError) as error:
-        raise JobError(f"`{name}` {value!r} cannot be", remedy=remedy) from error
+        raise JobError(f"`{name}` {shown(value)} cannot be", remedy=remedy) from error
+    raise JobError(f"`{name}` {shown(value)} cannot be", remedy=remedy)

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from voronoi_tiles.base.arguments import number
 from voronoi_tiles.base.errors import ArgumentError
+from voronoi_tiles.base.values import is_number, shown
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.layout import FRAME
 from voronoi_tiles.fabrication.trails import travel
@@ -36,12 +38,12 @@ def report_figures(
     speed = {**SPEEDS, **(speeds or {})}
     pierce_s = PIERCE_S if pierce_s is None else pierce_s
     for name, value in speed.items():
-        if name not in SPEEDS or not 0.0 < value < math.inf:
+        if name not in SPEEDS or not (is_number(value) and 0.0 < value < math.inf):
             raise ArgumentError(
-                f"`speeds`: {name} {value!r} cannot be", remedy=f"Give mm/s above 0 for {', '.join(SPEEDS)}."
+                f"`speeds`: {shown(name)} {shown(value)} cannot be",
+                remedy=f"Give mm/s above 0 for {', '.join(SPEEDS)}.",
             )
-    if not 0.0 <= pierce_s < math.inf:
-        raise ArgumentError(f"`pierce_s` {pierce_s!r} cannot be", remedy="Give seconds.")
+    pierce_s = number("pierce_s", pierce_s, "Give seconds, 0 or more.", least=0.0)
     drawing, pieces = product.drawing, product.pieces
     layers: list[dict[str, Any]] = []
     before = 0j

@@ -20,7 +20,7 @@ from voronoi_tiles.fabrication.dressed_tiles import DressedTiles, PageMap
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.kerf import Compensation
 from voronoi_tiles.fabrication.region import Region
-from voronoi_tiles.fabrication.spacing import UNSTRETCHED, Stretch, pulled_apart, spread
+from voronoi_tiles.fabrication.spacing import FARTHEST, UNSTRETCHED, Stretch, pulled_apart, spread
 from voronoi_tiles.fabrication.tile_placement import TilePlacement, place_tiles
 from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.conversion import to_lines
@@ -251,6 +251,12 @@ def _spaced(tiles: DressedTiles, sheet: Sheet, stretch: Stretch) -> Period:
 
 def _stretch(tiles: DressedTiles, apart: float, accuracy: float) -> Stretch:
     """How far the layout is spread for a gap, measured by chords within an accuracy."""
+    largest = FARTHEST * float(np.abs(tiles.period.basis).max())
+    if apart > largest:
+        raise JobError(
+            f"a `gap` of {apart:g} mm is more than {FARTHEST:.0f} times the cell",
+            remedy=f"Give at most {largest:g} mm.",
+        )
     contours = [to_lines(rings, accuracy=accuracy) for rings in tiles.all_rings()]
     try:
         return spread(contours, tiles.centres(), tiles.period.basis, apart + 2 * accuracy)

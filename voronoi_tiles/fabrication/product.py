@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from io import BytesIO, RawIOBase
 from math import fsum
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, Final
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, offsets_of, ranges
+from voronoi_tiles.base.files import writing
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.arc_fitting import curve_fit
@@ -34,6 +36,15 @@ from voronoi_tiles.paths.conversion import to_cubics, to_lines
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.vector.tessellation import Tessellation
 
+_PICTURE_MM: Final = 150.0
+"""The longer side of the picture in notebooks."""
+
+_PICTURE_LINE_MM: Final = 0.25
+"""The width of its lines: a pixel."""
+
+_SHEET_COLOUR: Final = "#c8c8c8"
+"""The colour of the sheet's edge in it."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Product:
@@ -54,9 +65,18 @@ class Product:
         return f"<Product {self.form}: {self.summary()}>"
 
     def _repr_svg_(self) -> str:
-        """Draw it as an SVG file would have it: notebooks show this."""
+        """Draw it for a screen, on which the hairlines of files would not be seen: notebooks show this."""
+        page = self.drawing
+        scale = _PICTURE_MM / max(page.width, page.height)
+        width, height = page.width * scale, page.height * scale
+        edge = Paths.polylines([[0j, complex(width), complex(width, height), 1j * height]], closed=True)
+        layers = [Layer.of_paths("sheet", "engrave", _SHEET_COLOUR, 2 * _PICTURE_LINE_MM, edge)]
+        for layer in page.layers:
+            paths = layer.paths.moved(1.0, complex(0.0, -page.bottom)).moved(scale, 0j)
+            layers.append(replace(layer, paths=paths, stroke=_PICTURE_LINE_MM, filled=False))
         buffer = BytesIO()
-        write_drawing(self.drawing, buffer, "svg", accuracy=self.accuracy)
+        picture = Drawing(width, height, tuple(layers), page.title)
+        write_drawing(picture, buffer, "svg", accuracy=_PICTURE_LINE_MM / 10)
         return buffer.getvalue().decode()
 
     def with_evidence(self, evidence: Mapping[str, Any]) -> Product:
@@ -74,8 +94,16 @@ class Product:
             f"{self.drawing.height:.5g} mm, {length:.3g} m of cuts in {strokes:,} path{'s' * (strokes != 1)}"
         )
 
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the drawing's file, whole or not at all, in the product's format whatever the suffix.
+
+        Raises OutputError.
+        """
+        with writing(path) as file:
+            self.write(file)
+
     def write(self, file: BinaryIO | RawIOBase) -> None:
-        """Write the drawing."""
+        """Write the drawing into a file that is open for bytes."""
         write_drawing(self.drawing, file, self.form, curves=self.curves, accuracy=self.accuracy)
 
 
@@ -170,7 +198,8 @@ def _doubled(layout: Layout, job: Job) -> list[str]:
     """Say that neighbours' contours lie on each other, where they do."""
     if not job.pieces or job.apart is not None or len(layout.copies.tile) < 2 or job.sheet is None:
         return []
-    return ["neighbouring contours lie on each other, and are cut twice: `edges='once'`, or `gap='1mm'`, avoids it"]
+    once = "" if job.needs_pieces() else "`edges='once'`, or "
+    return [f"neighbouring contours lie on each other, and are cut twice: {once}`gap='1mm'`, avoids it"]
 
 
 def _of_colour(contours: Contours, colouring: TileColouring, job: Job) -> Contours:

@@ -24,7 +24,7 @@ _GROWTH: Final = 1.1
 _FIRST: Final = 0.3
 """The first stretch that is tried moves tiles by this share of the gap."""
 
-_FARTHEST: Final = 64.0
+FARTHEST: Final = 64.0
 """Largest stretch that is tried; a factor."""
 
 _COARSE: Final = 0.02
@@ -91,7 +91,7 @@ def spread(contours: Sequence[Paths], centres: Complexes, basis: Complexes, gap:
 
 def _tried(first: float) -> tuple[Floats, Complexes]:
     """The p and q of the stretches that are tried, those that take least room first; `first` is the least size."""
-    sizes = first * _GROWTH ** np.arange(int(np.log(_FARTHEST / first) / np.log(_GROWTH)) + 1)
+    sizes = first * _GROWTH ** np.arange(int(np.log(FARTHEST / first) / np.log(_GROWTH)) + 1)
     # The same stretch along and across has no direction.
     kinds = [(np.pi * k / _DIRECTIONS, r) for r in _RATIOS for k in range(_DIRECTIONS if r < 1.0 else 1)]
     direction, ratio = np.repeat(np.array(kinds), len(sizes), axis=0).T

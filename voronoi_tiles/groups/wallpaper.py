@@ -16,6 +16,7 @@ from functools import cached_property
 from types import MappingProxyType
 from typing import Literal, overload
 
+from voronoi_tiles.base.arguments import number
 from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.maps import UNITS, Isometry, unit_at
@@ -148,10 +149,13 @@ class WallpaperGroup:
         What the system fixes may be left out, and is not read. Raises ArgumentError where b or the angle is
         missing, or the cell has no area.
         """
-        if b is None:
-            if not self.fixes_b:
-                raise ArgumentError(f"{self.name} needs `b`")
+        remedy = "Give a number."
+        a = number("a", a, remedy)
+        if self.fixes_b:
             b = a
+        elif b is None:
+            raise ArgumentError(f"{self.name} needs `b`", remedy="Give the cell's second side.")
+        b = number("b", b, remedy)
         match self.system:
             case "hexagonal":
                 return Lattice(complex(a), complex(a * UNITS[4].real, a * UNITS[4].imag))
@@ -159,8 +163,8 @@ class WallpaperGroup:
                 return Lattice(complex(a), complex(0.0, b))
             case "oblique":
                 if angle is None:
-                    raise ArgumentError(f"{self.name} needs an `angle`")
-                unit = unit_at(angle)
+                    raise ArgumentError(f"{self.name} needs an `angle`", remedy="Give that from a to b in degrees.")
+                unit = unit_at(number("angle", angle, remedy))
                 return Lattice(complex(a), complex(b * unit.real, b * unit.imag))
 
 

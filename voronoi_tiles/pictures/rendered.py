@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from voronoi_tiles.base.files import write_whole
+from voronoi_tiles.base.files import require_suffix, write_whole
 from voronoi_tiles.formats.png import PngStream
 from voronoi_tiles.raster.picture import Pixels
 from voronoi_tiles.raster.renderer import Provenance
@@ -43,6 +43,7 @@ class Rendering:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the PNG file, whole or not at all. Raises OutputError."""
+        require_suffix(path, (".png",))
         write_whole(path, self.png)
 
     def _repr_png_(self) -> bytes:

@@ -7,15 +7,18 @@ import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import TypedDict, Unpack, overload
+from typing import Any, TypedDict, Unpack, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
+from voronoi_tiles.base.arguments import instance, path_name
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.errors import ArgumentError, DesignError, ProofError
-from voronoi_tiles.base.files import writing
+from voronoi_tiles.base.files import refuse_overwriting, require_suffix, writing
+from voronoi_tiles.base.text import printable
 from voronoi_tiles.base.tolerance import COORDINATE_MAX, EPSILON, NUMBER_MIN
+from voronoi_tiles.base.values import is_number, shown
 from voronoi_tiles.base.version import __version__
 from voronoi_tiles.crosscheck import CheckReport
 from voronoi_tiles.designs.design import Design
@@ -36,6 +39,12 @@ place of their strokes."""
 
 DEFAULT_SIZE = 1600
 """The longer side of a picture; pixels."""
+
+CELLS_MAX = 1_000_000
+"""Most cells whose symmetry elements are drawn."""
+
+PIXELS_MAX = 2**28
+"""Most pixels of a picture in memory, where they take 800 MB."""
 
 SIDE_MAX = 100_000
 """The largest side of a picture; pixels. It has 300 MB a band, and takes hours."""
@@ -114,11 +123,15 @@ def paint(
     progress: Callable[[int, int], None] | None = None,
 ) -> Rendering | Provenance:
     """Render as `render` does; `outlines` are the design's, where they are known."""
-    if isinstance(overlay, str):
-        overlay = [overlay]
-    unknown = set(overlay) - set(OVERLAYS)
-    if unknown:
-        raise ArgumentError(f"`overlay` {min(unknown)!r} is unknown", remedy=f"Use {', '.join(OVERLAYS)}.")
+    instance("design", design, Design)
+    if path is not None:
+        path = path_name("path", path)
+        require_suffix(path, (".png",))
+        refuse_overwriting([path], design.files)
+    overlay = [overlay] if isinstance(overlay, str) else list(overlay)
+    for word in overlay:
+        if word not in OVERLAYS:
+            raise ArgumentError(f"`overlay` {shown(word)} is unknown", remedy=f"Use {', '.join(OVERLAYS)}.")
     pattern = Pattern(design.noded, design.group, design.lattice)
     region, width, height = _fit(default_region(pattern) if region is None else region, size)
     if outlines is None:
@@ -137,11 +150,16 @@ def paint(
     )
     text = {
         "Software": f"voronoi-tiles {__version__}",
-        "Title": f"{design.name} ({design.group.name})",
+        "Title": printable(f"{design.name} ({design.group.name})"),
         "Source": design.source,
     }
     per_metre = min(max(width / ((region[2] - region[0]) * design.unit_mm / 1000), 1.0), 2.0**31 - 1)
     if path is None:
+        if width * height > PIXELS_MAX:
+            raise ArgumentError(
+                f"a picture of {width:,} x {height:,} pixels takes too much memory",
+                remedy=f"Give a `path` to write it to; in memory {PIXELS_MAX:,} are the most.",
+            )
         bands = list(_told(picture, progress))
         return Rendering(np.concatenate(bands), text, per_metre, _trailer(picture), picture.provenance)
     with writing(path) as file, PngStream(file, width, height, pixels_per_metre=per_metre, text=text) as png:
@@ -182,8 +200,8 @@ def _fit(region: Region, size: int | tuple[int, int]) -> tuple[Region, int, int]
     remedy = "Give x0,y0,x1,y1 with x0 < x1 and y0 < y1."
     try:
         x0, y0, x1, y1 = (float(side) for side in region)
-    except (TypeError, ValueError):
-        raise ArgumentError(f"the `region` {region!r} is no rectangle", remedy=remedy) from None
+    except (TypeError, ValueError, OverflowError):
+        raise ArgumentError(f"the `region` {shown(region)} is no rectangle", remedy=remedy) from None
     finite = all(map(math.isfinite, (x0, y0, x1, y1)))
     if not (finite and x1 > x0 and y1 > y0):
         what = "is empty" if finite else "is not finite"
@@ -194,11 +212,12 @@ def _fit(region: Region, size: int | tuple[int, int]) -> tuple[Region, int, int]
             f"the `region` reaches to {farthest:g}", remedy=f"Its coordinates must be within {COORDINATE_MAX:g}."
         )
     across, down = x1 - x0, y1 - y0
-    sides: tuple[object, ...] = size if isinstance(size, tuple) else (size,)
-    if not (len(sides) <= 2 and all(isinstance(side, int) for side in sides)):
-        raise ArgumentError(f"a `size` of {size!r} pixels", remedy="Give whole numbers, one or two.")
+    sides: tuple[Any, ...] = size if isinstance(size, tuple) else (size,)
+    whole = all(is_number(side) and isinstance(side, int | np.integer) and -(2**63) < side < 2**63 for side in sides)
+    if not (whole and len(sides) == (2 if isinstance(size, tuple) else 1)):
+        raise ArgumentError(f"a `size` of {shown(size)} pixels", remedy="Give whole numbers, one or two.")
     if isinstance(size, tuple):
-        width, height = size
+        width, height = map(int, sides)
     else:  # a strip is one pixel wide at least
         width, height = (max(min(size, 1), round(size * side / max(across, down))) for side in (across, down))
     if not (1 <= width <= SIDE_MAX and 1 <= height <= SIDE_MAX):
@@ -244,6 +263,12 @@ def _overlays(
         segments = np.stack((corners[:-1], corners[1:]), axis=1)
         found += [Overlay(segments, 3.0 * line, (60, 60, 60)), Overlay(segments, 1.5 * line, _CELL)]
     if "symmetry" in wanted:
+        cells = (region[2] - region[0]) * (region[3] - region[1]) / design.lattice.det
+        if cells > CELLS_MAX:
+            raise ArgumentError(
+                f"the `region` has {cells:,.0f} cells, whose symmetry is drawn as a blot",
+                remedy=f"Take a smaller one, up to {CELLS_MAX:,} cells, or leave the overlay out.",
+            )
         elements = placed(symmetry_elements(design.group), design.lattice, region)
         glides = dashed(elements.glides, 10 * line * pixel, 6 * line * pixel)
         found += [Overlay(elements.mirrors, 1.4 * line, _MIRROR), Overlay(glides, 1.4 * line, _GLIDE)]

@@ -6,11 +6,13 @@ import os
 import sys
 from collections.abc import Collection
 from dataclasses import replace
+from inspect import signature
 from types import ModuleType
 
 import numpy as np
 
-from voronoi_tiles.base.files import write_whole
+from voronoi_tiles.base.arguments import path_name
+from voronoi_tiles.base.files import refuse_overwriting, write_whole
 from voronoi_tiles.formats.reading import DrawingError, ReadDrawing, read_drawing
 from voronoi_tiles.formats.recipe import tab_width
 from voronoi_tiles.paths.paths import Paths
@@ -39,18 +41,19 @@ def preflight(
 
     >>> import tempfile, voronoi_tiles as vt
     >>> with tempfile.TemporaryDirectory() as folder:
-    ...     _ = vt.starter("p4m").tessellate().export(f"{folder}/pair.svg")
+    ...     files = vt.starter("p4m").tessellate().export(f"{folder}/pair.svg")
     ...     report = vt.preflight(f"{folder}/pair.svg")
     >>> report.passed, sorted({finding.kind for finding in report.findings})
     (False, ['duplicate'])
     """
-    name = os.fspath(path)
+    name = path_name("path", path)
     shown = "standard input" if name == "-" else name
     try:
         report = judge(read_drawing(path), shown, limits=limits, layers=[layers] if isinstance(layers, str) else layers)
     except DrawingError as error:
         raise error.with_file(shown) from None
     if marked is not None:
+        refuse_overwriting([path_name("marked", marked)], [name])
         write_whole(marked, marked_svg(report).encode())
     return report
 
@@ -94,6 +97,8 @@ class _CallableModule(ModuleType):
     """This package as `vt.preflight`: its name and that of the function are one, and the import binds the package."""
 
     __call__ = staticmethod(preflight)
+    __signature__ = signature(preflight)
 
 
+__doc__ = f"{__doc__}\n\nIt can be called: see `preflight` in it."
 sys.modules[__name__].__class__ = _CallableModule

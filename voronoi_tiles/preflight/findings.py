@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any, Final, Literal
 
-from voronoi_tiles.base.errors import ArgumentError
+from voronoi_tiles.base.arguments import number
 from voronoi_tiles.base.text import printable
 from voronoi_tiles.formats.reading import ReadDrawing
 
@@ -44,10 +43,9 @@ class Limits:
         for field in fields(self):
             value = getattr(self, field.name)
             least = LENGTH_MIN if field.name == "tolerance" else 0.0
-            if not (value is None and field.name == "tabs") and not least <= value < math.inf:
-                raise ArgumentError(
-                    f"`{field.name}` {value!r} cannot be", remedy=f"Give a number of millimetres, {least:g} or more."
-                )
+            if not (value is None and field.name == "tabs"):
+                unit = "degrees" if field.name == "corner" else "millimetres"
+                number(field.name, value, f"Give a number of {unit}, {least:g} or more.", least=least)
 
 
 DEFAULT_LIMITS: Final = Limits()

@@ -1,0 +1,34 @@
+"""Arguments of public functions: what they must be, said by the argument's name."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, TypeVar
+
+from voronoi_tiles.base.errors import ArgumentError
+from voronoi_tiles.base.tolerance import COORDINATE_MAX
+from voronoi_tiles.base.values import is_number, shown
+
+Kind = TypeVar("Kind")
+
+
+def instance(name: str, value: Any, kind: type[Kind]) -> Kind:
+    """The value of an argument that has to be of a class. Raises ArgumentError for another."""
+    if not isinstance(value, kind):
+        raise ArgumentError(f"`{name}` {shown(value)} cannot be", remedy=f"Give a {kind.__name__}.")
+    return value
+
+
+def number(name: str, value: Any, remedy: str, *, least: float = -COORDINATE_MAX) -> float:
+    """The value of an argument that has to be a number from `least` to COORDINATE_MAX. Raises ArgumentError."""
+    if not is_number(value) or not least <= value <= COORDINATE_MAX:
+        raise ArgumentError(f"`{name}` {shown(value)} cannot be", remedy=remedy)
+    return float(value)
+
+
+def path_name(name: str, value: Any) -> str:
+    """The value of an argument that has to be a path, as a text. Raises ArgumentError for what is none, and bytes."""
+    path = os.fspath(value) if isinstance(value, os.PathLike) else value
+    if not isinstance(path, str):
+        raise ArgumentError(f"`{name}` {shown(value)} is no path", remedy="Give a str or a Path.")
+    return path
