@@ -1,3 +1,3 @@
 """The version of voronoi_tiles, which every file of ours names."""
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
