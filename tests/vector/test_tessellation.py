@@ -597,6 +597,23 @@ def test_edges_on_a_mirror_stay_whole() -> None:
     assert [len(ring) for ring in tiling.tessellation.quotient.boundaries[0]] == [3]
 
 
+@pytest.mark.parametrize("group", ["pm", "pmg", "cm", "p4", "pgg"])
+@pytest.mark.parametrize("exponent", range(3, 9))
+def test_a_copy_that_nearly_touches_a_segment(group: str, exponent: int) -> None:
+    """A vertex far away, where the thin tile between the two ends, lies on all the edges that meet there.
+
+    Seen from the other side of the cell their distance was lost in rounding; thin parabolas made much of that.
+    """
+    origin = Operation.parse(
+        {"pm": "-x,y", "pmg": "-x+1/2,y", "cm": "-x,y", "p4": "-y,x", "pgg": "-x+1/2,y+1/2"}[group]
+    )
+    lattice, cell = GROUPS[group].lattice(60.0, 60.0), {} if GROUPS[group].fixes_b else {"b": 60.0}
+    for place in (1.57, 1.9321, 3.1):
+        near = lattice.isometry(origin.inverse())(complex(place, 3.0 + 10.0**-exponent * (1 + place / 10)))
+        tiling = tile(one(group, {"segment": [[1.5, 3.0], [3.3, 3.0]]}, {"point": [near.real, near.imag]}, **cell))
+        assert tiling.proof.passed
+
+
 @pytest.mark.parametrize("name", list(TOUCHING))
 def test_found_touching_by_the_fuzz(name: str) -> None:
     """Designs that an earlier engine should have refused."""

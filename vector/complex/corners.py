@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 
-import numpy as np
-
-from voronoi_tiles.vector.arcs import parabola_controls
 from voronoi_tiles.vector.complex.edges import Corner, Edge
 from voronoi_tiles.vector.complex.representatives import Builder
+from voronoi_tiles.vector.complex.sharpening import sharpened, tangent
 from voronoi_tiles.vector.complex.traced import Traced
 from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, inverse
 
@@ -72,10 +70,6 @@ def _orbit(first: Corner, related: _Related) -> tuple[dict[Corner, Motion], set[
     return reached, fixing
 
 
-# Nodes this near to each other, relative to a vertex's distance, determine it badly across their bisector.
-_NEAR = 1e-4
-
-
 def _sharpened(
     action: Action,
     boundary: Traced,
@@ -84,28 +78,18 @@ def _sharpened(
     sources: list[tuple[Edge, int]],
     ends: list[tuple[Edge, int]],
 ) -> complex:
-    """A corner's representative, moved onto the bisector of two nodes that are near to each other.
+    """A corner's representative, put onto the bisectors of what nearly touches.
 
     The corner is the image of `where` under `motion`. `ends` are the edges that end there, each with the place of its
     arc there, 0 or -1; `sources` those of them that stand for their orbit.
-
-    Copies that nearly touch leave a corner uncertain across the bisector between them: by eps R^2 / d at a distance R
-    from nodes a distance d apart. Where the edge passes between these nodes this matters; along the other edge that
-    ends there the corner may be moved freely.
     """
     for edge, place in sources:
-        one, two = boundary.nodes[edge.arcs[place]].tolist()
-        here = action.apply_to_point(motion, where)
-        gap = abs(two - one)
-        if not gap < _NEAR * abs(here - one):
-            continue
-        normal = (two - one) / gap
-        off = gap / 2 - (normal.conjugate() * (here - one)).real
-        tangents = [_tangent(boundary, e, p) for e, p in ends if e is not edge]
-        best = max(tangents, key=lambda t: abs((normal.conjugate() * t).real) / abs(t), default=0j)
-        across = (normal.conjugate() * best).real
-        if abs(across) > 1e-3 * abs(best):
-            where = action.apply_to_point(inverse(motion), here + best * (off / across))
+        arc = int(edge.arcs[place])
+        if boundary.nearly_touching[arc]:
+            here = action.apply_to_point(motion, where)
+            there = sharpened(boundary, arc, here, [_tangent(boundary, e, p) for e, p in ends if e is not edge])
+            if there != here:
+                where = action.apply_to_point(inverse(motion), there)
     return where
 
 
@@ -119,12 +103,8 @@ def _across(traced: list[Traced], ends: list[tuple[Edge, int]]) -> complex | Non
 
 def _tangent(boundary: Traced, edge: Edge, place: int) -> complex:
     """The direction of an edge at its start (place 0) or end (place -1)."""
-    arc, (start, end) = edge.arcs[place], edge.vertex[[place, place + 1] if place == 0 else [-2, -1]]
-    if not boundary.curved[arc]:
-        return complex(end - start)
-    this = edge.arcs[[place]]
-    control = parabola_controls(np.array([start]), np.array([end]), boundary.focus[this], boundary.directrix[this])[0]
-    return complex(control - start if place == 0 else end - control)
+    start, end = edge.vertex[[place, place + 1] if place == 0 else [-2, -1]].tolist()
+    return tangent(boundary, int(edge.arcs[place]), start, end, at_start=place == 0)
 
 
 def _generated(motions: set[Motion]) -> tuple[Motion, ...]:

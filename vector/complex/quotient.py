@@ -18,6 +18,7 @@ from voronoi_tiles.vector.arcs import parabola_controls
 from voronoi_tiles.vector.complex.corners import Corners, find_corners
 from voronoi_tiles.vector.complex.edges import PAIRING, Edge
 from voronoi_tiles.vector.complex.representatives import Builder, Points, Representatives
+from voronoi_tiles.vector.complex.sharpening import sharpen_within
 from voronoi_tiles.vector.complex.traced import Traced
 from voronoi_tiles.vector.motions import IDENTITY, Action, Motion
 
@@ -127,6 +128,7 @@ def _represent(
     else:
         vertex = edge.vertex.copy()
         vertex[[0, -1]] = positions.locate(Points.concatenate([start, end]))
+        sharpen_within(boundary, edge.arcs, vertex)
         if others:
             inner, control, arcs = _add_symmetric(builder, boundary, edge.arcs, vertex, others[0][0])
         else:

@@ -17,6 +17,10 @@ from voronoi_tiles.vector.cells.trace import Boundary
 from voronoi_tiles.vector.copies import Copies
 from voronoi_tiles.vector.motions import Motion
 
+NEARLY_TOUCHING = 1e-4
+"""Two nodes, or a node and a line, this near to each other, relative to the distance of a point, determine it badly
+across their bisector."""
+
 
 @dataclass(frozen=True, eq=False)
 class Traced:
@@ -47,6 +51,19 @@ class Traced:
         """The boundary of these arcs only, each ending where the next one starts."""
         arrays = {field.name: getattr(self, field.name)[index] for field in fields(self) if field.name != "copies"}
         return Traced(**arrays, copies=self.copies)
+
+    @cached_property
+    def nearly_touching(self) -> Bools:
+        """Whether what an arc is the bisector of nearly touches, as seen from the farther end of the arc: bool (n,)."""
+        one, two = self.nodes.T
+        axis = self.directrix[:, 1] - self.directrix[:, 0]
+        across = (self.focus - self.directrix[:, 0]) * axis.conj()
+        with np.errstate(invalid="ignore"):
+            gap = np.where(self.curved, np.abs(across.imag) / np.abs(axis), np.abs(two - one))
+        here = np.where(self.curved, self.focus, one)
+        away = np.maximum(np.abs(self.vertex - here), np.abs(self.vertex[self.following] - here))
+        # Twice as many as are sharpened: a point that was sharpened before has moved.
+        return gap < 2 * NEARLY_TOUCHING * away
 
     @cached_property
     def rings(self) -> list[Ints]:
