@@ -64,7 +64,7 @@ test-slow: $(INSTALLED_DEV)
 test-pythons:
 	set -e; found=$$($(PYTHON) .ci/pythons.py); echo "$${found:-No other CPython from 3.11 on is here.}"; \
 	echo "$$found" | while read -r version python; do \
-	    test -z "$$python" || $(MAKE) test VENV=$(VENV)-$$version PYTHON=$$python || exit 1; \
+	    test -z "$$python" || $(MAKE) test VENV=$(VENV)-$$version PYTHON=$$python < /dev/null || exit 1; \
 	done
 
 lint: $(INSTALLED_DEV)

@@ -10,7 +10,7 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 python3 -m venv "$folder/venv"
-"$folder/venv/bin/pip" install --quiet --disable-pip-version-check svgelements==1.9.6 2>/dev/null
+"$folder/venv/bin/pip" install --quiet --disable-pip-version-check svgelements==1.9.6
 "$folder/venv/bin/python" - <<'PYTHON'
 import math
 import re

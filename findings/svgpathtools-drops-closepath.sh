@@ -9,7 +9,7 @@ set -euo pipefail
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 python3 -m venv "$folder/venv"
-"$folder/venv/bin/pip" install --quiet --disable-pip-version-check svgpathtools==1.8.0 2>/dev/null
+"$folder/venv/bin/pip" install --quiet --disable-pip-version-check svgpathtools==1.8.0
 cd "$folder"
 venv/bin/python - <<'PYTHON'
 from importlib.metadata import version

@@ -67,7 +67,7 @@ def copies_in_region(tessellation: Tessellation, region: Any) -> Iterator[tuple[
 
     `region` is what `read_region` gives. A copy meets it that comes as near as the outline's `display_accuracy`: none
     that has a point in common with the region is left out. Operations are those that outlines name neighbours by.
-    Raises ArgumentError where there would be more than COPIES_MAX.
+    Raises ArgumentError where more than COPIES_MAX lie in the box around the region.
     """
     import shapely
 
@@ -102,7 +102,8 @@ def _refuse_too_many(copies: int) -> None:
     """Raise ArgumentError for more copies than COPIES_MAX."""
     if copies > COPIES_MAX:
         raise ArgumentError(
-            f"the `region` holds more than {COPIES_MAX:,} copies of tiles", remedy="Take smaller ones, one by one."
+            f"more than {COPIES_MAX:,} copies of tiles lie in the box around the `region`",
+            remedy="Take smaller ones, one by one.",
         )
 
 

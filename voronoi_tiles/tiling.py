@@ -102,7 +102,8 @@ class Tiling:
         """The copies of all tiles that meet a region: a rectangle (x0, y0, x1, y1), or a geometry of shapely's.
 
         Copies that miss it by less than their `outline.display_accuracy` are among them; none that meets it is left
-        out. Operations are those that outlines name neighbours by. Raises ArgumentError for what is no region.
+        out. Operations are those that outlines name neighbours by. Raises ArgumentError for what is no region,
+        and for one whose box holds more than 100,000 copies.
 
         >>> import voronoi_tiles as vt
         >>> tiling = vt.starter("p4").tessellate()
@@ -169,7 +170,8 @@ class Tiling:
         """Raise ArgumentError for a cross-check of another design, which is evidence of nothing here."""
         from voronoi_tiles.crosscheck.check_report import CheckReport
 
-        if instance("check", check, CheckReport).source != self.design.source:
+        source = instance("check", check, CheckReport).source
+        if source != self.design.source and Design.loads(source) != self.design:
             raise ArgumentError("the `check` is of another design", remedy="Give the report of this tiling's check().")
 
     def _proof_rows(self) -> list[dict[str, Any]]:
@@ -286,7 +288,7 @@ class Tiling:
         """
         from voronoi_tiles.fabrication.art_template import write_template
 
-        tile = self[0 if site is None else site]
+        tile = self[0 if site is None else instance("site", site, str)]
         return write_template(path, self.design.folder, tile.site, tile.outline, self.design.unit_mm)
 
     @overload

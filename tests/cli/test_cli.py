@@ -534,3 +534,10 @@ def test_a_bug_is_one_message_too(tmp_path: Path) -> None:
     assert "bug" in complaint(result, code=70)
     debug = {**os.environ, "VORONOI_TILES_DEBUG": "1"}
     assert "Traceback" in subprocess.run(call, capture_output=True, text=True, check=False, env=debug).stderr
+
+
+def test_a_name_with_backquotes_stays_a_name(voronoi_tiles: CommandLine, tmp_path: Path) -> None:
+    """Arguments in messages become options, but not what looks like one in the name of a file."""
+    (tmp_path / "`kerf`.toml").write_text("schema = 1\n")
+    said = complaint(voronoi_tiles("info", "`kerf`.toml", cwd=tmp_path))
+    assert said.startswith("Error: `kerf`.toml, group: ")

@@ -356,9 +356,9 @@ def one(*strokes: Any, **site: Any) -> Callable[[], object]:
         (lambda: vt.Site([vt.point(0), shapely.Point()]), "strokes[1]", "the geometry is empty"),
         (lambda: vt.polyline(shapely.MultiLineString()), None, "the geometry is empty"),
         (lambda: bird().scaled(0), "factor", "greater than 0"),
-        (lambda: bird(vt.path("M 1 1 L 2 2")).moved(mirror=True), "path", "cannot be mirrored"),
-        (lambda: bird(art="face.svg").moved(mirror=True), "art", "cannot be mirrored"),
-        (lambda: vt.Site([vt.point(1j, rotate="x")]).moved(), "rotate", "must be a number"),  # type: ignore[arg-type]
+        (lambda: bird(vt.path("M 1 1 L 2 2")).moved(mirror=True), "sites[0].strokes[0].data", "cannot be mirrored"),
+        (lambda: bird(art="face.svg").moved(mirror=True), "sites[0].art", "cannot be mirrored"),
+        (lambda: vt.Site([vt.point(1j, rotate="x")]).moved(), "strokes[0].rotate", "must be a number"),  # type: ignore[arg-type]
     ],
 )
 def test_what_is_refused_is_named_as_the_argument(make: Callable[[], object], key: str | None, message: str) -> None:

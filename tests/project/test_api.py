@@ -226,6 +226,20 @@ WRONG: list[Callable[[], object]] = [
     lambda: vt.Job(rotate="30deg"),  # type: ignore[arg-type]
     lambda: vt.Job(fit=np.zeros(3)),  # type: ignore[arg-type]
     lambda: vt.starter("p4").save("a\0.toml"),
+    lambda: vt.Design("p4", 60, vt.Site([vt.polyline(np.array(5))])),
+    lambda: vt.coupon(5, thickness=3),  # type: ignore[arg-type]
+    lambda: vt.coupon(thickness=3, preset=5),  # type: ignore[arg-type]
+    lambda: vt.coupon(thickness=3, preset=Path("laserjet")),
+    lambda: pair().template(5),  # type: ignore[arg-type]
+    lambda: pair().template("a.svg", site=9),  # type: ignore[arg-type]
+    lambda: pair().make().save(5),  # type: ignore[arg-type]
+    lambda: pair().render(size=20, renderer="cpu").save(5),  # type: ignore[arg-type]
+    lambda: pair().report(speeds=5),  # type: ignore[arg-type]
+    lambda: pair().render(overlay=5),  # type: ignore[call-overload]
+    lambda: pair().make(vt.Job(sheet=(200, 100), colours="layers", only_colour=9)),
+    lambda: vt.starter([]),  # type: ignore[arg-type]
+    lambda: vt.Site([vt.polyline(5)]).moved(mirror=True),  # type: ignore[arg-type]
+    lambda: vt.Site([vt.hermite([0, 5], [1, "x"])]).moved(mirror=True),  # type: ignore[list-item]
     lambda: vt.starter("p4").save(b"a.toml"),  # type: ignore[arg-type]
     lambda: vt.starter("p4").replace(name=5),  # type: ignore[arg-type]
     lambda: vt.starter("p4").replace(group=""),
@@ -234,7 +248,7 @@ WRONG: list[Callable[[], object]] = [
     lambda: vt.Design.load(5),  # type: ignore[arg-type]
     lambda: vt.Design("p4", 60, vt.Site([vt.point(10**400)])),
     lambda: vt.Design("p4", 60, vt.Site([vt.segment(0, 1, rotate=np.float16("inf"))])),  # type: ignore[arg-type]
-    lambda: vt.Design("p4", 60, vt.Site([vt.point(0)], tolerance=np.timedelta64(1))),  # type: ignore[arg-type]
+    lambda: vt.Design("p4", 60, vt.Site([vt.point(0)], tolerance=np.timedelta64(1, "s"))),  # type: ignore[arg-type]
 ]
 
 

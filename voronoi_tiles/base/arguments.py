@@ -15,8 +15,14 @@ Kind = TypeVar("Kind")
 def instance(name: str, value: Any, kind: type[Kind]) -> Kind:
     """The value of an argument that has to be of a class. Raises ArgumentError for another."""
     if not isinstance(value, kind):
-        raise ArgumentError(f"`{name}` {shown(value)} cannot be", remedy=f"Give a {kind.__name__}.")
+        raise ArgumentError(f"`{name}` {shown(value)} cannot be", remedy=f"Give {_called(kind)}.")
     return value
+
+
+def _called(kind: type) -> str:
+    """A class with its article."""
+    name = {"str": "text", "Operation": "Operation, or its triplet"}.get(kind.__name__, kind.__name__)
+    return f"{'an' if name[0] in 'AEIOU' else 'a'} {name}"
 
 
 def number(name: str, value: Any, remedy: str, *, least: float = -COORDINATE_MAX) -> float:

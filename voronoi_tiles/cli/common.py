@@ -57,7 +57,8 @@ def explain(error: BaseException, design: str | None = None) -> tuple[int, str]:
     start = f"Error: {design}: " if design is not None else "Error: "
     match error:
         case VoronoiTilesError():
-            text = as_options(str(error))
+            name = error.file or ""  # which may hold anything
+            text = name + as_options(str(error).removeprefix(name))
             code, message = error.exit_code, f"{'Error: ' if error.file is not None else start}{text}"
         case click.UsageError():
             text = error.format_message().rstrip()

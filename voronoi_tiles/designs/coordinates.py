@@ -58,11 +58,11 @@ def _coordinate(value: float) -> float:
 
 def pairs(points: object) -> object:
     """Points as a tuple of pairs; what is no sequence of points as it is."""
-    if isinstance(points, np.ndarray):
+    if isinstance(points, np.ndarray) and points.ndim:
         # The numbers of a real array are coordinates: one without rows of two is no array of points.
         listed = points.tolist()
         return tuple(map(pair, listed)) if np.iscomplexobj(points) else tuple(map(_row, listed))
-    if isinstance(points, str | bytes | Mapping) or not isinstance(points, Iterable):
+    if isinstance(points, str | bytes | Mapping | np.ndarray) or not isinstance(points, Iterable):
         return points
     return tuple(map(pair, points))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -43,7 +43,7 @@ class Design:
     `folder` is where the drawings of art are looked for.
 
     Derived are the `lattice`; `noded`, the geometry of each site that tiles are computed from; `art`, the drawing of
-    each site or None; and `source`, the design as canonical JSON (ASCII, sorted keys), which files hold as their recipe
+    each site or None; and `source`, the design as JSON (ASCII, sorted keys), which files hold as their recipe
     and `loads` reads again.
 
     Designs are equal, and hash alike, where the group, the cell, the units and the sites are equal, whatever their
@@ -231,14 +231,15 @@ class Design:
         folder = self.folder if folder is None else folder
         if group is None and cell is None and sites is None and units is None:
             return _fill(Design.__new__(Design), self._parts, name, path_name("folder", folder), self.file)
-        return Design(
+        made = Design(
             self.group if group is None else group,
             self.cell if cell is None else cell,
             self.sites if sites is None else sites,
             units=self.units if units is None else units,
-            name=name,
-            folder=folder,
         )
+        return _fill(made, made._parts, name, path_name("folder", folder), self.file)
+
+    __replace__ = replace
 
     def scaled(self, factor: float) -> Design:
         """The design with its cell and strokes times a factor above 0; tolerances stay as they are.
@@ -248,7 +249,7 @@ class Design:
         with values.within("factor"):
             factor = values.positive(factor)
         cell = {name: value if name == "angle" else value * factor for name, value in self.cell.items()}
-        return self.replace(cell=cell, sites=[site.moved(scale=factor) for site in self.sites])
+        return self.replace(cell=cell, sites=self._moved(lambda site: site.moved(scale=factor)))
 
     def moved(
         self, *, mirror: bool = False, scale: float = 1.0, rotate: float = 0.0, translate: PointLike = 0j
@@ -259,8 +260,17 @@ class Design:
         are others, but for the motions that map the group onto itself. Raises DesignError, also where a path or art is
         to be mirrored.
         """
-        sites = [site.moved(mirror=mirror, scale=scale, rotate=rotate, translate=translate) for site in self.sites]
-        return self.replace(sites=sites)
+        return self.replace(
+            sites=self._moved(lambda site: site.moved(mirror=mirror, scale=scale, rotate=rotate, translate=translate))
+        )
+
+    def _moved(self, move: Callable[[Site], Site]) -> list[Site]:
+        """All sites moved; errors name the argument that a stroke was made of."""
+        try:
+            with values.within("site"):
+                return values.each(self.sites, move)
+        except DesignError as error:
+            raise error.with_key(_argument(error.key or "")) from None
 
     def tessellate(self) -> Tiling:
         """Compute the tiles, proved.

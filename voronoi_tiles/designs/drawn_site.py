@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
+from voronoi_tiles.base import values
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.values import shown
 from voronoi_tiles.designs.art import Art
@@ -83,7 +84,8 @@ class Site:
         by = placement({"scale": scale, "rotate": rotate, "translate": pair(translate)})
         if mirror and self.art is not None:
             raise DesignError("art cannot be mirrored", key="art", remedy="Mirror the drawing in its own program.")
-        strokes = [(stroke.mirrored() if mirror else stroke).placed(by) for stroke in self.strokes]
+        with values.within("strokes"):
+            strokes = values.each(self.strokes, lambda stroke: (stroke.mirrored() if mirror else stroke).placed(by))
         art = None if self.art is None else self.art.placed(by)
         return Site(strokes, name=self.name, tolerance=self.tolerance, art=art)
 

@@ -17,6 +17,7 @@ from typing import Any, Literal, get_args
 
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import Placement
+from voronoi_tiles.designs import schema
 from voronoi_tiles.designs.coordinates import GeoInterface, PathData, PointLike, PointsLike, lines, pair, pairs
 from voronoi_tiles.designs.keys import Keys, keys_of, keys_of_placement
 from voronoi_tiles.designs.schema import placement
@@ -75,6 +76,7 @@ class Stroke:
         if self.kind == "path":
             raise DesignError("the text of a path cannot be mirrored", key="path", remedy="Draw it as bezier curves.")
         table = self.table
+        schema.stroke(table, 1.0)  # what cannot be mirrored cannot be drawn either
         own = table[self.kind]
         table[self.kind] = _flipped([own])[0] if self.kind in ("point", "circle") else _flipped(own)
         if "tangents" in table:

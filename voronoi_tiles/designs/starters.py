@@ -202,7 +202,7 @@ def starter_text(group: str, file: str | None = None) -> str:
 
     Raises DesignError for an unknown group.
     """
-    if group not in _TABLE:
+    if group not in GROUP_NAMES:
         from voronoi_tiles.designs.checking import read_group
 
         read_group(group)

@@ -8,6 +8,7 @@ from typing import Final
 
 import numpy as np
 
+from voronoi_tiles.base.arguments import path_name
 from voronoi_tiles.base.files import refuse_existing
 from voronoi_tiles.designs.art import Art
 from voronoi_tiles.designs.site import NodedSite
@@ -28,6 +29,7 @@ def write_template(path: str | os.PathLike[str], folder: str, site: NodedSite, o
 
     Raises OutputError where there is such a file already, or it cannot be written.
     """
+    path = path_name("path", path)
     if Path(path).suffix:
         format_of(path, ("svg",))
     refuse_existing(path)

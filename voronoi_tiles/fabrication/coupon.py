@@ -18,12 +18,13 @@ from typing import Final
 
 import numpy as np
 
+from voronoi_tiles.base.arguments import path_name
 from voronoi_tiles.base.arrays import Floats
 from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.units import UNIT_MM
 from voronoi_tiles.base.version import __version__
 from voronoi_tiles.fabrication.exporting import drawing_format, save_drawing
-from voronoi_tiles.fabrication.job_options import read_number
+from voronoi_tiles.fabrication.job_options import read_number, read_text
 from voronoi_tiles.fabrication.lettering import fitting_height, lettering, place_labels, text_width
 from voronoi_tiles.fabrication.marks import BAR_MM, bar_height, reference_bar, rounded_square
 from voronoi_tiles.formats.page import Drawing, Layer
@@ -90,7 +91,7 @@ def coupon(
     thickness: float | str,
     kerfs: str | float | Iterable[float | str] = KERFS,
     plug: float | str = PLUG_MM,
-    preset: str = "plain",
+    preset: str | os.PathLike[str] = "plain",
 ) -> Drawing:
     """A test piece that shows the kerf: numbered plugs and holes for each of a range of kerfs, slots, and strips.
 
@@ -108,8 +109,9 @@ def coupon(
         kerfs = [kerfs]
     widths = kerf_range(kerfs) if isinstance(kerfs, str) else [read_number("kerfs", kerf) for kerf in kerfs]
     drawing = coupon_drawing(widths, thickness=sheet, plug=width)
+    path = None if path is None else path_name("path", path)
     form = "svg" if path is None else drawing_format(path)
-    drawing = recoloured(drawing, preset, form)
+    drawing = recoloured(drawing, read_text("preset", preset), form)
     if path is not None:
         save_drawing(drawing, path)
     return drawing

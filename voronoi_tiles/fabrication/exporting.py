@@ -70,18 +70,13 @@ def write_products(
             str(place.with_name(f"{place.stem}-{name}{place.suffix}")): product
             for name, product in make_colours(design, tessellation, job, file_format)
         }
-    refuse_overwriting(products, files_read(design, job))
+    if evidence is not None:
+        products = {name: product.with_evidence(evidence) for name, product in products.items()}
+    refuse_overwriting(products, (file for product in products.values() for file in product.files))
     with ExitStack() as stack:
         for name, product in products.items():
-            written = product if evidence is None else product.with_evidence(evidence)
-            written.write(stack.enter_context(writing(name)))
+            product.write(stack.enter_context(writing(name)))
     return tuple(Exported(name, product) for name, product in products.items())
-
-
-def files_read(design: Design, job: Job | None) -> list[str]:
-    """The files that a job is made from: the design's own and its art, the sheet's drawing, the preset."""
-    asked = () if job is None else (job.sheet, job.preset)
-    return [*design.files, *(name for name in asked if isinstance(name, str))]
 
 
 def drawing_format(path: str | os.PathLike[str]) -> Format:

@@ -159,7 +159,7 @@ def read_offset(name: str, value: Any) -> complex | None:
         return None
     if isinstance(value, complex):
         value = (value.real, value.imag)
-    elif isinstance(value, int | float) and not isinstance(value, bool):
+    elif is_number(value):
         value = (value, 0.0)
     try:
         x, y = value.split(",") if isinstance(value, str) else value

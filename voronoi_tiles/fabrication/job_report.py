@@ -35,6 +35,8 @@ def report_figures(
     `speeds` are those of "cut", "score", "engrave" and "travel" (mm/s). The time counts no acceleration. Raises
     ArgumentError for speeds and times that are none.
     """
+    if not isinstance(speeds, Mapping | None):
+        raise ArgumentError(f"`speeds` {shown(speeds)} cannot be", remedy='Give a mapping, such as {"cut": 12}.')
     speed = {**SPEEDS, **(speeds or {})}
     pierce_s = PIERCE_S if pierce_s is None else pierce_s
     for name, value in speed.items():

@@ -12,8 +12,9 @@ from typing import Any, BinaryIO, Final
 
 import numpy as np
 
+from voronoi_tiles.base.arguments import path_name
 from voronoi_tiles.base.arrays import Bools, offsets_of, ranges
-from voronoi_tiles.base.files import writing
+from voronoi_tiles.base.files import refuse_overwriting, writing
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.arc_fitting import curve_fit
@@ -50,7 +51,8 @@ _SHEET_COLOUR: Final = "#c8c8c8"
 class Product:
     """What a job makes of a tiling, for a format of files.
 
-    `notes` say in sentences what was lost to kerf or fillet; `colours` is how many the whole tessellation takes.
+    `notes` say in sentences what was lost to kerf or fillet; `colours` is how many the whole tessellation takes;
+    `files` are those that it was made from, which `save` does not overwrite.
     """
 
     form: Format
@@ -60,6 +62,7 @@ class Product:
     notes: tuple[str, ...]
     curves: str
     accuracy: float
+    files: tuple[str, ...]
 
     def __repr__(self) -> str:
         return f"<Product {self.form}: {self.summary()}>"
@@ -97,9 +100,11 @@ class Product:
     def save(self, path: str | os.PathLike[str]) -> None:
         """Write the drawing's file, whole or not at all, in the product's format whatever the suffix.
 
-        Raises OutputError.
+        Raises OutputError, also where the job reads this file.
         """
-        with writing(path) as file:
+        name = path_name("path", path)
+        refuse_overwriting([name], self.files)
+        with writing(name) as file:
             self.write(file)
 
     def write(self, file: BinaryIO | RawIOBase) -> None:
@@ -178,7 +183,14 @@ class _Plan:
         drawing = _page(layers, layout.sheet, job, layout.design)
         said = (*layout.tiles.compensation.losses, *engraving.notes, *_doubled(layout, job), *_untabbed(cuts, job))
         notes = tuple(dict.fromkeys(said))
-        return Product(self.form, drawing, pieces, colouring.count, notes, self.curves, job.accuracy)
+        files = tuple(files_read(layout.design, job))
+        return Product(self.form, drawing, pieces, colouring.count, notes, self.curves, job.accuracy, files)
+
+
+def files_read(design: Design, job: Job | None) -> list[str]:
+    """The files that a job is made from: the design's own and its art, the sheet's drawing, the preset."""
+    asked = () if job is None else (job.sheet, job.preset)
+    return [*design.files, *(name for name in asked if isinstance(name, str))]
 
 
 def _format(name: str) -> Format:
@@ -209,8 +221,8 @@ def _of_colour(contours: Contours, colouring: TileColouring, job: Job) -> Contou
     chosen = np.flatnonzero(colouring.of_copies(contours.copy) == job.only_colour)
     if not len(chosen):
         raise JobError(
-            f"no piece has the colour {job.only_colour + 1}",
-            remedy=f"The tessellation has {colouring.count} colours, and a sheet perhaps not all of them.",
+            f"no piece has the `only_colour` {job.only_colour}",
+            remedy=f"Colours are 0 to {colouring.count - 1}, a sheet has perhaps not all of them, and -1 is its frame.",
         )
     rings = ranges(contours.items[chosen], np.diff(contours.items)[chosen])
     items = offsets_of(np.diff(contours.items)[chosen])

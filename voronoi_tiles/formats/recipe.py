@@ -16,7 +16,7 @@ _DXF: Final = re.compile(rb"^999\r?\nrecipe (.*?)\r?$", re.MULTILINE)
 
 
 def job_of(data: bytes) -> Mapping[str, Any]:
-    """What a file of ours says of its job (see fabrication.Job.recipe); nothing for files of others."""
+    """What a file of ours says of its job (see voronoi_tiles.fabrication.job); nothing for files of others."""
     head = data[:_HEAD]
     try:
         svg = _SVG.search(head)

@@ -8,7 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 
-from voronoi_tiles.base.files import require_suffix, write_whole
+from voronoi_tiles.base.arguments import path_name
+from voronoi_tiles.base.files import refuse_overwriting, require_suffix, write_whole
 from voronoi_tiles.formats.png import PngStream
 from voronoi_tiles.raster.picture import Pixels
 from voronoi_tiles.raster.renderer import Provenance
@@ -18,7 +19,8 @@ from voronoi_tiles.raster.renderer import Provenance
 class Rendering:
     """A picture: `pixels` is uint8 (rows, columns, 3), red, green, blue, the first row the upper one.
 
-    `text` and `trailer` are what its PNG says, and `pixels_per_metre` its scale; `provenance` tells who rendered it.
+    `text` and `trailer` are what its PNG says, and `pixels_per_metre` its scale; `provenance` tells who rendered it;
+    `files` are those that the design was made from, which `save` does not overwrite.
     """
 
     pixels: Pixels
@@ -26,6 +28,7 @@ class Rendering:
     pixels_per_metre: float | None = None
     trailer: Mapping[str, str] = field(default_factory=dict)
     provenance: Provenance | None = None
+    files: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         rows, columns, _ = self.pixels.shape
@@ -42,9 +45,11 @@ class Rendering:
         return buffer.getvalue()
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the PNG file, whole or not at all. Raises OutputError."""
-        require_suffix(path, (".png",))
-        write_whole(path, self.png)
+        """Write the PNG file, whole or not at all. Raises OutputError, also for one that the design was made from."""
+        name = path_name("path", path)
+        require_suffix(name, (".png",))
+        refuse_overwriting([name], self.files)
+        write_whole(name, self.png)
 
     def _repr_png_(self) -> bytes:
         """Show the picture: notebooks do."""

@@ -43,6 +43,9 @@ DEFAULT_SIZE = 1600
 CELLS_MAX = 1_000_000
 """Most cells whose symmetry elements are drawn."""
 
+SEGMENTS_MAX = 20_000_000
+"""Most segments of a site's copies that are drawn on top; a count. They take a gigabyte."""
+
 PIXELS_MAX = 2**28
 """Most pixels of a picture in memory, where they take 800 MB."""
 
@@ -128,6 +131,8 @@ def paint(
         path = path_name("path", path)
         require_suffix(path, (".png",))
         refuse_overwriting([path], design.files)
+    if not isinstance(overlay, Iterable):
+        raise ArgumentError(f"`overlay` {shown(overlay)} is unknown", remedy=f"Use some of {', '.join(OVERLAYS)}.")
     overlay = [overlay] if isinstance(overlay, str) else list(overlay)
     for word in overlay:
         if word not in OVERLAYS:
@@ -161,7 +166,7 @@ def paint(
                 remedy=f"Give a `path` to write it to; in memory {PIXELS_MAX:,} are the most.",
             )
         bands = list(_told(picture, progress))
-        return Rendering(np.concatenate(bands), text, per_metre, _trailer(picture), picture.provenance)
+        return Rendering(np.concatenate(bands), text, per_metre, _trailer(picture), picture.provenance, design.files)
     with writing(path) as file, PngStream(file, width, height, pixels_per_metre=per_metre, text=text) as png:
         for band in _told(picture, progress):
             png.write(band)
@@ -192,7 +197,8 @@ def difference(design: Design, outlines: Sequence[Outline], report: CheckReport)
     if not report.passed:
         segments = outline_segments(outlines, pattern, around, accuracy=(around[2] - around[0]) / 10_000)
     text = {"Software": f"voronoi-tiles {__version__}", "Report": json.dumps(report.document())}
-    return Rendering(diff.difference_pixels(report, design.lattice, segments), text, provenance=report.provenance)
+    pixels = diff.difference_pixels(report, design.lattice, segments)
+    return Rendering(pixels, text, provenance=report.provenance, files=design.files)
 
 
 def _fit(region: Region, size: int | tuple[int, int]) -> tuple[Region, int, int]:
@@ -358,9 +364,13 @@ def on_all_copies(flat: Sequence[Complexes], pattern: Pattern, region: Region) -
             continue
         # The translates whose box, in lattice coordinates, meets that of the region.
         ranges = [
-            np.arange(math.ceil(shown.min() - own.max()), math.floor(shown.max() - own.min()) + 1)
+            range(math.ceil(shown.min() - own.max()), math.floor(shown.max() - own.min()) + 1)
             for shown, own in zip(lattice.fractional(corners), lattice.fractional(segments.ravel()), strict=True)
         ]
+        if len(ranges[0]) * len(ranges[1]) * len(segments) > SEGMENTS_MAX:
+            raise ArgumentError(
+                "the `region` holds too many copies to draw", remedy="Take a smaller one, or leave the overlay out."
+            )
         i, j = (part.ravel() for part in np.meshgrid(*ranges))
         found.append((segments[None] + (i * lattice.a + j * lattice.b)[:, None, None]).reshape(-1, 2))
     return np.concatenate([np.zeros((0, 2), complex), *found])
