@@ -100,7 +100,7 @@ def test_jobs_that_cannot_be(job: dict[str, Any], message: str) -> None:
         ({"sheet": (100.0, 100.0), "bar": True, "margin": 8.0}, "no room at the sheet's edge"),
         ({"sheet": (200.0, 100.0), "bar": True}, "no room at the sheet's edge"),
         ({"sheet": (100.0, 100.0), "colours": "files"}, "several drawings"),
-        ({"sheet": (100.0, 100.0), "kerf": 0.2, "only_colour": 7}, "no piece has the colour 8"),
+        ({"sheet": (100.0, 100.0), "kerf": 0.2, "only_colour": 7}, "no piece has the `only_colour` 7"),
         ({"sheet": (1.0, 100.0), "kerf": 0.9, "margin": 0.1}, "leaves nothing of a sheet"),
     ],
 )
