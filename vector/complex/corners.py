@@ -85,7 +85,7 @@ def _sharpened(
     """
     for edge, place in sources:
         arc = int(edge.arcs[place])
-        if boundary.nearly_touching[arc]:
+        if arc in boundary.nearly_touching:
             here = action.apply_to_point(motion, where)
             there = sharpened(boundary, arc, here, [_tangent(boundary, e, p) for e, p in ends if e is not edge])
             if there != here:

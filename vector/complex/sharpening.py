@@ -8,6 +8,7 @@ the other arc that ends in the point it may be moved freely; onto the bisector i
 from __future__ import annotations
 
 from collections.abc import Iterable
+from itertools import pairwise
 
 import numpy as np
 
@@ -22,16 +23,18 @@ def sharpened(boundary: Traced, arc: int, here: complex, tangents: Iterable[comp
     if found is None:
         return here
     off, normal = found
-    best = max(tangents, key=lambda t: abs((normal.conjugate() * t).real) / abs(t), default=0j)
+    best = max((t for t in tangents if t), key=lambda t: abs((normal.conjugate() * t).real) / abs(t), default=0j)
     across = (normal.conjugate() * best).real
     return here + best * (off / across) if abs(across) > 1e-3 * abs(best) else here
 
 
 def sharpen_within(boundary: Traced, arcs: Ints, vertex: Complexes) -> None:
     """Sharpen the points between the arcs of an edge, `vertex[1:-1]`, in place."""
-    nearly = boundary.nearly_touching[arcs]
-    for k in np.flatnonzero(nearly[:-1] | nearly[1:]).tolist():
-        before, after = (int(arc) for arc in arcs[k : k + 2])
+    if not boundary.nearly_touching:
+        return
+    for k, (before, after) in enumerate(pairwise(arcs.tolist())):
+        if boundary.nearly_touching.isdisjoint((before, after)):
+            continue
         leaving = tangent(boundary, after, *vertex[k + 1 : k + 3].tolist(), at_start=True)
         arriving = tangent(boundary, before, *vertex[k : k + 2].tolist(), at_start=False)
         for arc, along in ((before, leaving), (after, arriving)):

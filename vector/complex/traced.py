@@ -53,8 +53,8 @@ class Traced:
         return Traced(**arrays, copies=self.copies)
 
     @cached_property
-    def nearly_touching(self) -> Bools:
-        """Whether what an arc is the bisector of nearly touches, as seen from the farther end of the arc: bool (n,)."""
+    def nearly_touching(self) -> frozenset[int]:
+        """The arcs that are the bisectors of what nearly touches, as seen from their farther end; hardly ever any."""
         one, two = self.nodes.T
         axis = self.directrix[:, 1] - self.directrix[:, 0]
         across = (self.focus - self.directrix[:, 0]) * axis.conj()
@@ -63,7 +63,7 @@ class Traced:
         here = np.where(self.curved, self.focus, one)
         away = np.maximum(np.abs(self.vertex - here), np.abs(self.vertex[self.following] - here))
         # Twice as many as are sharpened: a point that was sharpened before has moved.
-        return gap < 2 * NEARLY_TOUCHING * away
+        return frozenset(np.flatnonzero(gap < 2 * NEARLY_TOUCHING * away).tolist())
 
     @cached_property
     def rings(self) -> list[Ints]:

@@ -135,8 +135,12 @@ class Design:
     @property
     def files(self) -> tuple[str, ...]:
         """The files that it was made from, which nothing overwrites: its own, and the drawings of its art."""
-        drawings = (os.path.join(self.folder, art.file) for art in self.art if art is not None)  # noqa: PTH118 - any name
-        return (*([self.file] if self.file else []), *drawings)
+        return (self.file, *self._drawings) if self.file else self._drawings
+
+    @property
+    def _drawings(self) -> tuple[str, ...]:
+        """The drawings of its art."""
+        return tuple(os.path.join(self.folder, art.file) for art in self.art if art is not None)  # noqa: PTH118 - any name
 
     @property
     def cell(self) -> dict[str, float]:
@@ -206,7 +210,7 @@ class Design:
         """
         table = self.to_dict()
         name = path_name("path", path)
-        refuse_overwriting([name], self.files[1 if self.file else 0 :])
+        refuse_overwriting([name], self._drawings)
         folder = os.path.realpath(os.path.dirname(name))  # noqa: PTH120 - the name may be any
         for site in table["site"]:
             if "art" in site:
