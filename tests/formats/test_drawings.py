@@ -174,6 +174,26 @@ def test_styles_layers_and_what_is_not_drawn() -> None:
     assert drawing.clones == 1
 
 
+def test_one_element_of_a_file_can_be_read(tmp_path: Path) -> None:
+    """An object or a group of an SVG, an entity of a DXF by its handle; the rest is neither drawn nor counted."""
+    drawing = tmp_path / "d.svg"
+    body = """<text>T</text><path id="one" d="M 1 1 H 9"/><g id="two"><g><path d="M 2 2 V 9"/></g>
+    <text>T</text><path id="inner" d="M 3 3 V 9"/></g>"""
+    drawing.write_text(f"<svg {NS} {PAGE}>{body}</svg>")
+    counts = {name: read_drawing(drawing, element=name) for name in ("one", "two", "inner", None)}
+    assert [len(found.shapes) for found in counts.values()] == [1, 2, 1, 3]
+    assert [dict(found.ignored) for found in counts.values()] == [{}, {"text": 1}, {}, {"text": 2}]
+    with pytest.raises(DrawingError, match=r"no element with the id 'three'.*'one', 'two'"):
+        read_drawing(drawing, element="three")
+    document = ezdxf.new("R2000")
+    lines = [document.modelspace().add_line((0, k), (5 + k, k)) for k in range(3)]
+    document.saveas(tmp_path / "d.dxf")
+    (shape,) = read_drawing(tmp_path / "d.dxf", element=str(lines[1].dxf.handle).lower()).shapes
+    assert shape.source == f"LINE {lines[1].dxf.handle}"
+    with pytest.raises(DrawingError, match="no entity with the handle 'NONE'"):
+        read_drawing(tmp_path / "d.dxf", element="none")
+
+
 def test_colours_are_those_of_another_reader() -> None:
     """Names and notations, against svgelements."""
     for text in ("red", "rebeccapurple", "#abc", "#a1b2c3", "rgb(1, 2, 3)", "rgb(10%,20%,100%)", "seagreen"):

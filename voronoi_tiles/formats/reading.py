@@ -17,10 +17,11 @@ from voronoi_tiles.formats.shapes import BYTES_MAX, DrawingError, ReadDrawing, S
 __all__ = ["DrawingError", "ReadDrawing", "Shape", "read_drawing"]
 
 
-def read_drawing(path: str | os.PathLike[str]) -> ReadDrawing:
+def read_drawing(path: str | os.PathLike[str], *, element: str | None = None) -> ReadDrawing:
     """Read an SVG or DXF file, by its content where that is clear and else by its suffix; `-` is standard input.
 
-    Raises DrawingError for what cannot be read.
+    With `element` only what has that id and what stands in it (SVG), or the entity with that handle (DXF), is drawn.
+    Raises DrawingError for what cannot be read, and for an element that the file has not.
     """
     name = os.fspath(path)
     shown = "standard input" if name == "-" else name or repr(name)
@@ -37,9 +38,9 @@ def read_drawing(path: str | os.PathLike[str]) -> ReadDrawing:
     if is_xml or suffix in {".svg", ".svgz"}:
         from voronoi_tiles.formats.svg.reader import svg_drawing
 
-        return replace(svg_drawing(data, shown), job=job_of(data))
+        return replace(svg_drawing(data, shown, element), job=job_of(data))
     if suffix == ".dxf" or head.startswith((b"0", b"999", b"AutoCAD Binary DXF")):
         from voronoi_tiles.formats.dxf.reader import dxf_drawing
 
-        return replace(dxf_drawing(data, shown), job=job_of(data))
+        return replace(dxf_drawing(data, shown, element), job=job_of(data))
     raise DrawingError("neither an SVG nor a DXF file", file=shown, remedy="Give it the suffix .svg or .dxf if it is.")

@@ -72,8 +72,8 @@ class ReadDrawing:
     `format` is "svg" or "dxf". `width` and `height` of the page are in millimetres, None where the file has no page.
     `unit` is the unit as the file declares it, "" where it declares none; with `unit_known` false the size is a guess:
     by CSS 96 user units to the inch (SVG), or millimetres (DXF). `ignored` counts what was left out, by the name of its
-    element; `clones` counts what was drawn through references (use, INSERT). `job` is what a file of our own says of
-    its job, empty for all others.
+    element; `clones` counts what was drawn through references (use, INSERT). `remarks` are sentences on what had to be
+    mended or guessed to read the file. `job` is what a file of our own says of its job, empty for all others.
     """
 
     format: str
@@ -84,6 +84,7 @@ class ReadDrawing:
     shapes: tuple[Shape, ...]
     ignored: Mapping[str, int] = field(default_factory=dict)
     clones: int = 0
+    remarks: tuple[str, ...] = ()
     job: Mapping[str, Any] = field(default_factory=dict)
 
     def __repr__(self) -> str:

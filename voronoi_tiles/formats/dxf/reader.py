@@ -44,9 +44,10 @@ _UNITS: Final = (
 _BY_BLOCK, _BY_LAYER, _FOREGROUND = 0, 256, 7
 
 
-def dxf_drawing(data: bytes, file: str) -> ReadDrawing:
+def dxf_drawing(data: bytes, file: str, element: str | None = None) -> ReadDrawing:
     """Read the content of a DXF file; `file` is its name for messages.
 
+    With `element` only the entity of the model space that has that handle is drawn and counted.
     The coordinates stay where they are, in millimetres by $INSUNITS. Curves keep their kind: arcs are arcs, splines
     without weights of up to the third degree are exact, ellipses and other splines become cubics within CURVE_ACCURACY.
     Raises DrawingError for what is broken, hostile or beyond the limits.
@@ -63,7 +64,7 @@ def dxf_drawing(data: bytes, file: str) -> ReadDrawing:
         raise DrawingError(f"more than {ELEMENTS_MAX:,} entities", file=file, remedy="Split the drawing.")
     try:
         document = _load(data)
-        return _DxfWalk(document).drawing()
+        return _DxfWalk(document, element).drawing()
     except DrawingError as error:
         raise error.with_file(file) from None
     except Exception as error:  # ezdxf raises what its parts raise, whatever that is
@@ -119,8 +120,9 @@ class _DxfVisit(NamedTuple):
 class _DxfWalk:
     """Draws the model space, with its own stack: blocks in blocks are no depth of calls."""
 
-    def __init__(self, document: Drawing) -> None:
+    def __init__(self, document: Drawing, element: str | None) -> None:
         self._document = document
+        self._element = None if element is None else element.upper()
         self._pen = Pen()
         self._ignored: Counter[str] = Counter()
         self._looks: list[tuple[str, str, float | None, str]] = []
@@ -167,7 +169,13 @@ class _DxfWalk:
 
     def _entities(self) -> Iterator[_DxfVisit]:
         """Every visible entity, blocks replaced by what they hold."""
-        space = self._document.modelspace()
+        space = list(self._document.modelspace())
+        if self._element is not None:
+            space = [top for top in space if str(top.dxf.handle).upper() == self._element]
+            if not space:
+                raise DrawingError(
+                    f"has no entity with the handle {self._element[:80]!r}", remedy="Choose by its layer, or draw all."
+                )
         for top in space:
             stack = [_DxfVisit(top, "0", _FOREGROUND, (), "")]
             while stack:

@@ -41,9 +41,10 @@ _EFFECTS: Final = (
 )
 
 
-def svg_drawing(data: bytes, file: str) -> ReadDrawing:
+def svg_drawing(data: bytes, file: str, element: str | None = None) -> ReadDrawing:
     """Read the content of an SVG file, plain or compressed; `file` is its name for messages.
 
+    With `element` only what has that id, or stands in a group that has it, is drawn and counted.
     Curves keep their kind; arcs of ellipses, and of circles under a transform that makes ellipses of them, become
     cubics within CURVE_ACCURACY. Raises DrawingError for what is broken, hostile or beyond the limits.
     """
@@ -55,7 +56,7 @@ def svg_drawing(data: bytes, file: str) -> ReadDrawing:
         page = read_page(root.attributes)
     except DrawingError as error:
         raise _at(error, root, file) from None
-    return _SvgWalk(root, page, file).drawing()
+    return _SvgWalk(root, page, file, element).drawing()
 
 
 def _tag(node: Node) -> str:
@@ -85,6 +86,7 @@ class _SvgVisit(NamedTuple):
     layer: str
     depth: int
     users: frozenset[int]  # the clones around it, by their targets: a clone of one of them is a circle
+    chosen: bool  # whether it is the element that is asked for, or stands in it
     symbol_size: tuple[str | None, str | None] | None = None
 
 
@@ -100,8 +102,9 @@ def _transformed(visit: _SvgVisit) -> Affine:
 class _SvgWalk:
     """Draws a tree, with its own stack: the depth of a file is no depth of calls."""
 
-    def __init__(self, root: Node, page: Page, file: str) -> None:
+    def __init__(self, root: Node, page: Page, file: str, element: str | None) -> None:
         self._root = root
+        self._element = element
         self._page = page
         self._file = file
         self._pen = Pen()
@@ -118,7 +121,12 @@ class _SvgWalk:
         page = self._page
         # y is turned about the page's height; a file without one keeps the origin where it is.
         to_page = Affine(0j, 1 + 0j, complex(0.0, page.height or 0.0)) @ page.to_page
-        self._push_children(_SvgVisit(self._root, to_page, self._style(self._root, Style()), "", 0, frozenset()))
+        if self._element is not None and self._element not in self._targets:
+            raise self._no_element(self._element)
+        chosen = self._element in {None, self._root.attributes.get("id")}
+        self._push_children(
+            _SvgVisit(self._root, to_page, self._style(self._root, Style()), "", 0, frozenset(), chosen)
+        )
         visits = 0
         while self._stack:
             visit = self._stack.pop()
@@ -143,7 +151,7 @@ class _SvgWalk:
             unit=page.unit,
             unit_known=page.unit_known,
             shapes=self._shapes(),
-            ignored=dict(sorted(self._ignored.items())),
+            ignored=dict(sorted((+self._ignored).items())),
             clones=self._clones,
         )
 
@@ -164,6 +172,16 @@ class _SvgWalk:
                 raise _at(error.under("stroke-width"), node, self._file) from None
             shapes.append(Shape(paths, visit.layer, style.stroke, style.fill, width, _source(node, _tag(node))))
         return tuple(shapes)
+
+    def _leave_out(self, visit: _SvgVisit, what: str) -> None:
+        """Count what is not read."""
+        self._ignored[what] += visit.chosen
+
+    def _no_element(self, name: str) -> DrawingError:
+        """The error for an id that the file has not."""
+        there = ", ".join(repr(known[:40]) for known in list(self._targets)[:8])
+        remedy = f"Its first ones are {there}." if there else "It has none at all: leave the id out."
+        return DrawingError(f"has no element with the id {name[:80]!r}", file=self._file, remedy=remedy)
 
     def _index(self) -> None:
         """Find the targets of clones and the style sheets."""
@@ -192,6 +210,8 @@ class _SvgWalk:
             raise DrawingError(f"clones and groups nested more than {DEPTH_MAX:,} deep", remedy="Ungroup the drawing.")
         node = visit.node
         tag = _tag(node)
+        if not visit.chosen and node.attributes.get("id") == self._element:
+            visit = visit._replace(chosen=True)
         if tag == "symbol" and visit.symbol_size is not None:
             self._symbol(visit)
             return
@@ -201,11 +221,11 @@ class _SvgWalk:
         if said.get("display") == "none":
             return
         if tag not in DRAWN and tag not in _GROUPS and tag != "use":
-            self._ignored["nested svg" if tag == "svg" else tag[:40]] += 1
+            self._leave_out(visit, "nested svg" if tag == "svg" else tag[:40])
             return
         for effect in _EFFECTS:
             if node.attributes.get(effect, "none") != "none":
-                self._ignored[effect] += 1
+                self._leave_out(visit, effect)
         visit = visit._replace(to_page=_transformed(visit), style=inherited(visit.style, said))
         if tag in DRAWN:
             self._draw(visit, tag)
@@ -218,7 +238,7 @@ class _SvgWalk:
 
     def _draw(self, visit: _SvgVisit, tag: str) -> None:
         """Draw a shape; one that nobody sees, or that a transform flattens to nothing, is left out."""
-        if not visit.style.visible or (visit.style.stroke is None and visit.style.fill is None):
+        if not visit.chosen or not visit.style.visible or (visit.style.stroke is None and visit.style.fill is None):
             return
         if visit.to_page.scale == 0.0:
             return
@@ -231,17 +251,17 @@ class _SvgWalk:
         attributes = visit.node.attributes
         target = attributes.get("href", attributes.get(f"{XLINK}href", "")).strip()
         if not target.startswith("#"):
-            self._ignored["use of another file" if target else "use of nothing"] += 1
+            self._leave_out(visit, "use of another file" if target else "use of nothing")
             return
         node = self._targets.get(target[1:])
         if node is None:
-            self._ignored["use of nothing"] += 1
+            self._leave_out(visit, "use of nothing")
             return
         if id(node) in visit.users:
             raise DrawingError(f"the clone {target[:60]!r} contains itself", remedy="Remove it.")
         across, down = self._page.view
         shift = complex(length(attributes.get("x", "0"), across), length(attributes.get("y", "0"), down))
-        self._clones += 1
+        self._clones += visit.chosen
         self._stack.append(
             visit._replace(
                 node=node,
