@@ -371,7 +371,7 @@ def drawn(data: str, to_page: Affine = Affine(1 + 0j, 0j, 0j)) -> Paths:  # noqa
     pen = Pen()
     pen.begin(to_page)
     draw_path(pen, data)
-    return pen.shapes()[0]
+    return pen.shapes()[0][0]
 
 
 def test_paths_of_a_drawing() -> None:

@@ -135,6 +135,7 @@ def read_art(art: Art, folder: str, site: int, unit_mm: float, *, fills: bool) -
     Shapes on layers with "score" in their names are scored, all others engraved. With `fills` the target engraves what
     is filled: then closed shapes with a fill are, and all lines are scored.
     """
+    from voronoi_tiles.formats.caveats import caveats
     from voronoi_tiles.formats.reading import read_drawing
 
     try:
@@ -157,9 +158,7 @@ def read_art(art: Art, folder: str, site: int, unit_mm: float, *, fills: bool) -
             lines[work].append(shape.paths)
     items = offsets_of([len(paths) for paths in filled])
     engraved, scored = Paths.concatenate(lines["engrave"]), Paths.concatenate(lines["score"])
-    what = ", ".join(f"{name} ({count:,})" for name, count in sorted(drawing.ignored.items()))
-    notes = (f"{art.file}: left out what is no path: {what}; convert texts to paths",) if what else ()
-    works = Works(engraved, scored, Paths.concatenate(filled), items, notes)
+    works = Works(engraved, scored, Paths.concatenate(filled), items, caveats(drawing, art.file))
     return works.moved(art.placement.scale * unit_at(art.placement.rotate) / unit_mm, art.placement.translate)
 
 

@@ -143,7 +143,7 @@ class PathPen:
 
 
 class Pen(PathPen):
-    """Draws shapes on a page: `begin` with the map of its coordinates, then its paths; `shapes` gives them all.
+    """Draws shapes on a page: `begin` with the map of its coordinates, then its paths; `shapes` are them all.
 
     Raises DrawingError also when numbers are beyond COORDINATE_MAX on the page.
     """
@@ -180,15 +180,19 @@ class Pen(PathPen):
             middle, last = (arc.half * (n - count) / count for n in (2 * k + 1, 2 * k + 2))
             self.curve(ARC, arc.point(middle), arc.end if k == count - 1 else arc.point(last))
 
-    def shapes(self) -> list[Paths]:
-        """The paths of every shape that was begun, on the page; a shape without curves has none."""
+    def shapes(self) -> list[tuple[Paths, Complexes]]:
+        """What was drawn of every shape that was begun, on the page: its paths, and the places of those of no length.
+
+        A path that is only moved to is none. Raises DrawingError also for more than SEGMENTS_MAX places.
+        """
         if not self._maps:
             return []
         curves = self.curves()
         paths = len(curves.closed)
         # Whatever was drawn before the first shape has no curves.
         shape = np.searchsorted(self._path_numbers()[self._shapes], np.arange(paths), side="right") - 1
-        maps = np.array(self._maps, np.complex128)[shape]
+        all_maps = np.array(self._maps, np.complex128)
+        maps = all_maps[shape]
         curves = _without_closing(curves, np.abs(maps[:, 0]) + np.abs(maps[:, 1]))
         image = _mapped(np.stack((curves.start, curves.end, *curves.control)), maps[curves.path])
         image[2, curves.kind == LINE] = image[3, curves.kind != CUBIC] = 0.0
@@ -204,7 +208,25 @@ class Pen(PathPen):
             closed=curves.closed[drawn],
         )
         bounds = offsets_of(np.bincount(shape[drawn], minlength=len(self._maps)))
-        return [everything.part(low, high) for low, high in pairwise(bounds.tolist())]
+        path, at = self._without_length(drawn)
+        places = _mapped(at[None], maps[path])[0]
+        ends = offsets_of(np.bincount(shape[path], minlength=len(self._maps)))
+        return [
+            (everything.part(low, high), places[first:last])
+            for (low, high), (first, last) in zip(pairwise(bounds.tolist()), pairwise(ends.tolist()), strict=True)
+        ]
+
+    def _without_length(self, has_length: Bools) -> tuple[Ints, Complexes]:
+        """The paths that were moved to and drawn, but have no length, and where they are."""
+        kind = np.frombuffer(self._kinds, np.uint8)
+        path = self._path_numbers()
+        moves = np.flatnonzero(kind == MOVE)
+        drawn = np.bincount(path[kind != MOVE], minlength=len(has_length)) > 0
+        moves = moves[(drawn & ~has_length)[path[moves]]]
+        if len(moves) > SEGMENTS_MAX:
+            raise DrawingError(f"more than {SEGMENTS_MAX:,} lines of no length", remedy="Remove them.")
+        points = np.frombuffer(self._numbers).view(np.complex128)
+        return path[moves], points[np.cumsum(POINTS[kind])[moves] - 1]
 
 
 def _without_closing(curves: DrawnCurves, growth: Floats) -> DrawnCurves:

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
+from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.paths.paths import Paths
 
@@ -65,15 +66,28 @@ class Shape:
         return f"<Shape {self.source!r}: {len(self.paths)} paths on layer {self.layer!r}>"
 
 
+class Dots(NamedTuple):
+    """Lines of no length, and shapes of no size, of one object: `places` are complex128 (n,), the rest is as in Shape.
+
+    Some machines burn a point there, others do nothing.
+    """
+
+    places: Complexes
+    layer: str
+    stroke: str | None
+    source: str
+
+
 @dataclass(frozen=True, eq=False)
 class ReadDrawing:
     """What a file draws.
 
     `format` is "svg" or "dxf". `width` and `height` of the page are in millimetres, None where the file has no page.
     `unit` is the unit as the file declares it, "" where it declares none; with `unit_known` false the size is a guess:
-    by CSS 96 user units to the inch (SVG), or millimetres (DXF). `ignored` counts what was left out, by the name of its
-    element; `clones` counts what was drawn through references (use, INSERT). `remarks` are sentences on what had to be
-    mended or guessed to read the file. `job` is what a file of our own says of its job, empty for all others.
+    by CSS 96 user units to the inch (SVG), or as `unit_guess` says (DXF). `dots` have no size, and are in no shape.
+    `ignored` counts what was left out, by the name of its element; `clones` counts what was drawn through references
+    (use, INSERT). `remarks` are sentences on what had to be mended or guessed to read the file. `job` is what a file of
+    our own says of its job, empty for all others.
     """
 
     format: str
@@ -85,6 +99,8 @@ class ReadDrawing:
     ignored: Mapping[str, int] = field(default_factory=dict)
     clones: int = 0
     remarks: tuple[str, ...] = ()
+    dots: tuple[Dots, ...] = ()
+    unit_guess: str = ""
     job: Mapping[str, Any] = field(default_factory=dict)
 
     def __repr__(self) -> str:

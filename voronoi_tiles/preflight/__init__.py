@@ -18,6 +18,7 @@ from voronoi_tiles.formats.recipe import tab_width
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.preflight.annotated import marked_svg
 from voronoi_tiles.preflight.cut_lines import cut_shapes, layer_uses, subject_of
+from voronoi_tiles.preflight.dot_findings import dot_findings
 from voronoi_tiles.preflight.file_findings import page_findings
 from voronoi_tiles.preflight.findings import DEFAULT_LIMITS, Finding, LayerUse, Limits, PreflightReport, report_text
 from voronoi_tiles.preflight.line_findings import line_findings
@@ -70,6 +71,7 @@ def judge(
     bounds = drawn.bounds if len(drawn.start) else None
     findings = list(page_findings(drawing, bounds, uses))
     subject = subject_of(drawing, cut, limits)
+    findings += dot_findings(drawing, layers, subject.place)
     pieces = len(subject.paths.start)
     if pieces:
         findings += line_findings(subject, limits)

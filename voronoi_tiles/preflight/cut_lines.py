@@ -60,10 +60,20 @@ def cut_shapes(drawing: ReadDrawing, layers: Collection[str]) -> list[bool]:
         if name not in known:
             listed = ", ".join(sorted(repr(each) for each in known if each)[:20]) or "none"
             raise DrawingError(f"no layer or colour {name!r}", remedy=f"The file has {listed}.")
+    stroked = any_stroke(drawing)
+    return [is_cut(shape.layer, shape.stroke, layers, stroked) for shape in shapes]
+
+
+def any_stroke(drawing: ReadDrawing) -> bool:
+    """Whether a shape of the drawing has a stroke."""
+    return any(shape.stroke is not None for shape in drawing.shapes)
+
+
+def is_cut(layer: str, stroke: str | None, layers: Collection[str], stroked: bool) -> bool:
+    """Whether what has this layer and stroke is cut, see `cut_shapes`; `stroked` is what `any_stroke` says."""
     if layers:
-        return [shape.layer in layers or shape.stroke in layers for shape in shapes]
-    any_stroke = any(shape.stroke is not None for shape in shapes)
-    return [(shape.stroke is not None or not any_stroke) and not NOT_CUT.search(shape.layer) for shape in shapes]
+        return layer in layers or stroke in layers
+    return (stroke is not None or not stroked) and not NOT_CUT.search(layer)
 
 
 def subject_of(drawing: ReadDrawing, cut: Sequence[bool], limits: Limits) -> CutLines:

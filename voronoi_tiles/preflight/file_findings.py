@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
+from voronoi_tiles.formats.caveats import unit_caveat
 from voronoi_tiles.formats.reading import ReadDrawing
 from voronoi_tiles.preflight.findings import Finding, LayerUse
 
@@ -23,6 +24,7 @@ def page_findings(
 ) -> Iterator[Finding]:
     """What is wrong with size, unit and content; `extents` are those of all that is drawn, y up."""
     yield from _unit(drawing)
+    yield from _remarks(drawing)
     if extents is None:
         yield Finding(
             "empty",
@@ -50,15 +52,19 @@ def page_findings(
 
 
 def _unit(drawing: ReadDrawing) -> Iterator[Finding]:
-    if drawing.unit_known:
+    message = unit_caveat(drawing)
+    if not message:
         return
     if drawing.format == "dxf":
-        message, remedy = "the file declares no unit; millimetres were taken", "Set $INSUNITS to 4 (millimetres)."
+        remedy = "Set $INSUNITS, 4 for millimetres or 1 for inches: the unit for inserted content, in CAD programs."
     else:
-        size = "the page has no size" if drawing.width is None else "the page's size has no unit"
-        message = f"{size}; 96 user units to the inch were taken, as CSS says, and other programs take 72 or 90"
         remedy = 'Write the size with its unit and a viewBox: width="300mm" height="200mm" viewBox="0 0 300 200".'
     yield Finding("unit", "warning", message, remedy)
+
+
+def _remarks(drawing: ReadDrawing) -> Iterator[Finding]:
+    for remark in drawing.remarks:
+        yield Finding("reading", "warning", remark, "Compare what was read with what was drawn, or save the file anew.")
 
 
 def _size(drawing: ReadDrawing, extents: tuple[float, float, float, float]) -> Iterator[Finding]:

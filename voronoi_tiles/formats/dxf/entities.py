@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -11,7 +12,7 @@ from ezdxf.math import Vec2, Vec3
 
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.maps import Affine
-from voronoi_tiles.formats.dxf.splines import bezier_spans, fitted_cubics
+from voronoi_tiles.formats.dxf.splines import bezier_spans, fitted_cubics, smooth_runs
 from voronoi_tiles.formats.pen import Pen
 from voronoi_tiles.formats.shapes import CURVE_ACCURACY, DrawingError
 from voronoi_tiles.paths.ellipses import EllipticalArc
@@ -22,15 +23,16 @@ _UPRIGHT: Final = 1e-9  # how far an axis may lean; relative. Programs write axe
 _DEGREE_MAX: Final = 25
 
 
-class Tilted(Exception):  # noqa: N818 - it is no error, but a reason to leave something out
-    """An entity that does not lie in the plane of the drawing."""
+class NotDrawn(Exception):  # noqa: N818 - it is no error, but a reason to leave something out
+    """An entity that is left out; the words go on from its name: "tilted in space"."""
 
 
-def draw_entity(pen: Pen, entity: Any, to_page: Affine) -> None:
+def draw_entity(pen: Pen, entity: Any, to_page: Affine) -> Sequence[str]:
     """Draw a LINE, ARC, CIRCLE, ELLIPSE, LWPOLYLINE, POLYLINE or SPLINE.
 
-    `to_page` is the map with which the pen has begun the shape. Raises Tilted for what stands in space, DrawingError
-    for what is broken.
+    What has no size becomes a line of no length. `to_page` is the map with which the pen has begun the shape. The value
+    are sentences on what had to be guessed. Raises NotDrawn for what stands in space and for what says too little to be
+    drawn, DrawingError for what is broken.
     """
     dxf = entity.dxf
     _check_numbers(dxf)
@@ -51,7 +53,8 @@ def draw_entity(pen: Pen, entity: Any, to_page: Affine) -> None:
         case "POLYLINE":
             _draw_polyline(pen, entity, to_page)
         case _:
-            _draw_spline(pen, entity, to_page)
+            return _draw_spline(pen, entity, to_page)
+    return ()
 
 
 def _check_numbers(dxf: Any) -> None:
@@ -69,7 +72,7 @@ def begin_seen(pen: Pen, entity: Any, to_page: Affine) -> None:
     if axis is None:
         return
     if not math.hypot(axis.x, axis.y) <= _UPRIGHT * abs(axis.z):
-        raise Tilted("tilted in space")
+        raise NotDrawn("tilted in space")
     if axis.z < 0:
         pen.cancel()
         pen.begin(to_page @ _MIRRORED)
@@ -79,17 +82,22 @@ def _point(vector: Any) -> complex:
     return complex(vector.x, vector.y)
 
 
-def _radius(value: float) -> float:
-    if not value > 0.0:
-        raise DrawingError(f"its radius must be greater than 0, not {value:g}", remedy="Remove it.")
-    return value
+def _draw_dot(pen: Pen, place: complex) -> None:
+    """A line of no length."""
+    pen.move(place)
+    pen.line(place)
 
 
 def _draw_arc(pen: Pen, entity: Any, to_page: Affine, begin: float, turn: float) -> None:
     """An ARC or a CIRCLE."""
     begin_seen(pen, entity, to_page)
     dxf = entity.dxf
-    _draw_about(pen, _point(dxf.center), Affine(complex(_radius(dxf.radius)), 0j, 0j), begin, turn)
+    if dxf.radius < 0.0:
+        raise NotDrawn("of a negative radius")
+    if dxf.radius == 0.0:
+        _draw_dot(pen, _point(dxf.center))
+    else:
+        _draw_about(pen, _point(dxf.center), Affine(complex(dxf.radius), 0j, 0j), begin, turn)
 
 
 def _draw_about(pen: Pen, centre: complex, to_ellipse: Affine, begin: float, turn: float) -> None:
@@ -108,10 +116,14 @@ def _draw_about(pen: Pen, centre: complex, to_ellipse: Affine, begin: float, tur
 def _draw_ellipse(pen: Pen, dxf: Any) -> None:
     axis = dxf.extrusion
     if not math.hypot(axis.x, axis.y) <= _UPRIGHT * abs(axis.z):
-        raise Tilted("tilted in space")
+        raise NotDrawn("tilted in space")
     major = _point(dxf.major_axis)
-    _radius(abs(major))
-    minor = 1j * major * _radius(abs(dxf.ratio)) * math.copysign(1.0, dxf.ratio) * math.copysign(1.0, axis.z)
+    if major == 0j:
+        _draw_dot(pen, _point(dxf.center))
+        return
+    if dxf.ratio == 0.0:
+        raise NotDrawn("without a width")
+    minor = 1j * major * dxf.ratio * math.copysign(1.0, axis.z)
     to_ellipse = Affine((major - 1j * minor) / 2, (major + 1j * minor) / 2, 0j)
     turn = (dxf.end_param - dxf.start_param) % math.tau or math.tau
     if abs(dxf.end_param - dxf.start_param) >= math.tau - 1e-9:
@@ -121,7 +133,10 @@ def _draw_ellipse(pen: Pen, dxf: Any) -> None:
 
 def _draw_bulges(pen: Pen, vertices: list[tuple[complex, float]], closed: bool) -> None:
     """Lines and arcs through vertices; a vertex's bulge, the tangent of a quarter of the angle, is of what follows."""
-    if len(vertices) < 2:
+    if not vertices:
+        raise NotDrawn("without vertices")
+    if len(vertices) == 1:
+        _draw_dot(pen, vertices[0][0])
         return
     pen.move(vertices[0][0])
     following = [*vertices[1:], *(vertices[:1] if closed else [])]
@@ -137,7 +152,7 @@ def _draw_bulges(pen: Pen, vertices: list[tuple[complex, float]], closed: bool) 
 def _draw_polyline(pen: Pen, entity: Any, to_page: Affine) -> None:
     """A POLYLINE in the plane, or one in space seen from above; meshes are none."""
     if not (entity.is_2d_polyline or entity.is_3d_polyline):
-        raise Tilted("mesh")
+        raise NotDrawn("mesh")
     if entity.is_2d_polyline:
         begin_seen(pen, entity, to_page)
     frame = 16  # the control points of a spline that the other vertices follow
@@ -149,32 +164,46 @@ def _draw_polyline(pen: Pen, entity: Any, to_page: Affine) -> None:
     _draw_bulges(pen, vertices, bool(entity.is_closed))
 
 
-def _draw_spline(pen: Pen, entity: Any, to_page: Affine) -> None:
-    curve = entity.construction_tool()
-    degree = int(curve.degree)
-    points = np.array([_point(point) for point in curve.control_points], np.complex128)
-    knots = np.array(curve.knots(), np.float64)
+def _draw_spline(pen: Pen, entity: Any, to_page: Affine) -> Sequence[str]:
+    """A SPLINE: by its control points, or, where it has none, through its fit points."""
+    by_fit = not entity.control_point_count()
+    if by_fit and entity.fit_point_count() < 2:
+        raise NotDrawn("without points")
+    if by_fit and entity.closed and entity.fit_points[0] != entity.fit_points[-1]:
+        raise NotDrawn("that is closed and has fit points alone")
+    curve = entity.construction_tool() if by_fit else entity
+    degree = int(curve.degree if by_fit else entity.dxf.degree)
+    points = np.array([complex(x, y) for x, y, _ in curve.control_points], np.complex128)
+    # Not the knots of the construction tool, which makes some up where there are none.
+    knots = np.array(curve.knots() if by_fit else entity.knots, np.float64)
+    if not len(knots):
+        raise NotDrawn("without knots")
     if not 1 <= degree <= _DEGREE_MAX or len(points) <= degree or len(knots) != len(points) + degree + 1:
         raise DrawingError("its degree, knots and control points do not fit", remedy="Draw it again.")
     if not (np.isfinite(knots).all() and np.isfinite(points).all() and (np.diff(knots) >= 0.0).all()):
         raise DrawingError("its knots fall, or are no numbers", remedy="Draw it again.")
-    weights = np.array(curve.weights(), np.float64) if curve.is_rational else np.ones(1)
-    if not (weights > 0.0).all():
-        raise DrawingError("its weights must be greater than 0", remedy="Draw it again.")
+    weights = np.ones(1) if by_fit or not len(entity.weights) else np.array(entity.weights, np.float64)
+    if len(weights) not in {1, len(points)} or not (weights > 0.0).all():
+        raise DrawingError("its weights must be greater than 0, one for each control point", remedy="Draw it again.")
+    tolerance = CURVE_ACCURACY / to_page.largest
     if degree <= 3 and np.ptp(weights) == 0.0:
-        _draw_spans(pen, bezier_spans(points, knots, degree))
+        runs = smooth_runs(bezier_spans(points, knots, degree), tolerance)
     else:
         heavy = bezier_spans(weights * points, knots, degree)
         weight = bezier_spans((weights * np.ones(len(points))).astype(np.complex128), knots, degree)
-        _draw_spans(pen, fitted_cubics(heavy, weight, CURVE_ACCURACY / to_page.largest))
-    if abs(pen.here - pen.origin) * to_page.largest <= CURVE_ACCURACY:
-        pen.close()
+        runs = smooth_runs(fitted_cubics(heavy, weight, tolerance), tolerance)
+    for run in runs:
+        _draw_spans(pen, run, tolerance)
+    if by_fit:
+        return ("the curves of splines that have fit points alone are a guess, the usual one",)
+    whole = len(runs) == 1 and abs(pen.here - pen.origin) <= tolerance
+    return () if whole or not entity.closed else ("splines that are said to be closed have ends, and were left open",)
 
 
-def _draw_spans(pen: Pen, spans: Complexes) -> None:
-    """Bezier curves of one degree, one after the other."""
-    if not len(spans):
-        return
+def _draw_spans(pen: Pen, spans: Complexes, tolerance: float) -> None:
+    """Bezier curves of one degree, one after the other, closed where they end at their beginning."""
     pen.move(complex(spans[0, 0]))
     kind = {2: LINE, 3: QUAD, 4: CUBIC}[spans.shape[1]]
     pen.draw(kind, np.ascontiguousarray(spans[:, 1:]).view(np.float64).ravel().tolist())
+    if abs(pen.here - pen.origin) <= tolerance:
+        pen.close()

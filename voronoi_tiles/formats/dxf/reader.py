@@ -6,41 +6,31 @@ as is what lies on hidden layers or stands tilted in space.
 
 from __future__ import annotations
 
-import io
-import logging
 from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
-import numpy as np
-
 from voronoi_tiles.base.maps import Affine
-from voronoi_tiles.base.units import MILLIMETRES
-from voronoi_tiles.formats.dxf.entities import Tilted, draw_entity
+from voronoi_tiles.formats.dxf.drawing_unit import unit_of
+from voronoi_tiles.formats.dxf.entities import NotDrawn, draw_entity
+from voronoi_tiles.formats.dxf.loading import REMEDY, LoadedDxf, load_dxf, reason_of
+from voronoi_tiles.formats.dxf.mending import COUNTED
 from voronoi_tiles.formats.pen import Pen
 from voronoi_tiles.formats.shapes import (
     DEPTH_MAX,
-    DXF_BYTES_MAX,
     DXF_COPIES_MAX,
     DXF_INSERTS_MAX,
-    ELEMENTS_MAX,
+    Dots,
     DrawingError,
     ReadDrawing,
     Shape,
 )
 
 if TYPE_CHECKING:
-    from ezdxf.document import Drawing
     from ezdxf.entities.dxfgfx import DXFGraphic
     from ezdxf.entities.insert import Insert
 
 _DRAWN: Final = frozenset({"LINE", "ARC", "CIRCLE", "ELLIPSE", "LWPOLYLINE", "POLYLINE", "SPLINE"})
-_REMEDY: Final = "Save it again as DXF (R2000 or newer, text) in the program that made it."
-
-# By $INSUNITS.
-_UNITS: Final = (
-    *("", "in", "ft", "mi", "mm", "cm", "m", "km", "microinch", "mil", "yd", "angstrom", "nm", "um", "dm", "dam", "hm"),
-)
 _BY_BLOCK, _BY_LAYER, _FOREGROUND = 0, 256, 7
 
 
@@ -52,59 +42,12 @@ def dxf_drawing(data: bytes, file: str, element: str | None = None) -> ReadDrawi
     without weights of up to the third degree are exact, ellipses and other splines become cubics within CURVE_ACCURACY.
     Raises DrawingError for what is broken, hostile or beyond the limits.
     """
-    if not data.strip():
-        raise DrawingError("the file is empty", file=file, remedy=_REMEDY)
-    if data.startswith(b"AutoCAD Binary DXF"):
-        raise DrawingError("a binary DXF file", file=file, remedy=_REMEDY)
-    if data.startswith(b"AC10"):
-        raise DrawingError("a DWG file, not DXF", file=file, remedy=_REMEDY)
-    if len(data) > DXF_BYTES_MAX:
-        raise DrawingError(f"larger than {DXF_BYTES_MAX >> 20} MiB", file=file, remedy="Split the drawing.")
-    if _entity_count(data) > ELEMENTS_MAX:
-        raise DrawingError(f"more than {ELEMENTS_MAX:,} entities", file=file, remedy="Split the drawing.")
     try:
-        document = _load(data)
-        return _DxfWalk(document, element).drawing()
+        return _DxfWalk(load_dxf(data), element).drawing()
     except DrawingError as error:
         raise error.with_file(file) from None
     except Exception as error:  # ezdxf raises what its parts raise, whatever that is
-        raise DrawingError(f"broken DXF: {_reason(error)}", file=file, remedy=_REMEDY) from error
-
-
-def _reason(error: Exception) -> str:
-    text = " ".join(str(error).split()).rstrip(".")
-    name = type(error).__name__
-    return text[:200] if text.startswith(name) else f"{name}{': ' if text else ''}{text[:200]}"
-
-
-def _entity_count(data: bytes) -> int:
-    """How many entities, and table entries, the text of a DXF file has: they are the values of group code 0.
-
-    Counted before they are parsed, which takes thousands of times as long. Codes and values take turns, a line each.
-    """
-    text = np.frombuffer(data, np.uint8)
-    begins = np.append(0, np.flatnonzero(text[:-1] == ord("\n")) + 1)
-    # A code is 0 however it is written: " 0", "00".
-    zero = np.logical_or.reduceat(text == ord("0"), begins)[::2]
-    more = np.logical_or.reduceat((text >= ord("1")) & (text <= ord("9")), begins)[::2]
-    return int(np.count_nonzero(zero & ~more))
-
-
-def _load(data: bytes) -> Drawing:
-    """The document of a DXF file."""
-    from ezdxf.filemanagement import dxf_stream_info, read
-
-    # Without a handler of its own, ezdxf's warnings would go to standard error.
-    log = logging.getLogger("ezdxf")
-    if not log.handlers:
-        log.addHandler(logging.NullHandler())
-    if b"\x00" in data[:4096]:
-        raise DrawingError("not a DXF file: it holds binary data", remedy=_REMEDY)
-    text = data.decode("latin-1")
-    encoding = dxf_stream_info(io.StringIO(text)).encoding
-    if encoding not in {"latin-1", "cp1252", "ascii"}:
-        text = data.decode(encoding, errors="surrogateescape")
-    return read(io.StringIO(text.replace("\r\n", "\n")))
+        raise DrawingError(f"broken DXF: {reason_of(error)}", file=file, remedy=REMEDY) from error
 
 
 class _DxfVisit(NamedTuple):
@@ -120,52 +63,64 @@ class _DxfVisit(NamedTuple):
 class _DxfWalk:
     """Draws the model space, with its own stack: blocks in blocks are no depth of calls."""
 
-    def __init__(self, document: Drawing, element: str | None) -> None:
-        self._document = document
+    def __init__(self, loaded: LoadedDxf, element: str | None) -> None:
+        self._document = loaded.document
+        self._unit = unit_of(loaded.stated)
+        self._remarks = list(loaded.remarks)
         self._element = None if element is None else element.upper()
         self._pen = Pen()
         self._ignored: Counter[str] = Counter()
         self._looks: list[tuple[str, str, float | None, str]] = []
         self._clones = 0
         self._copies = 0
-        units = int(document.header.get("$INSUNITS", 0))
-        self._unit = _UNITS[units] if 0 < units < len(_UNITS) else ""
 
     def drawing(self) -> ReadDrawing:
         """All that is drawn."""
-        to_page = Affine(complex(MILLIMETRES[self._unit or "mm"]), 0j, 0j)
+        to_page = Affine(complex(self._unit.millimetres), 0j, 0j)
         for visit in self._entities():
             entity = visit.entity
             kind = entity.dxftype()
             source = visit.source or f"{kind} {entity.dxf.handle}"
             if kind not in _DRAWN:
-                self._ignored[str(kind)[:40]] += 1
+                self._count(entity)
                 continue
             self._pen.begin(to_page)
             try:
-                draw_entity(self._pen, entity, to_page)
-            except Tilted as tilted:
-                self._ignored[f"{kind} {tilted}"] += 1
+                self._remarks += draw_entity(self._pen, entity, to_page)
+            except NotDrawn as reason:
+                self._ignored[f"{kind} {reason}"] += 1
             except DrawingError as error:
                 raise error.under(source) from None
             except Exception as error:
-                raise DrawingError(f"broken: {_reason(error)}", key=source, remedy=_REMEDY) from error
+                raise DrawingError(f"broken: {reason_of(error)}", key=source, remedy=REMEDY) from error
             self._looks.append((self._layer(visit), self._colour(visit), self._width(entity), source))
-        shapes = tuple(
-            Shape(paths, layer, colour, None, width, source)
-            for (layer, colour, width, source), paths in zip(self._looks, self._pen.shapes(), strict=True)
-            if len(paths)
-        )
+        shapes, dots = [], []
+        for (layer, colour, width, source), (paths, places) in zip(self._looks, self._pen.shapes(), strict=True):
+            if len(places):
+                dots.append(Dots(places, layer, colour, source))
+            if len(paths):
+                shapes.append(Shape(paths, layer, colour, None, width, source))
+        self._say_paper_space(not shapes)
         return ReadDrawing(
             format="dxf",
             width=None,
             height=None,
-            unit=self._unit,
-            unit_known=bool(self._unit),
-            shapes=shapes,
+            unit=self._unit.name,
+            unit_known=bool(self._unit.name),
+            shapes=tuple(shapes),
             ignored=dict(sorted(self._ignored.items())),
             clones=self._clones,
+            remarks=tuple(dict.fromkeys(self._remarks)),
+            dots=tuple(dots),
+            unit_guess=self._unit.guess,
         )
+
+    def _say_paper_space(self, empty: bool) -> None:
+        """Say what lies on pages for plotting, where the model space is empty."""
+        layouts = [layout for layout in self._document.layouts if layout.is_any_paperspace]
+        count = sum(entity.dxftype() in _DRAWN for layout in layouts for entity in layout)
+        if count and empty and self._element is None:
+            self._remarks.append(f"{count:,} objects lie in paper space, which is not read, and none in model space")
 
     def _entities(self) -> Iterator[_DxfVisit]:
         """Every visible entity, blocks replaced by what they hold."""
@@ -221,11 +176,15 @@ class _DxfWalk:
         ]
 
     def _skip(self, entity: DXFGraphic, _reason: str) -> None:
-        self._ignored[str(entity.dxftype())[:40]] += 1
+        self._count(entity)
+
+    def _count(self, entity: Any) -> None:
+        """Count what is not read, by its name."""
+        self._ignored[str(entity.dxftype()).removesuffix(COUNTED)[:40]] += 1
 
     def _layer(self, visit: _DxfVisit) -> str:
         """The layer of an entity."""
-        name = str(visit.entity.dxf.get("layer", "0"))
+        name = str(_said(visit.entity, "layer", "0"))
         return visit.layer if name == "0" and visit.blocks else name
 
     def _table_entry(self, visit: _DxfVisit) -> Any:
@@ -235,7 +194,7 @@ class _DxfWalk:
 
     def _is_hidden(self, visit: _DxfVisit) -> bool:
         entry = self._table_entry(visit)
-        return bool(visit.entity.dxf.get("invisible", 0)) or (
+        return bool(_said(visit.entity, "invisible", 0)) or (
             entry is not None and (entry.is_off() or entry.is_frozen())
         )
 
@@ -271,3 +230,9 @@ class _DxfWalk:
         """The width of the line; millimetres."""
         weight = int(entity.dxf.get("lineweight", -1))
         return weight / 100 if weight >= 0 else None
+
+
+def _said(entity: Any, name: str, default: Any) -> Any:
+    """What an entity says of a common property, also one that is only counted."""
+    properties = entity.graphic_properties() if entity.dxftype().endswith(COUNTED) else entity.dxf
+    return properties.get(name, default)

@@ -31,9 +31,16 @@ def bezier_spans(points: Complexes, knots: Floats, degree: int) -> Complexes:
             share = (at - left) / (right - left)
             d = (1 - share) * d[:, :-1] + share * d[:, 1:]
         result[:, j] = d[:, 0]
-    # Neighbouring spans share their point, bit for bit.
-    result[1:, 0] = result[:-1, -1]
+    # Neighbouring spans share their point, bit for bit, but where a knot is there more than `degree` times: a break.
+    joined = np.flatnonzero(np.diff(spans) <= degree)
+    result[joined + 1, 0] = result[joined, -1]
     return result
+
+
+def smooth_runs(spans: Complexes, tolerance: float) -> list[Complexes]:
+    """Bezier curves (n, k) parted where the next one begins further than `tolerance` from the end of the last."""
+    breaks = np.flatnonzero(np.abs(spans[1:, 0] - spans[:-1, -1]) > tolerance) + 1
+    return np.split(spans, breaks) if len(spans) else []
 
 
 def fitted_cubics(points: Complexes, weights: Complexes, accuracy: float) -> Complexes:

@@ -94,10 +94,16 @@ def _draw_points(pen: Pen, text: str, closed: bool) -> None:
     if not points:
         return
     pen.move(points[0])
-    for point in points[1:]:
+    for point in points[1:] or points:
         pen.line(point)
     if closed:
         pen.close()
+
+
+def _draw_dot(pen: Pen, place: complex) -> None:
+    """A line of no length, for what has no size: browsers do not draw it, but cutters may."""
+    pen.move(place)
+    pen.line(place)
 
 
 def _draw_rect(pen: Pen, sizes: _Sizes) -> None:
@@ -105,6 +111,7 @@ def _draw_rect(pen: Pen, sizes: _Sizes) -> None:
     x, y = sizes.across("x"), sizes.down("y")
     across, down = sizes.size("width", sizes.view[0]), sizes.size("height", sizes.view[1])
     if across == 0.0 or down == 0.0:
+        _draw_dot(pen, complex(x, y))
         return
     rx, ry = sizes.radii()
     rx, ry = min(rx, across / 2), min(ry, down / 2)
@@ -137,6 +144,7 @@ def _draw_corner(pen: Pen, round_: Affine, begin: float, end: complex) -> None:
 def _draw_ellipse(pen: Pen, centre: complex, rx: float, ry: float) -> None:
     """A circle or an ellipse."""
     if rx == 0.0 or ry == 0.0:
+        _draw_dot(pen, centre)
         return
     round_ = Affine(complex((rx + ry) / 2), complex((rx - ry) / 2), 0j)
     start = centre + rx

@@ -11,7 +11,7 @@ from typing import Final, NamedTuple
 
 from voronoi_tiles.base.maps import Affine
 from voronoi_tiles.formats.pen import Pen
-from voronoi_tiles.formats.shapes import DEPTH_MAX, VISITS_MAX, DrawingError, ReadDrawing, Shape
+from voronoi_tiles.formats.shapes import DEPTH_MAX, VISITS_MAX, Dots, DrawingError, ReadDrawing, Shape
 from voronoi_tiles.formats.svg.basic_shapes import DRAWN, draw_shape
 from voronoi_tiles.formats.svg.style import Style, StyleSheet, inherited, properties
 from voronoi_tiles.formats.svg.transforms import parse_transform
@@ -144,34 +144,38 @@ class _SvgWalk:
                 raise _at(error, visit.node, self._file) from None
         if self._sheet.unread:
             self._ignored["style rule"] += self._sheet.unread
+        shapes, dots = self._shapes()
         return ReadDrawing(
             format="svg",
             width=page.width,
             height=page.height,
             unit=page.unit,
             unit_known=page.unit_known,
-            shapes=self._shapes(),
+            shapes=shapes,
             ignored=dict(sorted((+self._ignored).items())),
             clones=self._clones,
+            dots=dots,
         )
 
-    def _shapes(self) -> tuple[Shape, ...]:
-        """The shapes that were drawn."""
+    def _shapes(self) -> tuple[tuple[Shape, ...], tuple[Dots, ...]]:
+        """The shapes that were drawn, and what has no size."""
         try:
             drawn = self._pen.shapes()
         except DrawingError as error:
             raise error.with_file(self._file) from None
-        shapes = []
-        for visit, paths in zip(self._drawn, drawn, strict=True):
+        shapes, dots = [], []
+        for visit, (paths, places) in zip(self._drawn, drawn, strict=True):
+            node, style = visit.node, visit.style
+            if len(places):
+                dots.append(Dots(places, visit.layer, style.stroke, _source(node, _tag(node))))
             if not len(paths):
                 continue
-            node, style = visit.node, visit.style
             try:
                 width = abs(length(style.width, self._page.view[0])) * visit.to_page.scale
             except DrawingError as error:
                 raise _at(error.under("stroke-width"), node, self._file) from None
             shapes.append(Shape(paths, visit.layer, style.stroke, style.fill, width, _source(node, _tag(node))))
-        return tuple(shapes)
+        return tuple(shapes), tuple(dots)
 
     def _leave_out(self, visit: _SvgVisit, what: str) -> None:
         """Count what is not read."""
