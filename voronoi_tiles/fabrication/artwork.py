@@ -19,6 +19,7 @@ from voronoi_tiles.fabrication.contours import clipped_pieces
 from voronoi_tiles.fabrication.job import SHEET_MAX
 from voronoi_tiles.fabrication.layout import PIECES_MAX, Layout
 from voronoi_tiles.fabrication.region import Region
+from voronoi_tiles.formats.caveats import caveats
 from voronoi_tiles.paths.biarcs import to_arcs
 from voronoi_tiles.paths.orientation import oriented, simple
 from voronoi_tiles.paths.paths import Paths
@@ -135,7 +136,6 @@ def read_art(art: Art, folder: str, site: int, unit_mm: float, *, fills: bool) -
     Shapes on layers with "score" in their names are scored, all others engraved. With `fills` the target engraves what
     is filled: then closed shapes with a fill are, and all lines are scored.
     """
-    from voronoi_tiles.formats.caveats import caveats
     from voronoi_tiles.formats.reading import read_drawing
 
     try:

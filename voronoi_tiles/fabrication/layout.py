@@ -49,12 +49,16 @@ PIECES_MAX: Final = 4_000_000
 
 @dataclass(frozen=True, eq=False)
 class Sheet:
-    """The page and what of it is filled: `region` is None where one of each tile is made, and the page fits them."""
+    """The page and what of it is filled: `region` is None where one of each tile is made, and the page fits them.
+
+    `notes` say in sentences what is to be known of the drawing it was read from.
+    """
 
     width: float
     height: float
     region: Region | None
     centre: complex
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)

@@ -51,8 +51,8 @@ _SHEET_COLOUR: Final = "#c8c8c8"
 class Product:
     """What a job makes of a tiling, for a format of files.
 
-    `notes` say in sentences what was lost to kerf or fillet; `colours` is how many the whole tessellation takes;
-    `files` are those that it was made from, which `save` does not overwrite.
+    `notes` say in sentences what was guessed and left out of drawings, and lost to kerf or fillet; `colours` is how
+    many the whole tessellation takes; `files` are those that it was made from, which `save` does not overwrite.
     """
 
     form: Format
@@ -181,7 +181,13 @@ class _Plan:
         engraving = engrave(layout, contours, layout.sheet, shown, fills=preset.fill_engraving)
         layers = _layers(preset, self.form, job, cuts, engraving, _converter(self.curves, layout.budget))
         drawing = _page(layers, layout.sheet, job, layout.design)
-        said = (*layout.tiles.compensation.losses, *engraving.notes, *_doubled(layout, job), *_untabbed(cuts, job))
+        said = (
+            *layout.sheet.notes,
+            *layout.tiles.compensation.losses,
+            *engraving.notes,
+            *_doubled(layout, job),
+            *_untabbed(cuts, job),
+        )
         notes = tuple(dict.fromkeys(said))
         files = tuple(files_read(layout.design, job))
         return Product(self.form, drawing, pieces, colouring.count, notes, self.curves, job.accuracy, files)

@@ -1,20 +1,22 @@
-"""Sheets: a rectangle, or the closed paths of a drawing."""
+"""Sheets: a rectangle, or what the paths of a drawing bound."""
 
 from __future__ import annotations
 
-import numpy as np
+from typing import TYPE_CHECKING
 
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.job import SHEET_MAX, SHEET_MIN, Job, JobError
 from voronoi_tiles.fabrication.layout import Sheet
 from voronoi_tiles.fabrication.region import Region
+from voronoi_tiles.fabrication.sheet_outline import SheetOutline, reason_open, sheet_outline
+from voronoi_tiles.formats.caveats import caveats, unit_caveat
 from voronoi_tiles.paths.biarcs import to_arcs
 from voronoi_tiles.paths.offset import OffsetError, offset
 from voronoi_tiles.paths.orientation import oriented, simple
 from voronoi_tiles.paths.paths import Paths
 
-_CLOSED = 1e-3
-"""How far apart the ends of a path may be that is meant to be closed; millimetres."""
+if TYPE_CHECKING:
+    from voronoi_tiles.formats.reading import ReadDrawing
 
 _PIECES_MAX = 50_000
 """Most lines and curves that bound a sheet; a count."""
@@ -44,18 +46,14 @@ def read_sheet(job: Job, budget: AccuracyBudget) -> Sheet:
 
 
 def _drawn_sheet(name: str, job: Job, budget: AccuracyBudget) -> Sheet:
-    """Read the closed paths of a drawing as a sheet."""
+    """Read what the paths of a drawing bound as a sheet."""
     from voronoi_tiles.formats.reading import read_drawing
 
     drawing = read_drawing(name)
-    rings = Paths.concatenate([shape.paths for shape in drawing.shapes])
-    closed = _closed_rings(rings)
-    if not len(closed):
-        raise JobError(
-            f"{name} has no closed path",
-            remedy="Draw the sheet's outline as a closed path, or give its size: 600x300mm.",
-        )
-    _refuse_size(name, closed)
+    outline = sheet_outline(Paths.concatenate([shape.paths for shape in drawing.shapes]))
+    _refuse_forks(name, drawing, outline)
+    closed = outline.rings
+    _refuse_size(name, drawing, closed)
     if len(closed) > _RINGS_MAX:
         raise JobError(f"{name} has {len(closed)} closed paths", remedy=f"Bound a sheet by {_RINGS_MAX} at most.")
     border = oriented(to_arcs(closed, accuracy=budget.arcs))
@@ -83,10 +81,50 @@ def _drawn_sheet(name: str, job: Job, budget: AccuracyBudget) -> Sheet:
         if not len(border):
             raise JobError(f"a margin of {margin:g} mm leaves nothing of {name}", remedy="Use a smaller `margin`.")
     left, bottom, right, top = border.bounds
-    return Sheet(width, height, Region(border), complex(left + right, bottom + top) / 2)
+    notes = (*caveats(drawing, name), *_left_out(name, drawing, outline))
+    return Sheet(width, height, Region(border), complex(left + right, bottom + top) / 2, notes)
 
 
-def _refuse_size(name: str, closed: Paths) -> None:
+def _shown(drawing: ReadDrawing, place: complex) -> str:
+    """A place as the file's own program shows it: SVG from the page's upper left corner, y down; DXF y up."""
+    y = (drawing.height or 0.0) - place.imag if drawing.format == "svg" else place.imag
+    return f"({place.real:.6g}, {y:.6g})"
+
+
+def _refuse_forks(name: str, drawing: ReadDrawing, outline: SheetOutline) -> None:
+    """Refuse drawings without a ring, and loose lines that may bound the sheet in more than one way."""
+    rings, left = outline.rings, outline.left
+    reason, place = reason_open(outline) if not len(rings) or len(outline.forks) else ("", None)
+    at = "" if place is None else f" at {_shown(drawing, place)} mm"
+    if not len(rings):
+        raise JobError(
+            f"{name} has no closed path{': ' if reason else ''}{reason}{at}",
+            remedy="Draw the sheet's outline as a closed path, or of lines whose ends meet two by two, or give its "
+            "size: 600x300mm.",
+        )
+    if not len(outline.forks):
+        return
+    low_x, low_y, high_x, high_y = rings.bounds
+    x0, y0, x1, y1 = left.bounds
+    # What lies within is a drawing on the sheet, and is left out.
+    if x0 < low_x or y0 < low_y or x1 > high_x or y1 > high_y:
+        raise JobError(
+            f"{name} bounds no sheet: {reason}{at}",
+            remedy="Leave only the sheet's outline and its holes, each of lines whose ends meet two by two.",
+        )
+
+
+def _left_out(name: str, drawing: ReadDrawing, outline: SheetOutline) -> list[str]:
+    """Say which lines bound nothing."""
+    count = len(outline.left)
+    if not count:
+        return []
+    place = _shown(drawing, complex(outline.left.start[0]))
+    what = f"{count:,} loose lines bound nothing and were" if count > 1 else "a loose line bounds nothing and was"
+    return [f"{name}: {what} left out, the first from {place} mm"]
+
+
+def _refuse_size(name: str, drawing: ReadDrawing, closed: Paths) -> None:
     """Refuse outlines that are no sheet's by their size, or their number of lines."""
     left, bottom, right, top = closed.bounds
     size = max(right - left, top - bottom, abs(left), abs(bottom), abs(right), abs(top))
@@ -94,21 +132,11 @@ def _refuse_size(name: str, closed: Paths) -> None:
         raise JobError(
             f"the closed paths of {name} are {right - left:.4g} x {top - bottom:.4g} mm, "
             f"from ({left:.4g}, {bottom:.4g})",
-            remedy=f"Draw a sheet of {SHEET_MIN:g} to {SHEET_MAX:,.0f} mm, on its page; is its unit right?",
+            remedy=f"Draw a sheet of {SHEET_MIN:g} to {SHEET_MAX:,.0f} mm, on its page"
+            + ("; is its unit right?" if drawing.unit_known else f": {unit_caveat(drawing)}."),
         )
     if len(closed.start) > _PIECES_MAX:
         raise JobError(
             f"the closed paths of {name} have {len(closed.start):,} lines and curves",
             remedy=f"Simplify them: {_PIECES_MAX:,} are the most.",
         )
-
-
-def _closed_rings(paths: Paths) -> Paths:
-    """The paths that are closed, or whose ends meet."""
-    start, end = paths.start[paths.offsets[:-1]], paths.end[paths.offsets[1:] - 1]
-    meets = np.flatnonzero(paths.closed | (np.abs(start - end) <= _CLOSED))
-    chosen = paths.take(meets)
-    # The last piece ends where the first one starts, to the bit.
-    chosen.end[chosen.offsets[1:] - 1] = chosen.start[chosen.offsets[:-1]]
-    chosen.closed[:] = True
-    return chosen
