@@ -179,12 +179,12 @@ def _draw_spline(pen: Pen, entity: Any, to_page: Affine) -> Sequence[str]:
     if not len(knots):
         raise NotDrawn("without knots")
     if not 1 <= degree <= _DEGREE_MAX or len(points) <= degree or len(knots) != len(points) + degree + 1:
-        raise DrawingError("its degree, knots and control points do not fit", remedy="Draw it again.")
+        raise NotDrawn("of which degree, knots and points do not fit")
     if not (np.isfinite(knots).all() and np.isfinite(points).all() and (np.diff(knots) >= 0.0).all()):
-        raise DrawingError("its knots fall, or are no numbers", remedy="Draw it again.")
+        raise NotDrawn("of which the knots fall, or are no numbers")
     weights = np.ones(1) if by_fit or not len(entity.weights) else np.array(entity.weights, np.float64)
     if len(weights) not in {1, len(points)} or not (weights > 0.0).all():
-        raise DrawingError("its weights must be greater than 0, one for each control point", remedy="Draw it again.")
+        raise NotDrawn("of which a weight is missing, or not greater than 0")
     tolerance = CURVE_ACCURACY / to_page.largest
     if degree <= 3 and np.ptp(weights) == 0.0:
         runs = smooth_runs(bezier_spans(points, knots, degree), tolerance)

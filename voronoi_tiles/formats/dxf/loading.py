@@ -21,6 +21,9 @@ REMEDY: Final = "Save it again as DXF (R2000 or newer) in the program that made 
 """What helps with most broken files."""
 
 _BINARY: Final = b"AutoCAD Binary DXF"
+_HEAD: Final = 2**20  # bytes that are searched for the two
+_ACADVER: Final = re.compile(r"\$ACADVER\s*\n\s*1\s*\n\s*(\S+)")
+_DWGCODEPAGE: Final = re.compile(r"\$DWGCODEPAGE\s*\n\s*3\s*\n\s*(\S+)")
 _LOST: Final = re.compile(r"^(?:Removed|Deleted) entity|floating point|integer value")
 _FLAWS_SHOWN: Final = 3
 
@@ -110,6 +113,7 @@ def _plain(data: bytes, remarks: list[str]) -> bytes:
         data = data.removeprefix(b"\xef\xbb\xbf")
     if b"\x00" in data[:4096]:
         raise DrawingError("not a DXF file: it holds binary data", remedy=REMEDY)
+    data = data.rstrip(b"\x1a")  # the end of a file on old systems
     # Without any \n, lines end as on old Macs; \r\r\n comes of a conversion done twice.
     data = data.replace(b"\r\r\n", b"\n").replace(b"\r\n", b"\n") if b"\n" in data else data.replace(b"\r", b"\n")
     start = re.match(rb"(?:[ \t]*\n)+", data)
@@ -121,13 +125,12 @@ def _plain(data: bytes, remarks: list[str]) -> bytes:
 
 def _decoded(data: bytes) -> str:
     """The text in the encoding that its header names; UTF-8 from R2007 on."""
-    from ezdxf.filemanagement import dxf_stream_info
+    from ezdxf.tools.codepage import toencoding
 
-    text = data.decode("latin-1")
-    encoding = dxf_stream_info(io.StringIO(text)).encoding
-    if encoding not in {"latin-1", "cp1252", "ascii"}:
-        text = data.decode(encoding, errors="surrogateescape")
-    return text
+    head = data[:_HEAD].decode("latin-1")
+    version, codepage = (found and found[1] for found in (_ACADVER.search(head), _DWGCODEPAGE.search(head)))
+    encoding = "utf-8" if version and version >= "AC1021" else toencoding(codepage or "ANSI_1252")
+    return data.decode(encoding, errors="surrogateescape")
 
 
 def _tags(data: bytes, text: str | None) -> Iterator[Any]:
@@ -168,11 +171,7 @@ def _recovered(tags: Iterator[Tag]) -> tuple[Drawing, str]:
 
 
 def _written(tags: Iterator[Tag]) -> Iterator[bytes]:
-    """The tags as text for the recovery: a handle that was there before is dropped, as its entity would be.
-
-    It begins with a version of its own, since the recovery takes the markers of subclasses from older files.
-    """
-    yield b"0\nSECTION\n2\nHEADER\n9\n$ACADVER\n1\nAC1015\n0\nENDSEC\n"
+    """The tags as text for the recovery: a handle that was there before is dropped, as its entity would be."""
     handles: set[str] = set()
     for code, value in tags:
         text = value.hex().upper() if isinstance(value, bytes) else str(value)

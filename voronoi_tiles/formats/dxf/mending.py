@@ -54,6 +54,10 @@ _POINTS: Final = frozenset({*_NEEDED, "LWPOLYLINE"})
 _SUBCLASSES: Final = {"LWPOLYLINE": "AcDbPolyline", "SPLINE": "AcDbSpline"}
 """The subclass of what ezdxf does not read without its markers; R12 has none."""
 
+_VERSION: Final = (Tag(9, "$ACADVER"), Tag(1, "AC1015"))
+"""What older files are said to be, and those that do not say. As R12 ezdxf would lose the layers, colours and flags of
+LWPOLYLINE and SPLINE, which R12 had not, and which scripts write all the same."""
+
 _MARKER: Final = 100
 _COMMON: Final = frozenset({5, 6, 8, 48, 60, 62, 67, 330, 347, 370, 390, 410, 420, 430, 440})
 """The group codes of the first subclass of all entities."""
@@ -84,6 +88,7 @@ class TagMender:
     def mended(self, tags: Iterable[Any], *, again: bool = False) -> Iterator[Tag]:
         """The tags, mended. Raises SecondSection, but not where sections may come `again`."""
         ended = False
+        yield from (Tag(0, "SECTION"), Tag(2, "HEADER"), *_VERSION, Tag(0, "ENDSEC"))
         for entity in _entities(tags):
             name = str(entity[0].value).strip().upper()
             if self._open and name not in {"VERTEX", "ATTRIB", "SEQEND"}:
@@ -126,7 +131,8 @@ class TagMender:
                     self.stated[str(tag.value).strip().upper()] = str(value.value)
         yield Tag(0, "SECTION")
         yield Tag(2, name)
-        yield from (tag for tag in entity[1:] if tag is not title)
+        content = [tag for tag in entity[1:] if tag is not title]
+        yield from _of_r2000(content) if name == "HEADER" else content
 
     def _closed(self) -> Iterator[Tag]:
         """End the section that is open."""
@@ -170,6 +176,16 @@ def _entities(tags: Iterable[Any]) -> Iterator[list[Any]]:
         entity.append(tag)
     if entity and entity[0].code == 0:
         yield entity
+
+
+def _of_r2000(header: list[Any]) -> Iterator[Any]:
+    """The variables of a header, the version being R13 or newer, or else R2000."""
+    version = next((value for tag, value in pairwise(header) if tag.code == 9 and tag.value == "$ACADVER"), None)
+    if version is not None and str(version.value).strip() >= "AC1012":
+        yield from header
+        return
+    yield from _VERSION
+    yield from (tag for tag in header if tag is not version and not (tag.code == 9 and tag.value == "$ACADVER"))
 
 
 def _says(entity: list[Any], code: int, value: int) -> bool:

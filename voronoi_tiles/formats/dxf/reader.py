@@ -15,6 +15,7 @@ from voronoi_tiles.formats.dxf.drawing_unit import unit_of
 from voronoi_tiles.formats.dxf.entities import NotDrawn, draw_entity
 from voronoi_tiles.formats.dxf.loading import REMEDY, LoadedDxf, load_dxf, reason_of
 from voronoi_tiles.formats.dxf.mending import COUNTED
+from voronoi_tiles.formats.dxf.xclip import Clip, clip_of, clipped_shapes
 from voronoi_tiles.formats.pen import Pen
 from voronoi_tiles.formats.shapes import (
     DEPTH_MAX,
@@ -58,6 +59,7 @@ class _DxfVisit(NamedTuple):
     colour: int | tuple[int, int, int]  # what "by block" stands for
     blocks: tuple[str, ...]
     source: str  # what an entity of a block, which has no handle of its own, is called
+    clips: tuple[Clip, ...] = ()  # the polygons that clip it, the outermost first
 
 
 class _DxfWalk:
@@ -71,6 +73,7 @@ class _DxfWalk:
         self._pen = Pen()
         self._ignored: Counter[str] = Counter()
         self._looks: list[tuple[str, str, float | None, str]] = []
+        self._clips: list[tuple[Clip, ...]] = []
         self._clones = 0
         self._copies = 0
 
@@ -94,8 +97,10 @@ class _DxfWalk:
             except Exception as error:
                 raise DrawingError(f"broken: {reason_of(error)}", key=source, remedy=REMEDY) from error
             self._looks.append((self._layer(visit), self._colour(visit), self._width(entity), source))
+            self._clips.append(visit.clips)
         shapes, dots = [], []
-        for (layer, colour, width, source), (paths, places) in zip(self._looks, self._pen.shapes(), strict=True):
+        drawn = clipped_shapes(self._pen.shapes(), self._clips, float(self._unit.millimetres))
+        for (layer, colour, width, source), (paths, places) in zip(self._looks, drawn, strict=True):
             if len(places):
                 dots.append(Dots(places, layer, colour, source))
             if len(paths):
@@ -166,11 +171,18 @@ class _DxfWalk:
         if self._copies > DXF_COPIES_MAX:
             raise DrawingError(f"blocks draw more than {DXF_COPIES_MAX:,} entities", remedy="Explode or remove them.")
         self._ignored.update(["ATTRIB"] * len(insert.attribs))
+        clip, not_read = clip_of(insert)
+        if not_read:
+            self._ignored[not_read] += 1
+        clips = visit.clips
+        if clip is not None:
+            clips = (*clips, clip)
+            self._remarks.append("blocks are clipped (XCLIP), and were read so; many programs draw them whole")
         layer, colour = self._layer(visit), self._own_colour(visit)
         source = visit.source or f"INSERT {insert.dxf.handle}"
         copies = insert.multi_insert() if places > 1 else [insert]
         return [
-            _DxfVisit(entity, layer, colour, (*visit.blocks, key), f"{entity.dxftype()} in {source}")
+            _DxfVisit(entity, layer, colour, (*visit.blocks, key), f"{entity.dxftype()} in {source}", clips)
             for copy in copies
             for entity in copy.virtual_entities(skipped_entity_callback=self._skip)
         ]
