@@ -50,7 +50,7 @@ if TYPE_CHECKING:
     from voronoi_tiles.fabrication.job_options import JobError
     from voronoi_tiles.fabrication.product import Product
     from voronoi_tiles.formats.page import Drawing, Layer
-    from voronoi_tiles.formats.shapes import DrawingError, ReadDrawing, Shape
+    from voronoi_tiles.formats.shapes import Dots, DrawingError, ReadDrawing, Shape
     from voronoi_tiles.groups.wallpaper import GROUPS, Lattice, WallpaperGroup
     from voronoi_tiles.paths.paths import Paths
     from voronoi_tiles.pictures.rendered import Rendering
@@ -75,6 +75,7 @@ __all__ = [
     "CheckReport",
     "Design",
     "DesignError",
+    "Dots",
     "Drawing",
     "DrawingError",
     "Exported",
@@ -159,7 +160,7 @@ _HOMES = {
     "voronoi_tiles.fabrication.job_options": "JobError",
     "voronoi_tiles.fabrication.product": "Product",
     "voronoi_tiles.formats.page": "Drawing Layer",
-    "voronoi_tiles.formats.shapes": "DrawingError ReadDrawing Shape",
+    "voronoi_tiles.formats.shapes": "Dots DrawingError ReadDrawing Shape",
     "voronoi_tiles.groups.wallpaper": "GROUPS Lattice WallpaperGroup",
     "voronoi_tiles.paths.paths": "Paths",
     "voronoi_tiles.pictures.rendered": "Rendering",

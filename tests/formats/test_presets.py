@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import io
+import re
 from pathlib import Path
 
 import pytest
 
+from voronoi_tiles import Job, starter
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.formats.presets import FORMATS, ROLES, _built_in, load_preset
 
@@ -141,3 +144,28 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
     file.write_bytes(b'\nname = "\xff"')
     with pytest.raises(DesignError, match="line 2: not a text in UTF-8"):
         load_preset(str(file))
+
+
+@pytest.mark.parametrize("name", _built_in())
+def test_lines_are_as_wide_as_asked_for_or_as_the_preset_says(name: str) -> None:
+    """In SVG, all layers alike; a wider kerf changes nothing then."""
+    tiles = starter("p4").tessellate()
+    for stroke, kerf, wanted in (
+        (None, 0.2, load_preset(name).stroke_width(0.2)),
+        ("0.3mm", 0.2, 0.3),
+        (0.05, 0.0, 0.05),
+    ):
+        product = tiles.make(Job(sheet=(120.0, 120.0), preset=name, stroke=stroke, kerf=kerf, marks=True))
+        assert {layer.stroke for layer in product.drawing.layers} == {wanted}
+        file = io.BytesIO()
+        product.write(file)
+        assert set(re.findall(rb'stroke-width="([^"]*)"', file.getvalue())) == {f"{wanted:g}".encode()}
+
+
+def test_where_files_have_no_widths_it_is_said() -> None:
+    """DXF and LightBurn's files; PDF has them."""
+    tiles = starter("p4").tessellate()
+    said = {form: tiles.make(Job(stroke=0.3), form).notes for form in ("svg", "pdf", "dxf", "lbrn2")}
+    assert said["svg"] == said["pdf"] == ()
+    for form in ("dxf", "lbrn2"):
+        assert said[form] == (f"{form} files have no line widths: `stroke` changes nothing",)

@@ -22,7 +22,7 @@ from voronoi_tiles.cli.common import as_options
 ROOT = Path(__file__).parents[2]
 
 NAMES = """
-Arc Art ArgumentError CheckError CheckReport Design DesignError Drawing DrawingError Exported Figure Finding Frame
+Arc Art ArgumentError CheckError CheckReport Design DesignError Dots Drawing DrawingError Exported Figure Finding Frame
 GROUPS Inventory Isometry Job JobError Lattice Layer LayerUse Limits LineArc Marks MissingLibraryError Neighbour
 NodedSite Operation Outline OutputError ParabolaArc Paths Placement PreflightReport Product ProofError ProofReport
 Provenance ReadDrawing RenderError RenderOptions Rendering Shape Site Stroke Tile TileCopy Tiling TouchingCopiesError

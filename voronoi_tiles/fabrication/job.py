@@ -45,6 +45,9 @@ ACCURACY_MIN: Final = 1e-5
 APART_MM: Final = 1.0
 """How far contours with a kerf are kept apart where the caller does not say; millimetres: no sliver is left to burn."""
 
+STROKE_MIN: Final = 0.001
+"""Thinnest lines; millimetres. Thinner ones are lost in programs that keep few digits."""
+
 LABEL_MIN: Final = 0.5
 """Smallest height of a label; millimetres. What is smaller nobody reads."""
 
@@ -120,6 +123,14 @@ class Job:
         "file [default: plain].",
         kind="text",
         shown="NAME|FILE",
+    )
+    stroke: Option[float | str | None, float | None] = length(
+        None,
+        "The width of lines in SVG and PDF files, 0.3mm to see them on a screen; cutters may want the preset's "
+        "[default: as the preset says].",
+        least=STROKE_MIN,
+        most=10.0,
+        shown="WIDTH",
     )
     labels: Choice[Labels] = choice("none", Labels, "Engrave a label on every piece.")
     label_height: Length = length(3.0, "The height of labels, at most [default: 3mm].", least=LABEL_MIN, most=1000.0)

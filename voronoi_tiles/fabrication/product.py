@@ -47,6 +47,10 @@ _SHEET_COLOUR: Final = "#c8c8c8"
 """The colour of the sheet's edge in it."""
 
 
+_STROKED: Final = ("svg", "pdf")
+"""The formats that have widths of lines."""
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Product:
     """What a job makes of a tiling, for a format of files.
@@ -181,14 +185,8 @@ class _Plan:
         engraving = engrave(layout, contours, layout.sheet, shown, fills=preset.fill_engraving)
         layers = _layers(preset, self.form, job, cuts, engraving, _converter(self.curves, layout.budget))
         drawing = _page(layers, layout.sheet, job, layout.design)
-        said = (
-            *layout.sheet.notes,
-            *layout.tiles.compensation.losses,
-            *engraving.notes,
-            *_doubled(layout, job),
-            *_untabbed(cuts, job),
-        )
-        notes = tuple(dict.fromkeys(said))
+        said = (*layout.sheet.notes, *layout.tiles.compensation.losses, *engraving.notes, *_unstroked(self.form, job))
+        notes = tuple(dict.fromkeys((*said, *_doubled(layout, job), *_untabbed(cuts, job))))
         files = tuple(files_read(layout.design, job))
         return Product(self.form, drawing, pieces, colouring.count, notes, self.curves, job.accuracy, files)
 
@@ -210,6 +208,13 @@ def _untabbed(cuts: list[Cut], job: Job) -> list[str]:
     """Say how many pieces are too small for tabs, where there are any."""
     small = sum(int(cut.paths.closed.sum()) for cut in cuts) if job.tabs > 0.0 and job.pieces else 0
     return [f"{small:,} contours are too short for tabs of {job.tabs:g} mm, and fall out"] if small else []
+
+
+def _unstroked(form: Format, job: Job) -> list[str]:
+    """Say that a format has no widths of lines, where one is asked for."""
+    return (
+        [f"{form} files have no line widths: `stroke` changes nothing"] if job.stroke and form not in _STROKED else []
+    )
 
 
 def _doubled(layout: Layout, job: Job) -> list[str]:
@@ -269,7 +274,7 @@ def _layers(
     preset: Preset, form: Format, job: Job, cuts: list[Cut], engraving: Works, convert: Callable[[Paths], Paths]
 ) -> list[Layer]:
     """The layers in the order of work: engraving, scores, cuts inside, cuts around."""
-    stroke = preset.stroke_width(job.kerf)
+    stroke = preset.stroke_width(job.kerf) if job.stroke is None else job.stroke
 
     def layer(role: Role, work: Work, paths: Paths) -> Layer:
         """A layer as the preset calls and colours it."""

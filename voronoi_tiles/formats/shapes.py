@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Final, NamedTuple
+from typing import Any, Final
 
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.errors import DesignError
@@ -66,7 +66,8 @@ class Shape:
         return f"<Shape {self.source!r}: {len(self.paths)} paths on layer {self.layer!r}>"
 
 
-class Dots(NamedTuple):
+@dataclass(frozen=True, eq=False)
+class Dots:
     """Lines of no length, and shapes of no size, of one object: `places` are complex128 (n,), the rest is as in Shape.
 
     Some machines burn a point there, others do nothing.
@@ -76,6 +77,9 @@ class Dots(NamedTuple):
     layer: str
     stroke: str | None
     source: str
+
+    def __repr__(self) -> str:
+        return f"<Dots {self.source!r}: {len(self.places)} on layer {self.layer!r}>"
 
 
 @dataclass(frozen=True, eq=False)
