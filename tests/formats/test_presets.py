@@ -150,12 +150,9 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
 def test_lines_are_as_wide_as_asked_for_or_as_the_preset_says(name: str) -> None:
     """In SVG, all layers alike; a wider kerf changes nothing then."""
     tiles = starter("p4").tessellate()
-    for stroke, kerf, wanted in (
-        (None, 0.2, load_preset(name).stroke_width(0.2)),
-        ("0.3mm", 0.2, 0.3),
-        (0.05, 0.0, 0.05),
-    ):
-        product = tiles.make(Job(sheet=(120.0, 120.0), preset=name, stroke=stroke, kerf=kerf, marks=True))
+    own = load_preset(name).stroke_width(0.2)
+    for stroke, kerf, wanted in ((None, 0.2, own), ("0.3mm", 0.2, 0.3), (0.05, 0.0, 0.05)):
+        product = tiles.make(Job(sheet=(120.0, 120.0), margin=6.0, preset=name, stroke=stroke, kerf=kerf, marks=True))
         assert {layer.stroke for layer in product.drawing.layers} == {wanted}
         file = io.BytesIO()
         product.write(file)

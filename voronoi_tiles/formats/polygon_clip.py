@@ -46,41 +46,41 @@ def dots_within(points: Complexes, corners: Complexes) -> Complexes:
 
     area = shapely.Polygon(np.column_stack((corners.real, corners.imag)))
     slack = _SLACK * float(np.abs(corners).max())
-    return points[shapely.dwithin(area, shapely.points(points.real, points.imag), slack)]
+    within = np.asarray(shapely.dwithin(area, shapely.points(points.real, points.imag), slack), np.bool_)
+    return points[within]
 
 
 def _crossing_shares(paths: Paths, corners: Complexes, slack: float) -> Iterator[tuple[Ints, Floats]]:
     """For each side of the polygon the segments that meet it, and at which parameter."""
-    everything = np.arange(len(paths.start))
     # An arc that is flat but for rounding has no circle.
-    bent = (paths.kind == ARC) & (np.abs(paths.bulges()) > _FLAT)
-    arcs = np.flatnonzero(bent)
-    straight = (paths.kind == LINE) | ((paths.kind == ARC) & ~bent)
-    centre, radius, begin, turn = (_grown(values, arcs, len(everything)) for values in paths.circles(arcs))
+    arc = (paths.kind == ARC) & (np.abs(paths.bulges()) > _FLAT)
+    arcs = np.flatnonzero(arc)
+    beziers = (
+        (np.flatnonzero((paths.kind == LINE) | ((paths.kind == ARC) & ~arc)), [0, 3]),
+        (np.flatnonzero(paths.kind == QUAD), [0, 1, 3]),
+        (np.flatnonzero(paths.kind == CUBIC), [0, 1, 2, 3]),
+    )
+    points = np.stack((paths.start, *paths.control.T, paths.end))
     for tail, head in zip(corners, np.roll(corners, -1), strict=True):
         if head == tail:
             continue
         along = (head - tail) / abs(head - tail)
-        points = np.stack((paths.start, paths.control[:, 0], paths.control[:, 1], paths.end))
         off = ((points - tail) * np.conj(along)).imag
-        found = []
-        for chosen, rows in (
-            (straight, (0, 3)),
-            (paths.kind == QUAD, (0, 1, 3)),
-            (paths.kind == CUBIC, (0, 1, 2, 3)),
-        ):
-            some = np.flatnonzero(chosen)
-            found += _bezier_roots(some, off[list(rows)][:, some])
-        high = ((centre - tail) * np.conj(along)).imag
-        for other in (False, True):
-            some = arcs[np.abs(high[arcs]) < radius[arcs]]
-            angle = -np.arcsin(high[some] / radius[some])
-            direction = (np.pi - angle if other else angle) + np.angle(along)
-            ahead = np.mod((direction - begin[some]) * np.sign(turn[some]), 2 * np.pi)
-            found.append((some, ahead / np.abs(turn[some])))
-        for some, t in found:
+        found = [pair for some, rows in beziers for pair in _bezier_roots(some, off[rows][:, some])]
+        for some, t in (*found, *_arc_roots(paths, arcs, tail, along)):
             inner = (t > 0.0) & (t < 1.0)
             yield _on_side(paths, some[inner], t[inner], tail, head, slack)
+
+
+def _arc_roots(paths: Paths, arcs: Ints, tail: complex, along: complex) -> Iterator[tuple[Ints, Floats]]:
+    """The two points in which the circle of each arc meets a line, as shares of its angle, also beyond its ends."""
+    centre, radius, begin, turn = paths.circles(arcs)
+    high = ((centre - tail) * np.conj(along)).imag
+    meets = np.abs(high) < radius
+    angle = -np.arcsin(high[meets] / radius[meets])
+    for direction in (angle, np.pi - angle):
+        ahead = np.mod((direction + np.angle(along) - begin[meets]) * np.sign(turn[meets]), 2 * np.pi)
+        yield arcs[meets], ahead / np.abs(turn[meets])
 
 
 def _on_side(paths: Paths, some: Ints, t: Floats, tail: complex, head: complex, slack: float) -> tuple[Ints, Floats]:
@@ -90,13 +90,6 @@ def _on_side(paths: Paths, some: Ints, t: Floats, tail: complex, head: complex, 
     on = (x >= -slack) & (x <= abs(head - tail) + slack)
     on &= (np.abs(points - paths.start[some]) > slack) & (np.abs(points - paths.end[some]) > slack)
     return some[on], t[on]
-
-
-def _grown(values: Floats, places: Ints, count: int) -> Floats:
-    """Values at their places among `count`, 0 elsewhere."""
-    result = np.zeros(count, values.dtype)
-    result[places] = values
-    return result
 
 
 def _bezier_roots(some: Ints, off: Floats) -> list[tuple[Ints, Floats]]:

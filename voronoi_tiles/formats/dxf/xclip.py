@@ -60,7 +60,7 @@ def clipped_shapes(
     for polygons, group in groupby(zip(drawn, clips, strict=True), key=lambda pair: pair[1]):
         parts = [part for part, _ in group]
         for polygon in polygons:
-            corners = scale * np.array(polygon)
+            corners = scale * np.array(polygon, np.complex128)
             budget -= len(corners) * sum(len(paths.start) for paths, _ in parts)
             if budget < 0:
                 raise DrawingError(
