@@ -122,7 +122,7 @@ def splines(draw: Any) -> tuple[int, list[float], list[complex], list[float] | N
     return degree, knots, points, weights
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(splines())
 def test_splines_with_breaks_are_scipys(spline: tuple[int, list[float], list[complex], list[float] | None]) -> None:
     """As many curves as there are jumps and one, each where scipy has it, from the limit on the right to the left."""
@@ -194,7 +194,7 @@ def block_content(target: Any) -> None:
     target.add_lwpolyline([(-2, -2), (2, -2), (2, 2), (-2, 2)], close=True)
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=6, deadline=None)
 @given(polygons(), st.sampled_from([1.0, -1.0, 2.0]), st.floats(0, 360), st.booleans())
 def test_clipped_blocks_are_shapelys_intersection(
     corners: list[tuple[float, float]], scale: float, turn: float, nested: bool

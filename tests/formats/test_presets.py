@@ -152,7 +152,7 @@ def test_lines_are_as_wide_as_asked_for_or_as_the_preset_says(name: str) -> None
     tiles = starter("p4").tessellate()
     own = load_preset(name).stroke_width(0.2)
     for stroke, kerf, wanted in ((None, 0.2, own), ("0.3mm", 0.2, 0.3), (0.05, 0.0, 0.05)):
-        product = tiles.make(Job(sheet=(120.0, 120.0), margin=6.0, preset=name, stroke=stroke, kerf=kerf, marks=True))
+        product = tiles.make(Job(preset=name, stroke=stroke, kerf=kerf, bar=True))
         assert {layer.stroke for layer in product.drawing.layers} == {wanted}
         file = io.BytesIO()
         product.write(file)

@@ -125,7 +125,7 @@ class _DxfWalk:
         layouts = [layout for layout in self._document.layouts if layout.is_any_paperspace]
         count = sum(entity.dxftype() in _DRAWN for layout in layouts for entity in layout)
         if count and empty and self._element is None:
-            self._remarks.append(f"{count:,} objects lie in paper space, which is not read, and none in model space")
+            self._remarks.append(f"all lies in paper space, which is not read: {count:,} object{'s' * (count != 1)}")
 
     def _entities(self) -> Iterator[_DxfVisit]:
         """Every visible entity, blocks replaced by what they hold."""
