@@ -254,8 +254,23 @@ def test_what_is_not_drawn_is_counted_however_broken_it_is() -> None:
     assert len(drawing.shapes) == 1
     document = ezdxf.new("R2000")
     document.layers.add("OFF").off()
-    document.modelspace().add_hatch(dxfattribs={"layer": "OFF"}).paths.add_polyline_path([(0, 0), (1, 0), (1, 1)])
-    assert read(written(document)).ignored == {"hidden": 1}
+    block = document.blocks.new("B")
+    for space, layer in ((document.modelspace(), "OFF"), (block, "OFF"), (block, "0")):
+        space.add_hatch(dxfattribs={"layer": layer}).paths.add_polyline_path([(0, 0), (1, 0), (1, 1)])
+    document.modelspace().add_blockref("B", (0, 0))
+    assert read(written(document)).ignored == {"HATCH": 1, "hidden": 2}
+
+
+def test_names_of_layers_are_read_in_the_files_encoding() -> None:
+    """Of a code page, of Unicode by its mark, and of R2007, which is Unicode."""
+    line: Tags = [LINE[0], (8, "Gravur \u00e4\u20ac"), *LINE[2:]]
+    for data in (
+        file_of(line).encode("cp1252"),
+        b"\xef\xbb\xbf" + file_of(line).encode(),
+        file_of(line).encode("utf-16"),
+        file_of(line, header=[(9, "$ACADVER"), (1, "AC1021")]).encode(),
+    ):
+        assert read(data).shapes[0].layer == "Gravur \u00e4\u20ac"
 
 
 def test_a_drawing_on_a_page_for_plotting_alone_is_named() -> None:

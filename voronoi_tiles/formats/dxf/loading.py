@@ -52,12 +52,7 @@ def load_dxf(data: bytes) -> LoadedDxf:
     if len(data) > DXF_BYTES_MAX:
         raise DrawingError(f"larger than {DXF_BYTES_MAX >> 20} MiB", remedy="Split the drawing.")
     remarks: list[str] = []
-    if data.startswith(_BINARY):
-        text = None
-    else:
-        data = _plain(data, remarks)
-        _refuse_many(entity_count(data))
-        text = _decoded(data)
+    text = None if data.startswith(_BINARY) else _text(data, remarks)
     try:
         mender = TagMender()
         document = _document(mender.mended(_tags(data, text)))
@@ -103,14 +98,18 @@ def _refuse_many(count: int) -> None:
         raise DrawingError(f"more than {ELEMENTS_MAX:,} entities", remedy="Split the drawing.")
 
 
-def _plain(data: bytes, remarks: list[str]) -> bytes:
-    """The text from its first tag on, its lines ended as on Unix. Raises DrawingError for what is no text."""
+def _text(data: bytes, remarks: list[str]) -> str:
+    """The text from its first tag on, its lines ended as on Unix.
+
+    Raises DrawingError for what is no text, and for too many entities.
+    """
+    encoding = None
     if data.startswith((b"\xff\xfe", b"\xfe\xff")):
         remarks.append("the file is UTF-16 text, which is not usual in DXF")
-        data = data.decode("utf-16", errors="replace").encode()
+        data, encoding = data.decode("utf-16", errors="replace").encode(), "utf-8"
     elif data.startswith(b"\xef\xbb\xbf"):
         remarks.append("the file begins with a byte order mark, which is not usual in DXF")
-        data = data.removeprefix(b"\xef\xbb\xbf")
+        data, encoding = data.removeprefix(b"\xef\xbb\xbf"), "utf-8"
     if b"\x00" in data[:4096]:
         raise DrawingError("not a DXF file: it holds binary data", remedy=REMEDY)
     data = data.rstrip(b"\x1a")  # the end of a file on old systems
@@ -120,17 +119,17 @@ def _plain(data: bytes, remarks: list[str]) -> bytes:
     if start is not None:
         remarks.append("the file begins with empty lines, which are not usual in DXF")
         data = data[start.end() :]
-    return data
+    _refuse_many(entity_count(data))
+    return data.decode(encoding or _encoding(data), errors="surrogateescape")
 
 
-def _decoded(data: bytes) -> str:
-    """The text in the encoding that its header names; UTF-8 from R2007 on."""
+def _encoding(data: bytes) -> str:
+    """The encoding that the header of a text names; UTF-8 from R2007 on."""
     from ezdxf.tools.codepage import toencoding
 
     head = data[:_HEAD].decode("latin-1")
     version, codepage = (found and found[1] for found in (_ACADVER.search(head), _DWGCODEPAGE.search(head)))
-    encoding = "utf-8" if version and version >= "AC1021" else toencoding(codepage or "ANSI_1252")
-    return data.decode(encoding, errors="surrogateescape")
+    return "utf-8" if version and version >= "AC1021" else toencoding(codepage or "ANSI_1252")
 
 
 def _tags(data: bytes, text: str | None) -> Iterator[Any]:

@@ -85,7 +85,7 @@ class _DxfWalk:
             kind = entity.dxftype()
             source = visit.source or f"{kind} {entity.dxf.handle}"
             if kind not in _DRAWN:
-                self._count(entity)
+                self._count(visit)
                 continue
             self._pen.begin(to_page)
             try:
@@ -181,18 +181,23 @@ class _DxfWalk:
         layer, colour = self._layer(visit), self._own_colour(visit)
         source = visit.source or f"INSERT {insert.dxf.handle}"
         copies = insert.multi_insert() if places > 1 else [insert]
-        return [
-            _DxfVisit(entity, layer, colour, (*visit.blocks, key), f"{entity.dxftype()} in {source}", clips)
-            for copy in copies
-            for entity in copy.virtual_entities(skipped_entity_callback=self._skip)
-        ]
 
-    def _skip(self, entity: DXFGraphic, _reason: str) -> None:
-        self._count(entity)
+        def visited(entity: Any) -> _DxfVisit:
+            return _DxfVisit(entity, layer, colour, (*visit.blocks, key), f"{entity.dxftype()} in {source}", clips)
 
-    def _count(self, entity: Any) -> None:
+        def skip(entity: DXFGraphic, _reason: str) -> None:
+            self._count(visited(entity))
+
+        # These have no copies, and ezdxf says nothing of it.
+        for entity in block:
+            if entity.dxftype().endswith(COUNTED):
+                self._count(visited(entity), places)
+        return [visited(entity) for copy in copies for entity in copy.virtual_entities(skipped_entity_callback=skip)]
+
+    def _count(self, visit: _DxfVisit, times: int = 1) -> None:
         """Count what is not read, by its name."""
-        self._ignored[str(entity.dxftype()).removesuffix(COUNTED)[:40]] += 1
+        name = str(visit.entity.dxftype()).removesuffix(COUNTED)[:40]
+        self._ignored["hidden" if self._is_hidden(visit) else name] += times
 
     def _layer(self, visit: _DxfVisit) -> str:
         """The layer of an entity."""
