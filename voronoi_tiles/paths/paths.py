@@ -255,13 +255,28 @@ class Paths:
 _LENGTH_ERROR = 1e-11
 """How exactly the lengths of cubic curves are found, relative to their control polygons."""
 
+_POINTS_EVEN, _POINTS_UNEVEN = 10, 24
+"""Points of the quadrature where the speed is even, and elsewhere; counts."""
+
+_CURVES = 8192
+"""Curves that are measured at once; a count. Bounds the memory."""
+
 
 def _cubic_lengths(p0: Complexes, p1: Complexes, p2: Complexes, p3: Complexes) -> Floats:
     """The lengths of cubic Bezier curves: Gauss-Legendre quadrature of the speed, of halves where it is uneven."""
     curves = np.stack((p0, p1, p2, p3))
+    portions = [curves[:, first : first + _CURVES] for first in range(0, len(p0), _CURVES)]
+    return np.concatenate([_portion_lengths(portion) for portion in portions])
+
+
+def _portion_lengths(curves: Complexes) -> Floats:
+    """The lengths of a few cubic Bezier curves (4, n)."""
     scale = np.abs(np.diff(curves, axis=0)).sum(axis=0)
-    lengths = np.zeros(len(p0))
-    owner = np.arange(len(p0))
+    # Most curves of files are nearly arcs: few points do for them, and others show where they do not.
+    lengths = _quadrature(curves, _POINTS_EVEN)
+    owner = np.flatnonzero(np.abs(lengths - _quadrature(curves, _POINTS_EVEN - 2)) > _LENGTH_ERROR * scale)
+    lengths[owner] = 0.0
+    curves = curves[:, owner]
     rough = _quadrature(curves)
     while len(owner):
         parts = halves(curves)
@@ -274,14 +289,14 @@ def _cubic_lengths(p0: Complexes, p1: Complexes, p2: Complexes, p3: Complexes) -
 
 
 @cache
-def _gauss() -> tuple[Floats, Floats]:
+def _gauss(count: int) -> tuple[Floats, Floats]:
     """Nodes and weights of the quadrature; deferred, as numpy.polynomial takes a while to import."""
-    return np.polynomial.legendre.leggauss(24)
+    return np.polynomial.legendre.leggauss(count)
 
 
-def _quadrature(curves: Complexes) -> Floats:
+def _quadrature(curves: Complexes, count: int = _POINTS_UNEVEN) -> Floats:
     """The integrals of the speed along cubic Bezier curves (4, n), from their differences."""
-    nodes, weights = _gauss()
+    nodes, weights = _gauss(count)
     t = (nodes + 1) / 2
     s = 1 - t
     a, b, c = np.diff(curves, axis=0)

@@ -19,9 +19,9 @@ from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.preflight.annotated import marked_svg
 from voronoi_tiles.preflight.cut_lines import cut_shapes, layer_uses, subject_of
 from voronoi_tiles.preflight.dot_findings import dot_findings
+from voronoi_tiles.preflight.everywhere import findings_everywhere
 from voronoi_tiles.preflight.file_findings import page_findings
 from voronoi_tiles.preflight.findings import DEFAULT_LIMITS, Finding, LayerUse, Limits, PreflightReport, report_text
-from voronoi_tiles.preflight.line_findings import line_findings
 
 __all__ = ["Finding", "LayerUse", "Limits", "PreflightReport", "judge", "preflight", "report_text"]
 
@@ -66,15 +66,15 @@ def judge(
     if limits.tabs is None:
         limits = replace(limits, tabs=tab_width(drawing.job))
     cut = cut_shapes(drawing, layers)
-    uses = layer_uses(drawing, cut)
     drawn = Paths.concatenate([shape.paths for shape in drawing.shapes])
+    uses = layer_uses(drawing, drawn, cut)
     bounds = drawn.bounds if len(drawn.start) else None
     findings = list(page_findings(drawing, bounds, uses))
-    subject = subject_of(drawing, cut, limits)
+    subject = subject_of(drawing, drawn, cut)
     findings += dot_findings(drawing, layers, subject.place)
     pieces = len(subject.paths.start)
     if pieces:
-        findings += line_findings(subject, limits)
+        findings += findings_everywhere(subject, limits)
     extents = None
     if bounds is not None:
         (x0, y0), (x1, y1) = subject.place(complex(*bounds[:2])), subject.place(complex(*bounds[2:]))

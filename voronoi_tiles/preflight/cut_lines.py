@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
-from typing import Final
+from typing import Final, Self
 
 import numpy as np
 
@@ -26,12 +26,11 @@ _CHORDS_MAX: Final = 6_000_000
 
 @dataclass(frozen=True, eq=False)
 class CutLines:
-    """What is cut: its paths, their shapes, and the chords of both; `height` turns places into the file's own."""
+    """What is cut: its paths, and their shapes; `height` turns places into the file's own."""
 
     paths: Paths
     shape: Ints
     shapes: Sequence[Shape]
-    chords: Chords
     svg: bool
     height: float
 
@@ -47,6 +46,28 @@ class CutLines:
     def sources(self, *paths: int) -> tuple[str, ...]:
         """The objects that paths are of, each once."""
         return tuple(dict.fromkeys(self.source(path) for path in paths))
+
+
+@dataclass(frozen=True, eq=False)
+class JudgedLines:
+    """Paths that are judged, and their chords."""
+
+    paths: Paths
+    chords: Chords
+
+    @classmethod
+    def of(cls, paths: Paths, limits: Limits) -> Self:
+        """The paths with chords that are near enough to them.
+
+        Raises DrawingError where the curves take too many chords at this tolerance.
+        """
+        counts = counts_of(paths, limits.tolerance / _SHARE)
+        if counts.sum() > _CHORDS_MAX:
+            raise DrawingError(
+                f"its curves take {counts.sum():,} chords at a tolerance of {limits.tolerance:g} mm",
+                remedy="Allow a larger `tolerance`, or check the size of the drawing.",
+            )
+        return cls(paths, chords_of(paths, counts, limits.tolerance))
 
 
 def cut_shapes(drawing: ReadDrawing, layers: Collection[str]) -> list[bool]:
@@ -76,31 +97,35 @@ def is_cut(layer: str, stroke: str | None, layers: Collection[str], stroked: boo
     return (stroke is not None or not stroked) and not NOT_CUT.search(layer)
 
 
-def subject_of(drawing: ReadDrawing, cut: Sequence[bool], limits: Limits) -> CutLines:
-    """What is cut of a drawing.
+def subject_of(drawing: ReadDrawing, drawn: Paths, cut: Sequence[bool]) -> CutLines:
+    """What is cut of a drawing, of which `drawn` are all paths."""
+    shape = _shape_of_paths(drawing)
+    chosen = np.flatnonzero(np.array(cut, np.bool_)[shape])
+    # The same paths keep what was measured of them.
+    paths = drawn if len(chosen) == len(drawn) else drawn.take(chosen)
+    return CutLines(paths, shape[chosen], drawing.shapes, drawing.format == "svg", drawing.height or 0.0)
 
-    Raises DrawingError where its curves take too many chords at this tolerance.
-    """
-    chosen = [shape for shape, is_cut in zip(drawing.shapes, cut, strict=True) if is_cut]
-    paths = Paths.concatenate([shape.paths for shape in chosen])
-    owner = np.repeat(np.arange(len(chosen)), [len(shape.paths) for shape in chosen]).astype(np.intp)
-    counts = counts_of(paths, limits.tolerance / _SHARE)
-    if counts.sum() > _CHORDS_MAX:
-        raise DrawingError(
-            f"its curves take {counts.sum():,} chords at a tolerance of {limits.tolerance:g} mm",
-            remedy="Allow a larger `tolerance`, or check the size of the drawing.",
+
+def layer_uses(drawing: ReadDrawing, drawn: Paths, cut: Sequence[bool]) -> tuple[LayerUse, ...]:
+    """The layers and colours of a drawing, in the order of the file; `drawn` are all its paths."""
+    shape = _shape_of_paths(drawing)
+    lengths = np.bincount(shape, drawn.path_lengths, len(drawing.shapes)).tolist()
+    groups: dict[tuple[str, str | None, bool], list[int]] = {}
+    for number, (one, is_cut) in enumerate(zip(drawing.shapes, cut, strict=True)):
+        groups.setdefault((one.layer, one.stroke, is_cut), []).append(number)
+    return tuple(
+        LayerUse(
+            layer,
+            colour,
+            len(numbers),
+            sum(len(drawing.shapes[k].paths.start) for k in numbers),
+            sum(lengths[k] for k in numbers),
+            is_cut,
         )
-    chords = chords_of(paths, counts, limits.tolerance)
-    return CutLines(paths, owner, chosen, chords, drawing.format == "svg", drawing.height or 0.0)
+        for (layer, colour, is_cut), numbers in groups.items()
+    )
 
 
-def layer_uses(drawing: ReadDrawing, cut: Sequence[bool]) -> tuple[LayerUse, ...]:
-    """The layers and colours of a drawing, in the order of the file."""
-    groups: dict[tuple[str, str | None, bool], list[Shape]] = {}
-    for shape, is_cut in zip(drawing.shapes, cut, strict=True):
-        groups.setdefault((shape.layer, shape.stroke, is_cut), []).append(shape)
-    uses = []
-    for (layer, colour, is_cut), shapes in groups.items():
-        paths = Paths.concatenate([shape.paths for shape in shapes])
-        uses.append(LayerUse(layer, colour, len(shapes), len(paths.start), float(paths.lengths.sum()), is_cut))
-    return tuple(uses)
+def _shape_of_paths(drawing: ReadDrawing) -> Ints:
+    """The number of each path's shape."""
+    return np.repeat(np.arange(len(drawing.shapes)), [len(shape.paths) for shape in drawing.shapes]).astype(np.intp)
