@@ -84,12 +84,13 @@ def foot_share(point: Complexes, start: Complexes, end: Complexes) -> Floats:
 
 def distinct(pairs: Sequence[tuple[int, int]], places: Complexes, reach: float) -> list[int]:
     """Which places are the first of their pair of paths within `reach`: a ring's beginning is met from both sides."""
-    seen: set[tuple[tuple[int, int], int, int]] = set()
+    seen: dict[tuple[tuple[int, int], int, int], list[complex]] = {}
     kept = []
     for k, (pair, place) in enumerate(zip(pairs, places.tolist(), strict=True)):
         x, y = round(place.real / reach), round(place.imag / reach)
-        if not any((pair, x + i, y + j) in seen for i in (-1, 0, 1) for j in (-1, 0, 1)):
-            seen.add((pair, x, y))
+        cells = ((pair, x + i, y + j) for i in (-1, 0, 1) for j in (-1, 0, 1))
+        if not any(abs(place - other) <= reach for cell in cells for other in seen.get(cell, ())):
+            seen.setdefault((pair, x, y), []).append(place)
             kept.append(k)
     return kept
 

@@ -1,4 +1,4 @@
-"""What is found on all lines of a drawing: what repeats is judged once, and what is found there holds wherever it is."""
+"""What is found on all lines of a drawing: what repeats is judged once, and its findings hold wherever it is."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from voronoi_tiles.preflight.chord_distance import distinct
 from voronoi_tiles.preflight.cut_lines import CutLines, JudgedLines
 from voronoi_tiles.preflight.findings import Finding, Limits
 from voronoi_tiles.preflight.line_findings import TAB_SHARE, LineFinding, find_on_lines
-from voronoi_tiles.preflight.surroundings import Surroundings, surroundings
+from voronoi_tiles.preflight.surroundings import Repetition, surroundings
 
 SAME: Final = 1e-3
 """By how much paths may differ that count as the same one, shifted; in tolerances. Files round to a tenth of that."""
@@ -34,7 +34,7 @@ def findings_everywhere(subject: CutLines, limits: Limits) -> Iterator[Finding]:
     return (_finding(subject, one) for one in _once(found, limits))
 
 
-def _images(subject: CutLines, repeated: Surroundings, one: LineFinding) -> Iterator[LineFinding]:
+def _images(subject: CutLines, repeated: Repetition, one: LineFinding) -> Iterator[LineFinding]:
     """A finding on the part that is judged, wherever it holds: each pair of paths from the first of them."""
     paths = repeated.judged[list(one.paths)].tolist()
     begin = subject.paths.start[subject.paths.offsets[:-1]]

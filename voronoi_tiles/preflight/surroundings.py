@@ -25,7 +25,7 @@ _SPREAD: Final = 20.0
 
 
 @dataclass(frozen=True, eq=False)
-class Surroundings:
+class Repetition:
     """The kinds of surroundings of paths, and which paths are to be judged.
 
     `kind` (intp, p) is the number of each path's kind: paths of one kind, and all that is near to them, are each
@@ -53,7 +53,7 @@ class Surroundings:
             yield image, *(image if rank is None else int(self.near[there + rank]) for rank in ranks)
 
 
-def surroundings(paths: Paths, reach: float, accuracy: float) -> Surroundings | None:
+def surroundings(paths: Paths, reach: float, accuracy: float) -> Repetition | None:
     """What repeats of paths, when things are near that are within `reach`; None where little does.
 
     Paths repeat where all their points are shifted by the same vector, within `accuracy`.
@@ -87,7 +87,7 @@ def surroundings(paths: Paths, reach: float, accuracy: float) -> Surroundings | 
     judged = np.union1d(first, two[beside])
     if len(judged) > count / 2:
         return None
-    return Surroundings(kind, first, judged, two, offsets)
+    return Repetition(kind, first, judged, two, offsets)
 
 
 def _shapes(paths: Paths, accuracy: float) -> Ints:
