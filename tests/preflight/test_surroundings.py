@@ -88,7 +88,7 @@ def test_a_lattice_is_judged_by_a_few_of_its_paths() -> None:
 
 
 def test_a_moved_corner_is_another_path() -> None:
-    """A tile that differs in one point by a hundredth of the tolerance is judged on its own, as is what is beside it."""
+    """A tile that differs in one point by a hundredth of the tolerance is judged on its own, with its neighbours."""
     generator = np.random.default_rng(6)
     lines = lattice([corners(generator), corners(generator)], 13 + 1j, 12j, 12)
     lines[200][1] += 5e-5

@@ -62,6 +62,22 @@ class Chords:
         low, high = self.corners
         return np.sort(low.real), np.sort(high.real), np.sort(low.imag), np.sort(high.imag)
 
+    @cached_property
+    def boxes(self) -> tuple[Complexes, Complexes]:
+        """The lower left and the upper right corner of each path's box."""
+        first = self.first[:-1]
+        low, high = (
+            least.reduceat(corner.real, first) + 1j * least.reduceat(corner.imag, first)
+            for least, corner in zip((np.minimum, np.maximum), self.corners, strict=True)
+        )
+        return low, high
+
+    @property
+    def sizes(self) -> Floats:
+        """The longer side of each path's box."""
+        low, high = self.boxes
+        return np.maximum((high - low).real, (high - low).imag)
+
     def next(self, chords: Ints) -> Ints:
         """The chord that follows each on its path; -1 after the last one of a path that is no ring."""
         path = self.path[chords]

@@ -14,6 +14,7 @@ from voronoi_tiles.preflight.cut_lines import JudgedLines
 from voronoi_tiles.preflight.ends import PathEnds, find_ends
 from voronoi_tiles.preflight.findings import Limits, Severity
 from voronoi_tiles.preflight.necks import find_necks
+from voronoi_tiles.preflight.slivers import Sliver, find_slivers
 
 SLIT: Final = 3.0
 """An open path is an open contour when its ends are nearer than its length over this, else a slit; no unit."""
@@ -23,6 +24,12 @@ TAB_SHARE: Final = 0.05
 
 NECK_ACCURACY: Final = 0.005
 """How far the chords between which necks are measured lie from the curves; relative to the limit."""
+
+
+SHORT_REMEDY: Final = (
+    "Simplify the path: machines stutter on segments that are shorter than their steps. "
+    "In a file of ours: `curves='arc'` and a larger `accuracy`."
+)
 
 
 class LineFinding(NamedTuple):
@@ -52,7 +59,9 @@ def find_on_lines(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:
     yield from map(_twice, twice)
     yield from (_crossing(lines, meeting) for meeting in crossed)
     yield from map(_touch, touched)
-    yield from _necks(lines, limits)
+    slivers = find_slivers(lines.chords, limits.feature, limits.tolerance)
+    yield from _necks(lines, limits, slivers)
+    yield from (_sliver(sliver, limits) for sliver in slivers)
     yield from _features(lines, limits)
     yield from _short(lines, limits)
     yield from _corners(lines, limits)
@@ -165,14 +174,18 @@ def _touch(meeting: Meeting) -> LineFinding:
     )
 
 
-def _necks(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:
+def _necks(lines: JudgedLines, limits: Limits, slivers: list[Sliver]) -> Iterator[LineFinding]:
+    """Narrow places; those of slivers only where these are less than half as wide as elsewhere."""
     if limits.neck <= 0.0:
         return
+    slim = {path: sliver.width for sliver in slivers if sliver.material for path in sliver.paths}
     accuracy = max(NECK_ACCURACY * limits.neck, limits.tolerance / 4)
     chords = chords_of(lines.paths, counts_of(lines.paths, accuracy), limits.tolerance)
     for neck in find_necks(chords, 2 * accuracy + limits.tolerance, limits.neck):
         common = neck.place, neck.width, neck.paths, None, True
         if neck.material:
+            if all(path in slim and neck.width > slim[path] / 2 for path in neck.paths):
+                continue
             message = f"neck of {neck.width:.3g} mm"
             yield LineFinding("neck", "warning", message, "Widen it: it may break or burn.", *common)
         else:
@@ -180,24 +193,28 @@ def _necks(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:
             yield LineFinding("narrow waste", "info", message, "Move the lines apart if the waste may burn.", *common)
 
 
+def _sliver(sliver: Sliver, limits: Limits) -> LineFinding:
+    common = sliver.place, sliver.width, sliver.paths
+    message = f"of {sliver.width:.3g} mm at most: narrower than {limits.feature:g} mm everywhere"
+    if sliver.material:
+        return LineFinding("sliver", "warning", f"piece {message}", "Widen it: it may break or burn.", *common)
+    remedy = "Move the lines apart if the waste may burn."
+    return LineFinding("narrow waste", "info", f"hole {message}", remedy, *common)
+
+
 def _features(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:
     """Contours that are smaller than the limit, both ways."""
     chords = lines.chords
-    first = chords.first[:-1]
-    x, y = chords.start.real, chords.start.imag
-    across = np.maximum.reduceat(x, first) - np.minimum.reduceat(x, first)
-    down = np.maximum.reduceat(y, first) - np.minimum.reduceat(y, first)
-    size = np.maximum(across, down)
-    for path in np.flatnonzero(chords.ring & (size < limits.feature)).tolist():
-        some = slice(int(first[path]), int(chords.first[path + 1]))
-        middle = complex((x[some].min() + x[some].max()) / 2, (y[some].min() + y[some].max()) / 2)
+    low, high = chords.boxes
+    for path in np.flatnonzero(chords.ring & (chords.sizes < limits.feature)).tolist():
+        size = high[path] - low[path]
         yield LineFinding(
             "feature",
             "warning",
-            f"contour of {across[path]:.3g} x {down[path]:.3g} mm",
+            f"contour of {size.real:.3g} x {size.imag:.3g} mm",
             "Enlarge or remove it: it may burn away.",
-            middle,
-            float(size[path]),
+            complex(low[path] + high[path]) / 2,
+            float(chords.sizes[path]),
             (path,),
         )
 
@@ -209,7 +226,7 @@ def _short(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:
             "short",
             "warning",
             f"segment of {paths.lengths[piece]:.3g} mm",
-            "Simplify the path: machines stutter on segments that are shorter than their steps.",
+            SHORT_REMEDY,
             complex(paths.start[piece]),
             float(paths.lengths[piece]),
             (int(paths.owner[piece]),),

@@ -19,7 +19,7 @@ NEIGHBOURS_MAX: Final = 60
 """Where paths have more neighbours on average, all are judged; a count. A tile has some ten."""
 
 _PAIRS_MAX: Final = 3_000_000  # neighbours altogether, at some fifty bytes each
-_ASKED: Final = 200  # paths whose neighbours are counted before all are looked for
+_ASKED: Final = 50  # paths whose neighbours are counted before all are looked for
 _SPREAD: Final = 20.0
 """How far apart vectors that count as one may be; in accuracies. What is rounded differs by less than two."""
 

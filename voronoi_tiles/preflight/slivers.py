@@ -1,0 +1,105 @@
+"""Slivers: pieces, and holes, that are narrow everywhere, though no neck may be narrower than the rest."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+import shapely
+
+from voronoi_tiles.base.arrays import Bools, Floats, Ints, plane, ranges
+from voronoi_tiles.preflight.chords import Chords
+
+_STEPS: Final = 12
+"""Halvings of the interval in which the width of a sliver is looked for; a count. They leave a four-thousandth."""
+
+
+class Sliver(NamedTuple):
+    """A region in which no disc of a size fits: the greatest that does and where it is, and the paths around it.
+
+    The first of them is its outline, the others are its holes. `material` tells a piece from a hole that falls out.
+    """
+
+    place: complex
+    width: float
+    paths: tuple[int, ...]
+    material: bool
+
+
+def find_slivers(chords: Chords, limit: float, touching: float) -> list[Sliver]:
+    """The regions inside closed paths, without their holes, in which no disc of the diameter `limit` fits.
+
+    A region that is no wider than `touching` is none: its edges are one line, drawn twice. Nor is one that is smaller
+    than the limit both ways.
+
+    Most regions are wide by their area and their perimeter, for the points within a distance r of the edge cover no
+    more than r times the perimeter, and a disc more for each hole. The others are shrunk.
+    """
+    counts = np.diff(chords.first)
+    ring = np.flatnonzero(chords.ring & (counts >= 3))
+    if not len(ring) or limit <= 0.0:
+        return []
+    # About each ring's beginning, so that a small ring far from the origin has its area.
+    begin = np.repeat(chords.start[chords.first[:-1]], counts)
+    twice = ((chords.start - begin).conj() * (chords.end - begin)).imag
+    area = np.abs(np.add.reduceat(twice, chords.first[:-1])[ring]) / 2
+    inside, outside = _nested(chords, ring, area)
+    depth = np.bincount(inside, minlength=len(ring))
+    # The holes of a region are the rings one level deeper.
+    direct = depth[inside] == depth[outside] + 1
+    inside, outside = inside[direct], outside[direct]
+    lengths = chords.total[ring]
+    holes = np.bincount(outside, minlength=len(ring))
+    region = area - np.bincount(outside, area[inside], len(ring))
+    edge = lengths + np.bincount(outside, lengths[inside], len(ring))
+    radius = limit / 2
+    found = []
+    large = chords.sizes[ring] >= limit
+    for k in np.flatnonzero(large & (region <= radius * edge + np.pi * radius**2 * holes)).tolist():
+        paths = (int(ring[k]), *ring[inside[outside == k]].tolist())
+        shape = _region(chords, paths)
+        if shape.is_empty or not shape.buffer(-radius).is_empty:
+            continue
+        width, place = _widest(shape, radius)
+        if width > touching:
+            found.append(Sliver(place, width, paths, bool(depth[k] % 2 == 0)))
+    return found
+
+
+def _nested(chords: Chords, ring: Ints, area: Floats) -> tuple[Ints, Ints]:
+    """Pairs of rings, by their places in `ring`, of which the first lies inside the second."""
+    counts = np.diff(chords.first)[ring]
+    which = ranges(chords.first[ring], counts)
+    rings = shapely.linearrings(plane(chords.start[which]), indices=np.repeat(np.arange(len(ring)), counts))
+    polygons = shapely.polygons(rings)
+    middle = (chords.start[chords.first[ring]] + chords.end[chords.first[ring]]) / 2
+    inside, outside = shapely.STRtree(polygons).query(shapely.points(plane(middle)), predicate="within").astype(np.intp)
+    # A ring that crosses another one is not in it, and none is in a smaller one.
+    smaller: Bools = area[inside] < area[outside]
+    return inside[smaller], outside[smaller]
+
+
+def _region(chords: Chords, paths: tuple[int, ...]) -> shapely.Geometry:
+    """The inside of the first path without that of the others."""
+    shell, *holes = (
+        shapely.Polygon(plane(chords.start[chords.first[path] : chords.first[path + 1]])) for path in paths
+    )
+    shape = shapely.make_valid(shell)
+    for hole in holes:
+        shape = shape.difference(shapely.make_valid(hole))
+    return shape
+
+
+def _widest(shape: shapely.Geometry, radius: float) -> tuple[float, complex]:
+    """The diameter of the largest disc in a region where none of this radius fits, and its middle."""
+    low, high = 0.0, radius
+    core = shape
+    for _ in range(_STEPS):
+        middle = (low + high) / 2
+        left = shape.buffer(-middle)
+        if left.is_empty:
+            high = middle
+        else:
+            low, core = middle, left
+    point = core.representative_point()
+    return low + high, complex(point.x, point.y)
