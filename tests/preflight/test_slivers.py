@@ -36,8 +36,10 @@ SHAPES = {
     "ellipse": lambda a, b: (f"M{-a} 0A{a} {b} 0 0 0 {a} 0A{a} {b} 0 0 0 {-a} 0Z", 2 * min(a, b)),
     "rhombus": lambda a, b: (f"M{-a} 0L0 {b}L{a} 0L0 {-b}Z", 2 * a * b / math.hypot(a, b)),
     "ring": lambda a, b: (
-        f"M{-a - b} 0a{a + b} {a + b} 0 1 0 {2 * a + 2 * b} 0a{a + b} {a + b} 0 1 0 {-2 * a - 2 * b} 0Z"
-        f"M{-a} 0a{a} {a} 0 1 0 {2 * a} 0a{a} {a} 0 1 0 {-2 * a} 0Z",
+        (
+            f"M{-a - b} 0a{a + b} {a + b} 0 1 0 {2 * a + 2 * b} 0a{a + b} {a + b} 0 1 0 {-2 * a - 2 * b} 0Z"
+            f"M{-a} 0a{a} {a} 0 1 0 {2 * a} 0a{a} {a} 0 1 0 {-2 * a} 0Z"
+        ),
         b,
     ),
     "bent strip": lambda a, b: (
