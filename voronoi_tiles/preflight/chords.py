@@ -85,8 +85,8 @@ class Chords:
         over = after == self.first[path + 1]
         return np.where(over, np.where(self.ring[path], self.first[path], -1), after)
 
-    def along(self, path: Ints, at: Floats) -> tuple[Complexes, Bools]:
-        """The points of paths at these lengths from their beginnings, and which of them are on the path.
+    def where(self, path: Ints, at: Floats) -> tuple[Ints, Floats, Bools]:
+        """The chords at these lengths along paths, the shares of them that lie before, and which are on the path.
 
         Rings go on from their beginning.
         """
@@ -98,6 +98,11 @@ class Chords:
         chord = np.clip(chord, self.first[path], self.first[path + 1] - 1)
         length = self.lengths[chord]
         share = np.clip((place - self.before[chord]) / np.where(length > 1e-200, length, 1.0), 0.0, 1.0)
+        return chord, share, on
+
+    def along(self, path: Ints, at: Floats) -> tuple[Complexes, Bools]:
+        """The points of paths at these lengths from their beginnings, and which of them are on the path; as `where`."""
+        chord, share, on = self.where(path, at)
         return self.start[chord] + share * (self.end[chord] - self.start[chord]), on
 
     def apart(self, path: Ints, one: Floats, other: Floats) -> Floats:

@@ -12,6 +12,7 @@ from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.preflight.chord_distance import cross, distinct, divisor, dot, nearest, runs
 from voronoi_tiles.preflight.chord_search import FOUND_MAX, pairs, too_many
 from voronoi_tiles.preflight.chords import Chords
+from voronoi_tiles.preflight.coincidence import NearChords, Runs, judge_runs, near_all_the_way
 
 OVERLAP: Final = 40.0
 """From which length on lines that run along each other are cut twice; in tolerances. Two lines that part at an angle of
@@ -50,11 +51,10 @@ class Contacts:
 
 
 class Meeting(NamedTuple):
-    """A place where two paths meet: `length` is how far they run along each other, 0 where they do not."""
+    """A place where two paths meet: `length` is how far they stay within the tolerance, 0 where that is not known."""
 
     place: complex
     paths: tuple[int, int]
-    pieces: tuple[int, int]
     length: float
 
 
@@ -133,40 +133,86 @@ def run_beside(chords: Chords, one: Ints, two: Ints, tolerance: float) -> tuple[
     return low, np.where(none, low, high)
 
 
-def overlaps(chords: Chords, contacts: Contacts, tolerance: float) -> tuple[list[Meeting], Bools]:
+class Alongs(NamedTuple):
+    """Where paths run along each other: lines drawn twice, curves that cross, and that touch.
+
+    `part` (bool, as many as there are contacts) are the contacts of which nothing else is to be said.
+    """
+
+    twice: list[Meeting]
+    crossed: list[Meeting]
+    touched: list[Meeting]
+    part: Bools
+
+
+def overlaps(chords: Chords, paths: Paths, contacts: Contacts, tolerance: float) -> Alongs:
     """Where paths run along each other, and which contacts belong to that."""
     path_one, path_two = chords.path[contacts.one], chords.path[contacts.two]
     order, begins = runs(path_one, path_two, contacts.low, contacts.high, AROUND * tolerance)
     part = np.zeros(len(order), np.bool_)
     if not len(order):
-        return [], part
+        return Alongs([], [], [], part)
     low, high = contacts.low[order], contacts.high[order]
     # What only meets beside a run makes it no longer.
-    width = np.where(high > low, high, -np.inf)
-    first = np.minimum.reduceat(np.where(high > low, low, np.inf), begins)
-    last = np.maximum.reduceat(width, begins)
-    runs_along = last > first
-    length = np.zeros(len(begins))
-    length[runs_along] = last[runs_along] - first[runs_along]
+    beside = high > low
+    first = np.minimum.reduceat(np.where(beside, low, np.inf), begins)
+    last = np.maximum.reduceat(np.where(beside, high, -np.inf), begins)
     one, two = path_one[order][begins], path_two[order][begins]
-    shorter = np.minimum(chords.total[one], chords.total[two])
-    long = (length >= OVERLAP * tolerance) | ((length >= MOST * shorter) & (length > AROUND * tolerance))
     group = np.repeat(np.arange(len(begins)), np.diff(np.append(begins, len(order))))
-    part[order] = long[group]
-    which = np.flatnonzero(long)
-    middle = np.zeros(len(begins))
-    middle[long] = (first[long] + last[long]) / 2
-    places, _ = chords.along(one[which], middle[which])
-    # The pieces are those of the contact that is nearest to the middle.
-    off = np.abs((low + high) / 2 - middle[group])
-    best = np.lexsort((off, group))[begins]
-    chosen = contacts.take(order[best][which])
-    return [
-        Meeting(complex(place), (int(k), int(m)), (int(chords.piece[i]), int(chords.piece[j])), float(far))
-        for place, k, m, i, j, far in zip(
-            places, one[which], two[which], chosen.one, chosen.two, length[which], strict=True
-        )
-    ], part
+    whole = _round_rings(chords, one, two, first, last, AROUND * tolerance)
+    low = np.where(whole[group] == group, low, low - chords.total[one[group]])
+    group = whole[group]
+    shorter = np.minimum(chords.total[one], chords.total[two])
+    length = np.where(last > first, last - first, 0.0)
+    least = np.minimum(OVERLAP * tolerance, np.maximum(MOST * shorter, AROUND * tolerance))
+    long = np.flatnonzero(((length > 2 * AROUND * tolerance) | (length >= least)) & (whole == np.arange(len(whole))))
+    number = np.full(len(begins), -1)
+    number[long] = np.arange(len(long))
+    some = np.flatnonzero(beside & (number[group] >= 0))
+    some = some[np.lexsort((low[some], number[group][some]))]
+    near = NearChords(number[group][some], low[some], contacts.two[order][some])
+    if not len(long):
+        return Alongs([], [], [], part)
+    every = np.arange(len(long))
+    stretch = Runs(
+        one[long], two[long], first[long], last[long], near.at(every, first[long]), near.at(every, last[long])
+    )
+    judged = judge_runs(chords, paths, stretch, near, tolerance, OVERLAP * tolerance)
+    said = judged.twice & (length[long] >= least[long]) | judged.crosses | judged.touches | judged.joins
+    part[order] = (number[group] >= 0) & said[number[group]]
+    # What else they have in common says nothing more of lines that are drawn twice all along.
+    pair = one * len(chords.total) + two
+    part[order] |= np.isin(pair[group], pair[long[judged.covered]])
+    middle, _ = chords.along(stretch.one, (stretch.low + stretch.high) / 2)
+    place = np.where(judged.twice, middle, judged.place)
+    return Alongs(
+        *(
+            [
+                Meeting(complex(place[k]), (int(stretch.one[k]), int(stretch.two[k])), float(stretch.length[k]))
+                for k in np.flatnonzero(said & which)
+            ]
+            for which in (judged.twice, judged.crosses, judged.touches)
+        ),
+        part,
+    )
+
+
+def _round_rings(chords: Chords, one: Ints, two: Ints, first: Floats, last: Floats, slack: float) -> Ints:
+    """The run that each run is part of: those at the beginning and at the end of a ring are one.
+
+    The first of two then begins before the ring's beginning: `first` is changed.
+    """
+    whole = np.arange(len(one))
+    total = chords.total[one]
+    heads = np.flatnonzero(chords.ring[one] & (first <= slack) & (last < total - slack))
+    tails = np.flatnonzero(chords.ring[one] & (last >= total - slack) & (first > slack) & (last > first))
+    of = {(int(one[k]), int(two[k])): int(k) for k in tails.tolist()}
+    for head in heads.tolist():
+        tail = of.get((int(one[head]), int(two[head])))
+        if tail is not None:
+            whole[tail] = head
+            first[head] = first[tail] - total[head]
+    return whole
 
 
 def crossings(
@@ -178,7 +224,7 @@ def crossings(
     there from one side of the other to the other side cross.
     """
     path_one, path_two = chords.path[contacts.one], chords.path[contacts.two]
-    order, begins = runs(path_one, path_two, contacts.at_one, contacts.at_one, AROUND * tolerance)
+    order, begins = runs(path_one, path_two, contacts.low, contacts.high, AROUND * tolerance)
     if not len(order):
         return [], []
     group = np.repeat(np.arange(len(begins)), np.diff(np.append(begins, len(order))))
@@ -206,6 +252,7 @@ def crossings(
         begins,
     )
     inside &= np.minimum(own, narrow) > 2 * reach
+    inside &= ~((one == two) & near_all_the_way(chords, one, chosen.at_one, chosen.at_two, tolerance))
     joined = _at_node(chords, paths, chosen.one, chosen.point, tolerance) & _at_node(
         chords, paths, chosen.two, chosen.point, tolerance
     )
@@ -232,5 +279,4 @@ def _distinct(chords: Chords, chosen: Contacts, which: Ints, reach: float) -> li
     """Meetings, each place of two paths once."""
     some = chosen.take(which)
     pairs = list(zip(chords.path[some.one].tolist(), chords.path[some.two].tolist(), strict=True))
-    pieces = list(zip(chords.piece[some.one].tolist(), chords.piece[some.two].tolist(), strict=True))
-    return [Meeting(complex(some.point[k]), pairs[k], pieces[k], 0.0) for k in distinct(pairs, some.point, 2 * reach)]
+    return [Meeting(complex(some.point[k]), pairs[k], 0.0) for k in distinct(pairs, some.point, 2 * reach)]

@@ -54,11 +54,11 @@ def find_on_lines(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:
     """All findings on lines of at least one piece."""
     yield from _ends(lines, limits)
     contacts = find_contacts(lines.chords, limits.tolerance)
-    twice, part = overlaps(lines.chords, contacts, limits.tolerance)
-    crossed, touched = crossings(lines.chords, lines.paths, contacts.take(~part), limits.tolerance)
-    yield from map(_twice, twice)
-    yield from (_crossing(lines, meeting) for meeting in crossed)
-    yield from map(_touch, touched)
+    along = overlaps(lines.chords, lines.paths, contacts, limits.tolerance)
+    crossed, touched = crossings(lines.chords, lines.paths, contacts.take(~along.part), limits.tolerance)
+    yield from map(_twice, along.twice)
+    yield from (_crossing(lines, meeting) for meeting in along.crossed + crossed)
+    yield from (_touch(meeting, limits) for meeting in along.touched + touched)
     slivers = find_slivers(lines.chords, limits.feature, limits.tolerance)
     yield from _necks(lines, limits, slivers)
     yield from (_sliver(sliver, limits) for sliver in slivers)
@@ -160,12 +160,13 @@ def _crossing(lines: JudgedLines, meeting: Meeting) -> LineFinding:
     )
 
 
-def _touch(meeting: Meeting) -> LineFinding:
+def _touch(meeting: Meeting, limits: Limits) -> LineFinding:
     own = meeting.paths[0] == meeting.paths[1]
+    within = f", within {limits.tolerance:g} mm along {meeting.length:.3g} mm" if meeting.length else ""
     return LineFinding(
         "touch",
         "warning",
-        "a line touches itself" if own else "two lines touch",
+        f"a line touches itself{within}" if own else f"two lines touch{within}",
         "Move them apart: what is between them hangs on a point.",
         meeting.place,
         0.0,

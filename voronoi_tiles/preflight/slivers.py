@@ -52,7 +52,8 @@ def find_slivers(chords: Chords, limit: float, touching: float) -> list[Sliver]:
     holes = np.bincount(outside, minlength=len(ring))
     region = area - np.bincount(outside, area[inside], len(ring))
     edge = lengths + np.bincount(outside, lengths[inside], len(ring))
-    radius = limit / 2
+    # Discs fit between curves, not their chords: what is as wide as the limit is wide enough.
+    radius = (limit - touching) / 2
     found = []
     large = chords.sizes[ring] >= limit
     for k in np.flatnonzero(large & (region <= radius * edge + np.pi * radius**2 * holes)).tolist():
