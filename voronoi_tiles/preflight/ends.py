@@ -1,8 +1,8 @@
-"""Where paths end: at other lines, short of them, or nowhere."""
+"""Where paths end: at other lines, short of them or past them, or nowhere."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -10,14 +10,24 @@ from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, starts
 from voronoi_tiles.preflight import chord_search
 from voronoi_tiles.preflight.chord_distance import foot_share
 from voronoi_tiles.preflight.chords import Chords
+from voronoi_tiles.preflight.contacts import Contacts
+
+BESIDE: Final = 4.0
+"""How far a path runs along another one from its end, for both to be side by side; in gaps, or half of its length."""
+
+PAST: Final = 2.0
+"""How far an end may run past the line that it meets, along its path; in gaps. It is within one gap of the line."""
+
+_LOOKS: Final = 4  # places at which two paths are looked at for being side by side
 
 
 class PathEnds(NamedTuple):
     """The ends of the paths that are no rings, beginnings and ends in turn.
 
-    `point` is complex128 (n,), `path` (intp, n) whose end it is; `distance` (float64, n) is how far the nearest other
-    line is, inf where none is within the gap, `near` (complex128, n) the point there and `chord` (intp, n) the chord,
-    -1 for none; `free` (bool, n) says whether it is further than the tolerance.
+    `point` is complex128 (n,), `path` (intp, n) whose end it is; `distance` (float64, n) is how far the nearest line
+    is that it might have met, inf where none is within the gap, `near` (complex128, n) the point there and `chord`
+    (intp, n) the chord, -1 for none. `free` (bool, n) says whether it is further than the tolerance, and `past`
+    (float64, n) by how much it runs past a line that it meets, nan where it does not, at `met` (complex128, n).
     """
 
     point: Complexes
@@ -26,22 +36,55 @@ class PathEnds(NamedTuple):
     near: Complexes
     chord: Ints
     free: Bools
+    past: Floats
+    met: Complexes
 
 
-def find_ends(chords: Chords, tolerance: float, gap: float) -> PathEnds:
+class _Facing(NamedTuple):
+    """Ends and chords that are near to them: how far, and the points of the chords."""
+
+    end: Ints
+    chord: Ints
+    distance: Floats
+    foot: Complexes
+
+    def take(self, which: Ints | Bools) -> _Facing:
+        """Some of the pairs."""
+        return _Facing._make(column[which] for column in self)
+
+
+def find_ends(chords: Chords, contacts: Contacts, tolerance: float, gap: float) -> PathEnds:
     """The ends of paths, and what is near to them.
 
-    An end's own path counts only where it comes back: further along it than three gaps, or half of its length. Raises
-    DrawingError where too many lines are near to ends.
+    An end's own path counts only where it comes back: further along it than three gaps, or half of its length. A line
+    beside which the path runs is none that its end should have met. Raises DrawingError where too many lines are near
+    to ends.
     """
     open_ = np.flatnonzero(~chords.ring)
     path = np.repeat(open_, 2)
     first, last = chords.first[open_], chords.first[open_ + 1] - 1
     point = np.stack((chords.start[first], chords.end[last]), axis=1).ravel()
     at = np.stack((np.zeros(len(open_)), chords.total[open_]), axis=1).ravel()
-    nearest = np.full(len(point), np.inf)
-    near, which = point.copy(), np.full(len(point), -1, np.intp)
-    margin = complex(gap, gap)
+    facing = _facing(chords, point, path, at, gap, gap)
+    # The nearest chord of each path.
+    order = np.lexsort((facing.distance, chords.path[facing.chord], facing.end))
+    facing = facing.take(order)
+    key = facing.end * len(chords.total) + chords.path[facing.chord]
+    facing = facing.take(starts(key) if len(key) else order)
+    facing = facing.take(~_beside(chords, facing, path, at, tolerance, gap))
+    facing = facing.take(np.lexsort((facing.distance, facing.end)))
+    facing = facing.take(starts(facing.end) if len(facing.end) else facing.end)
+    nearest, near, which = np.full(len(point), np.inf), point.copy(), np.full(len(point), -1, np.intp)
+    nearest[facing.end], near[facing.end], which[facing.end] = facing.distance, facing.foot, facing.chord
+    past, met = _past(chords, contacts, path, gap)
+    past[~np.isfinite(nearest)] = np.nan
+    return PathEnds(point, path, nearest, near, which, nearest > tolerance, past, met)
+
+
+def _facing(chords: Chords, point: Complexes, path: Ints, at: Floats, reach: float, gap: float) -> _Facing:
+    """The chords within reach of points on paths; of their own path only where it comes back."""
+    found = []
+    margin = complex(reach, reach)
     count = 0
     for end, chord in chord_search.chords_in(chords, point - margin, point + margin):
         count += len(end)
@@ -51,12 +94,51 @@ def find_ends(chords: Chords, tolerance: float, gap: float) -> PathEnds:
         share = foot_share(point[end], start, chords.end[chord])
         foot = start + share * way
         distance = np.abs(foot - point[end])
-        own = chords.path[chord] == path[end]
         along = np.abs(chords.before[chord] + share * chords.lengths[chord] - at[end])
         far = np.minimum(3 * gap, chords.total[path[end]] / 2)
-        usable = np.flatnonzero((distance <= gap) & (~own | (along > far)))
-        order = usable[np.lexsort((distance[usable], end[usable]))]
-        ends = end[order]
-        firsts = order[starts(ends)] if len(order) else order
-        nearest[end[firsts]], near[end[firsts]], which[end[firsts]] = distance[firsts], foot[firsts], chord[firsts]
-    return PathEnds(point, path, nearest, near, which, nearest > tolerance)
+        usable = (distance <= reach) & ((chords.path[chord] != path[end]) | (along > far))
+        found.append(_Facing(end, chord, distance, foot).take(usable))
+    if not found:
+        none = np.zeros(0, np.intp)
+        return _Facing(none, none, np.zeros(0), np.zeros(0, np.complex128))
+    return _Facing(*(np.concatenate(column) for column in zip(*found, strict=True)))
+
+
+def _beside(chords: Chords, facing: _Facing, path: Ints, at: Floats, tolerance: float, gap: float) -> Bools:
+    """Whether the paths of ends run beside those that they face: no further away further along."""
+    result = facing.distance > tolerance
+    some = np.flatnonzero(result)
+    of, other = path[facing.end[some]], chords.path[facing.chord[some]]
+    limit = 1.5 * facing.distance[some] + tolerance
+    length = np.minimum(BESIDE * gap, chords.total[of] / 2)
+    inwards = np.where(at[facing.end[some]] == 0.0, 1.0, -1.0)
+    for look in range(1, _LOOKS + 1):
+        place = at[facing.end[some]] + inwards * length * (look / _LOOKS)
+        point, _ = chords.along(of, place)
+        around = _facing(chords, point, of, place, 1.5 * gap + tolerance, gap)
+        least = np.full(len(some), np.inf)
+        same = chords.path[around.chord] == other[around.end]
+        np.minimum.at(least, around.end[same], around.distance[same])
+        result[some] &= least <= limit
+    return result
+
+
+def _past(chords: Chords, contacts: Contacts, path: Ints, gap: float) -> tuple[Floats, Complexes]:
+    """How far ends run past the last line that their paths meet, and where that is."""
+    past, met = np.full(len(path), np.nan), np.zeros(len(path), np.complex128)
+    first_end = np.searchsorted(path, np.arange(len(chords.total)))
+    for one, other, here, there in (
+        (contacts.one, contacts.two, contacts.at_one, contacts.at_two),
+        (contacts.two, contacts.one, contacts.at_two, contacts.at_one),
+    ):
+        own = chords.path[one]
+        tail = np.minimum(PAST * gap, chords.total[own] / 2)
+        back = np.abs(here - there) > np.minimum(3 * gap, chords.total[own] / 2)
+        for last in (0, 1):
+            far = np.abs(here - np.where(last, chords.total[own], 0.0))
+            some = np.flatnonzero(~chords.ring[own] & (far <= tail) & ((own != chords.path[other]) | back))
+            some = some[np.argsort(-far[some], kind="stable")]
+            end = first_end[own[some]] + last
+            longer = ~(past[end] <= far[some])
+            past[end[longer]], met[end[longer]] = far[some][longer], contacts.point[some][longer]
+    return past, met

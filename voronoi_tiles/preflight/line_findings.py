@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Final, NamedTuple
 
 import numpy as np
 
+from voronoi_tiles.paths.paths import LINE
 from voronoi_tiles.preflight.chords import chords_of, counts_of
-from voronoi_tiles.preflight.contacts import Meeting, crossings, find_contacts, overlaps
+from voronoi_tiles.preflight.contacts import AROUND, Meeting, crossings, find_contacts, overlaps
 from voronoi_tiles.preflight.cut_lines import JudgedLines
 from voronoi_tiles.preflight.ends import PathEnds, find_ends
 from voronoi_tiles.preflight.findings import Limits, Severity
@@ -52,12 +53,14 @@ class LineFinding(NamedTuple):
 
 def find_on_lines(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:
     """All findings on lines of at least one piece."""
-    yield from _ends(lines, limits)
     contacts = find_contacts(lines.chords, limits.tolerance)
+    ends = find_ends(lines.chords, contacts, limits.tolerance, max(limits.gap, (1 + TAB_SHARE) * (limits.tabs or 0.0)))
+    yield from _ends(lines, ends, limits)
     along = overlaps(lines.chords, lines.paths, contacts, limits.tolerance)
     crossed, touched = crossings(lines.chords, lines.paths, contacts.take(~along.part), limits.tolerance)
     yield from map(_twice, along.twice)
-    yield from (_crossing(lines, meeting) for meeting in along.crossed + crossed)
+    over = _overshoots(ends, limits)
+    yield from (_crossing(lines, meeting) for meeting in along.crossed + crossed if not over(meeting))
     yield from (_touch(meeting, limits) for meeting in along.touched + touched)
     slivers = find_slivers(lines.chords, limits.feature, limits.tolerance)
     yield from _necks(lines, limits, slivers)
@@ -67,14 +70,24 @@ def find_on_lines(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:
     yield from _corners(lines, limits)
 
 
-def _ends(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:
-    """Ends that do not meet, short of another line or with nothing near."""
+def _ends(lines: JudgedLines, ends: PathEnds, limits: Limits) -> Iterator[LineFinding]:
+    """Ends that do not meet, short of another line or with nothing near, and those that run past one."""
     chords = lines.chords
     tabs = limits.tabs or 0.0
-    ends = find_ends(chords, limits.tolerance, max(limits.gap, (1 + TAB_SHARE) * tabs))
     wide: set[int] = set()
     for k in np.flatnonzero(ends.free).tolist():
         path = int(ends.path[k])
+        if math.isfinite(ends.past[k]):
+            yield LineFinding(
+                "overshoot",
+                "info",
+                f"a line runs {ends.past[k]:.3g} mm past another one",
+                "Shorten it if that must not burn.",
+                complex(ends.point[k]),
+                float(ends.past[k]),
+                (path,),
+            )
+            continue
         if math.isfinite(ends.distance[k]):
             yield _gap(lines, ends, k, tabs)
             continue
@@ -104,6 +117,20 @@ def _ends(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:
                 None,
                 (path,),
             )
+
+
+def _overshoots(ends: PathEnds, limits: Limits) -> Callable[[Meeting], bool]:
+    """Whether lines cross where one of them runs past the other by no more than a gap."""
+    past = np.flatnonzero(ends.free & np.isfinite(ends.past))
+    places: dict[int, list[complex]] = {}
+    for path, place in zip(ends.path[past].tolist(), ends.met[past].tolist(), strict=True):
+        places.setdefault(path, []).append(place)
+
+    def is_past(meeting: Meeting) -> bool:
+        near = (place for path in meeting.paths for place in places.get(path, ()))
+        return any(abs(place - meeting.place) <= AROUND * limits.tolerance for place in near)
+
+    return is_past
 
 
 def _gap(lines: JudgedLines, ends: PathEnds, k: int, tabs: float) -> LineFinding:
@@ -182,7 +209,8 @@ def _necks(lines: JudgedLines, limits: Limits, slivers: list[Sliver]) -> Iterato
     slim = {path: sliver.width for sliver in slivers if sliver.material for path in sliver.paths}
     accuracy = max(NECK_ACCURACY * limits.neck, limits.tolerance / 4)
     chords = chords_of(lines.paths, counts_of(lines.paths, accuracy), limits.tolerance)
-    for neck in find_necks(chords, 2 * accuracy + limits.tolerance, limits.neck):
+    blur = limits.tolerance / 2 + np.where(lines.paths.kind == LINE, 0.0, accuracy)[chords.piece]
+    for neck in find_necks(chords, blur, limits.neck):
         common = neck.place, neck.width, neck.paths, None, True
         if neck.material:
             if all(path in slim and neck.width > slim[path] / 2 for path in neck.paths):

@@ -16,6 +16,9 @@ from voronoi_tiles.preflight.contacts import run_beside
 _APPROACH: Final = 1e-6
 """By how much of its length a line may come nearer to be still parallel; no unit. Rounding leaves 1e-10."""
 
+_ASIDE: Final = 0.1
+"""The cosine of the angle at which a line ends beside another one, from which on it is not parallel."""
+
 _REMEDY: Final = "Split the drawing, or look for narrower necks, or for none: `neck=0`."
 
 _WAYS: Final = 4_000_000  # lines that leave points, looked at at once
@@ -44,8 +47,10 @@ class _Facing(NamedTuple):
         return _Facing(self.one[which], self.two[which], self.near.take(which))
 
 
-def find_necks(chords: Chords, touching: float, limit: float) -> list[Neck]:
-    """Where lines face each other across less than `limit` and more than `touching`, each narrow place once.
+def find_necks(chords: Chords, blur: Floats, limit: float) -> list[Neck]:
+    """Where lines face each other across less than `limit`, and more than both are blurred by, each narrow place once.
+
+    `blur` (float64, as many as chords) is how far each may lie from its curve, and half of what counts as touching.
 
     A place is narrow where the distance between two lines is at its least, or stays the same: no line that leaves
     either point comes nearer to the other one. So a corner, however sharp, is none. Between lines there is material
@@ -57,9 +62,10 @@ def find_necks(chords: Chords, touching: float, limit: float) -> list[Neck]:
     count = 0
     for one, two in pairs(chords, limit, _REMEDY):
         near = nearest(chords, one, two)
-        some = _Facing(one, two, near).take((near.distance < limit) & (near.distance > touching))
+        some = _Facing(one, two, near).take((near.distance < limit) & (near.distance > blur[one] + blur[two]))
         some = some.take(joints.is_least(some.one, some.near.share_one, some.near.one, some.near.two))
         some = some.take(joints.is_least(some.two, some.near.share_two, some.near.two, some.near.one))
+        some = some.take(_overlap_at_ends(chords, joints, some, limit))
         some = some.take(_see_each_other(chords, some.near))
         count += len(some.one)
         if count > FOUND_MAX:
@@ -137,13 +143,26 @@ class _Joints:
             result[some] = self._is_nearest(at, other[some] - point[some])
         return result
 
+    def is_loose(self, chord: Ints, share: Floats) -> Bools:
+        """Whether points on chords are ends at which nothing else begins."""
+        joint = np.where(share == 0.0, self._of_start[chord], self._of_end[chord])
+        return np.asarray(((share == 0.0) | (share == 1.0)) & (self._counts[joint] == 1), np.bool_)
+
     def _is_nearest(self, joint: Ints, towards: Complexes) -> Bools:
         """Whether no line that leaves a joint goes that way."""
         counts = self._counts[joint]
         ways = self._ways[ranges(self._first[joint], counts)]
-        nearer = dot(ways, np.repeat(towards / np.abs(towards), counts)) > _APPROACH
-        # A loose end is no neck, but an end that should have met something.
-        return ~np.logical_or.reduceat(nearer, np.cumsum(counts) - counts) & (counts > 1)
+        along = dot(ways, np.repeat(towards / np.abs(towards), counts))
+        first = np.cumsum(counts) - counts
+        # A loose end is no neck, but an end that should have met something; unless it lies beside the other line.
+        return ~np.logical_or.reduceat(along > _APPROACH, first) & ((counts > 1) | (np.abs(along[first]) < _ASIDE))
+
+
+def _overlap_at_ends(chords: Chords, joints: _Joints, some: _Facing, limit: float) -> Bools:
+    """Whether lines run beside each other further than they are apart, where one of them ends there."""
+    loose = joints.is_loose(some.one, some.near.share_one) | joints.is_loose(some.two, some.near.share_two)
+    low, high = run_beside(chords, some.one, some.two, limit)
+    return ~loose | (high - low > some.near.distance)
 
 
 def _see_each_other(chords: Chords, near: Nearest) -> Bools:

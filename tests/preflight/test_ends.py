@@ -1,0 +1,77 @@
+"""Ends of lines: short of the line that they should meet, past it, or beside another one."""
+
+from __future__ import annotations
+
+import cmath
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from voronoi_tiles.formats.svg.reader import svg_drawing
+from voronoi_tiles.preflight import Finding, judge
+
+PAGE = 'xmlns="http://www.w3.org/2000/svg" width="400mm" height="400mm" viewBox="0 0 400 400"'
+
+
+def found(*lines: list[complex], turn: float = 0.0) -> list[Finding]:
+    """The findings on lines through points, turned about the middle of the page."""
+    body = ""
+    for line in lines:
+        placed = [(z - 50 - 30j) * cmath.rect(1, turn) + 200 * (1 + 1j) for z in line]
+        body += "<path d='M" + "L".join(f"{z.real:.6f} {z.imag:.6f}" for z in placed) + "'/>"
+    return list(judge(svg_drawing(f"<svg {PAGE} fill='none' stroke='red'>{body}</svg>".encode(), "t"), "t").findings)
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.floats(0.01, 0.45),
+    st.booleans(),
+    st.floats(-0.7, 0.7),
+    st.floats(0, 6.3),
+    st.booleans(),
+    st.sampled_from(["own", "line", "closed"]),
+)
+def test_an_end_past_a_line_is_no_gap_and_one_short_of_it_is(
+    far: float, past: bool, slant: float, turn: float, start: bool, what: str
+) -> None:
+    """The contour is closed where its end runs past its beginning or another line, and open where it falls short."""
+    direction = cmath.rect(1, slant) * -1j
+    end = 20 + 10j + (1 if past else -1) * far * direction / direction.imag * -1
+    before = 20 + 10j - 25 * direction
+    tail = [before, end]
+    if what == "own":
+        lines = [[0 + 10j, 60 + 10j, 60 + 40j, *tail]]
+        lines[0][0] = 19.6 + 10j if start and past else 20 + 10j
+    else:
+        lines = [[10 + 10j, 60 + 10j, 60 - 20j, 10 - 20j, 10 + (10j if what == "closed" else 9.4j)], tail]
+    if start:
+        lines = [line[::-1] for line in lines]
+    kinds = {one.kind for one in found(*lines, turn=turn)}
+    assert ("gap" in kinds) == (not past)
+    assert ("overshoot" in kinds) == past
+    assert "crossing" not in kinds
+
+
+def test_a_line_that_crosses_far_from_its_end_crosses() -> None:
+    """Two millimetres past are no overshoot: the lines cross, and the ends are loose."""
+    kinds = [one.kind for one in found([10 + 10j, 60 + 10j], [30 + 40j, 30 + 8j])]
+    assert sorted(kinds) == ["crossing", "loose end", "loose end", "loose end", "loose end"]
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(0.01, 0.45), st.floats(0, 6.3), st.floats(0, 5), st.floats(-5, 5), st.booleans())
+def test_lines_side_by_side_have_no_gaps(apart: float, turn: float, begin: float, end: float, backwards: bool) -> None:
+    """Two lines beside each other: their ends are loose, and how narrow it is between them is said."""
+    other = [10 + begin + (10 + apart) * 1j, 90 + end + (10 + apart) * 1j]
+    findings = found([10 + 10j, 90 + 10j], other[::-1] if backwards else other, turn=turn)
+    assert sorted(one.kind for one in findings) == ["loose end"] * 4 + ["neck"]
+    assert findings[-1].value == pytest.approx(apart, abs=1e-3)
+
+
+def test_an_end_beside_a_line_still_has_to_meet_another() -> None:
+    """Two lines a third of a millimetre apart that both end short of a third one: two gaps."""
+    findings = found([10 + 10j, 59.6 + 10j], [10 + 10.3j, 59.6 + 10.3j], [60 + 0j, 60 + 30j])
+    assert sorted(one.kind for one in findings if one.severity == "error") == ["gap", "gap"]
+    # Ends that pass each other by little are no lines side by side.
+    assert "gap" in {one.kind for one in found([10 + 10j, 50 + 10j], [49.9 + 10.02j, 90 + 10.02j])}
