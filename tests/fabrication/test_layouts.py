@@ -248,6 +248,18 @@ def test_contours_are_as_far_apart_as_asked_and_no_farther(name: str, job: dict[
     assert apart <= wanted + 0.02 * max(wanted, 0.1)
 
 
+def test_contours_that_touch_are_said() -> None:
+    """A kerf without a gap, and pieces without both, cut twice where contours lie on each other; a gap says nothing."""
+
+    def note(kerf: float, gap: float | None) -> str:
+        """What is said of a sheet of squares."""
+        return " ".join(squares().make(Job(sheet=(100.0, 90.0), edges="pieces", kerf=kerf, gap=gap)).notes)
+
+    assert "contours touch, and are cut twice where they lie on each other: `gap='1mm'`" in note(0.15, 0.0)
+    assert "contours lie on each other, and are cut twice" in note(0.0, None)
+    assert note(0.15, 0.1) == note(0.15, None) == ""
+
+
 @pytest.mark.parametrize("kerf", [0.0, 0.4])
 def test_clipped_tiles_stay_on_the_sheet_when_pulled_apart(kerf: float) -> None:
     """What is cut at the border is cut where the border is, not where it was before the tiles were pulled."""

@@ -218,9 +218,11 @@ def _unstroked(form: Format, job: Job) -> list[str]:
 
 
 def _doubled(layout: Layout, job: Job) -> list[str]:
-    """Say that neighbours' contours lie on each other, where they do."""
-    if not job.pieces or job.apart is not None or len(layout.copies.tile) < 2 or job.sheet is None:
+    """Say that neighbours' contours lie on each other, or touch, where they do."""
+    if not job.pieces or (job.apart or 0.0) > 0.0 or len(layout.copies.tile) < 2 or job.sheet is None:
         return []
+    if job.apart is not None:
+        return ["neighbouring contours touch, and are cut twice where they lie on each other: `gap='1mm'` avoids it"]
     once = "" if job.needs_pieces() else "`edges='once'`, or "
     return [f"neighbouring contours lie on each other, and are cut twice: {once}`gap='1mm'`, avoids it"]
 
