@@ -63,6 +63,8 @@ def judge(
     drawing: ReadDrawing, file: str, *, limits: Limits = DEFAULT_LIMITS, layers: Collection[str] = ()
 ) -> PreflightReport:
     """Find what would spoil the cut of a drawing that was read; `file` is its name in the report."""
+    if drawing.job:  # a file of our own is in millimetres, also where its version cannot say so
+        drawing = replace(drawing, unit=drawing.unit or "mm", unit_known=True)
     if limits.tabs is None:
         limits = replace(limits, tabs=tab_width(drawing.job))
     cut = cut_shapes(drawing, layers)

@@ -8,7 +8,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.paths.paths import LINE
+from voronoi_tiles.base.arrays import Bools, Ints
+from voronoi_tiles.paths.paths import LINE, Paths
 from voronoi_tiles.preflight.chords import chords_of, counts_of
 from voronoi_tiles.preflight.contacts import AROUND, Meeting, crossings, find_contacts, overlaps
 from voronoi_tiles.preflight.cut_lines import JudgedLines
@@ -26,6 +27,9 @@ TAB_SHARE: Final = 0.05
 NECK_ACCURACY: Final = 0.005
 """How far the chords between which necks are measured lie from the curves; relative to the limit."""
 
+
+STUTTER: Final = 4
+"""From so many short segments in a row on a machine stutters; a count."""
 
 SHORT_REMEDY: Final = (
     "Simplify the path: machines stutter on segments that are shorter than their steps. "
@@ -249,17 +253,35 @@ def _features(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:
 
 
 def _short(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:
+    """Segments below the limit: machines stutter where many follow each other, and hardly notice one among longer."""
     paths = lines.paths
-    for piece in np.flatnonzero(paths.lengths < limits.shortest).tolist():
+    short = paths.lengths < limits.shortest
+    for piece, many in zip(np.flatnonzero(short).tolist(), _in_a_row(paths, short) >= STUTTER, strict=True):
         yield LineFinding(
             "short",
-            "warning",
+            "warning" if many else "info",
             f"segment of {paths.lengths[piece]:.3g} mm",
             SHORT_REMEDY,
             complex(paths.start[piece]),
             float(paths.lengths[piece]),
             (int(paths.owner[piece]),),
         )
+
+
+def _in_a_row(paths: Paths, which: Bools) -> Ints:
+    """How many segments follow each other, round closed paths as well, at each of those that are chosen."""
+    some = np.flatnonzero(which)
+    owner = paths.owner[some]
+    begins = np.append(True, (np.diff(some) != 1) | (np.diff(owner) != 0))[: len(some)]
+    row = np.cumsum(begins) - 1
+    counts = np.bincount(row)
+    # On a closed path the last row goes on as the first one.
+    heads = np.flatnonzero((some == paths.offsets[owner]) & paths.closed[owner])
+    for head in heads.tolist():
+        last = int(np.searchsorted(owner, owner[head], "right")) - 1
+        if some[last] == paths.offsets[owner[head] + 1] - 1 and row[last] != row[head]:
+            counts[[row[head], row[last]]] = counts[row[head]] + counts[row[last]]
+    return counts[row]
 
 
 def _corners(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:
