@@ -10,6 +10,7 @@ import numpy as np
 from voronoi_tiles.base.arguments import instance
 from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.base.text import counted
 from voronoi_tiles.base.tolerance import COORDINATE_MAX
 from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.vector.outline import Outline
@@ -54,7 +55,8 @@ class Tile:
     _record: TileRecord
 
     def __repr__(self) -> str:
-        return f"<Tile {self.site.name!r}: {len(self.outline)} edges, {self.copies_per_cell} copies per cell>"
+        copies = counted(self.copies_per_cell, "copy", "copies")
+        return f"<Tile {self.site.name!r}: {counted(len(self.outline), 'edge')}, {copies} per cell>"
 
     @property
     def name(self) -> str:

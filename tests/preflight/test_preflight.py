@@ -515,7 +515,9 @@ def test_the_commands_messages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     """One finding is one; where memory ends it is the drawing that is too large."""
     path = tmp_path / "t.svg"
     path.write_text(f"<svg {NS} {PAGE} fill='none' stroke='red'>{PLANTED['bow tie'][0]}</svg>")
-    assert "t.svg: 1 finding would spoil the cut." in CliRunner().invoke(command, [str(path)]).stderr
+    result = CliRunner().invoke(command, [str(path)])
+    assert "t.svg: 1 finding would spoil the cut." in result.stderr
+    assert "1 error, 0 warnings, 0 remarks: this would spoil the cut." in result.stdout
     path.write_text(f"<svg {NS} {PAGE} fill='none' stroke='red'>{PLANTED['two circles'][0]}</svg>")
     assert "t.svg: 2 findings would spoil the cut." in CliRunner().invoke(command, [str(path)]).stderr
 

@@ -21,6 +21,11 @@ def printable(text: str) -> str:
     return "".join(sign if sign.isprintable() else escaped(sign) for sign in text)
 
 
+def counted(count: int, one: str, many: str | None = None) -> str:
+    """A count with its noun: "1 error", "0 errors", "2,000 copies"; the plural is that with an s unless it is given."""
+    return f"{count:,} {one if count == 1 else many or f'{one}s'}"
+
+
 def xml_text(text: str) -> str:
     """The text with what XML 1.0 cannot carry replaced."""
     return _NOT_XML.sub("\ufffd", text)

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import click
 
+from voronoi_tiles.base.text import counted
 from voronoi_tiles.cli.common import (
     EXIT_USAGE,
     PATH,
@@ -105,6 +106,5 @@ def preflight(
     print_figures(report.document(), lambda _: report_text(report), as_json=as_json)
     if not report.passed:
         errors = sum(finding.severity == "error" for finding in report.findings)
-        findings = "1 finding" if errors == 1 else f"{errors:,} findings"
-        say(f"Error: {shown(file)}: {findings} would spoil the cut.")
+        say(f"Error: {shown(file)}: {counted(errors, 'finding')} would spoil the cut.")
         raise click.exceptions.Exit(1)

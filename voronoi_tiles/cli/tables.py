@@ -7,7 +7,7 @@ import sys
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from voronoi_tiles.base.text import printable
+from voronoi_tiles.base.text import counted, printable
 
 
 def info_text(figures: dict[str, Any]) -> str:
@@ -18,7 +18,7 @@ def info_text(figures: dict[str, Any]) -> str:
     page.head(
         {
             "design": printable(figures["design"]),
-            "group": f"{figures['group']}, {figures['order']} copies per cell",
+            "group": f"{figures['group']}, {counted(figures['order'], 'copy', 'copies')} per cell",
             "cell": f"a = {_vector(cell['a'])}, b = {_vector(cell['b'])} {units}, area {_entry(cell['area'])} {units}²",
         }
     )
@@ -64,8 +64,9 @@ def report_text(figures: dict[str, Any]) -> str:
             f"{use['whole_share']:.1%} whole ones",
             "pieces": f"{pieces['count']:,}, {pieces['whole']:,} of them whole tiles, "
             f"{pieces['turned_over']:,} turned over",
-            "colours": f"{figures['colours']} suffice for the whole tessellation",
-            "cut": f"{cut['length'] / 1000:.3f} m, {cut['pierces']:,} pierces, {cut['travel'] / 1000:.3f} m of travel",
+            "colours": f"{figures['colours']} suffice{'s' * (figures['colours'] == 1)} for the whole tessellation",
+            "cut": f"{cut['length'] / 1000:.3f} m, {counted(cut['pierces'], 'pierce')}, "
+            f"{cut['travel'] / 1000:.3f} m of travel",
             "curves": f"{figures['curves']}{accuracy}; the shortest segment is {figures['shortest_piece']:.3g} mm",
             "time": f"{figures['time'] / 60:.1f} min, acceleration not counted",
         }

@@ -15,6 +15,7 @@ import numpy as np
 from voronoi_tiles.base.arguments import path_name
 from voronoi_tiles.base.arrays import Bools, offsets_of, ranges
 from voronoi_tiles.base.files import refuse_overwriting, writing
+from voronoi_tiles.base.text import counted
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.arc_fitting import curve_fit
@@ -207,7 +208,10 @@ def _format(name: str) -> Format:
 def _untabbed(cuts: list[Cut], job: Job) -> list[str]:
     """Say how many pieces are too small for tabs, where there are any."""
     small = sum(int(cut.paths.closed.sum()) for cut in cuts) if job.tabs > 0.0 and job.pieces else 0
-    return [f"{small:,} contours are too short for tabs of {job.tabs:g} mm, and fall out"] if small else []
+    if not small:
+        return []
+    are, fall = ("is", "falls") if small == 1 else ("are", "fall")
+    return [f"{counted(small, 'contour')} {are} too short for tabs of {job.tabs:g} mm, and {fall} out"]
 
 
 def _unstroked(form: Format, job: Job) -> list[str]:

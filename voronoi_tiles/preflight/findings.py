@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any, Final, Literal
 
 from voronoi_tiles.base.arguments import number
-from voronoi_tiles.base.text import printable
+from voronoi_tiles.base.text import counted, printable
 from voronoi_tiles.formats.reading import ReadDrawing
 
 Severity = Literal["error", "warning", "info"]
@@ -162,8 +162,9 @@ def report_text(report: PreflightReport) -> str:
         x0, y0, x1, y1 = report.extents
         lines.append(f"drawing   {_size(x1 - x0, y1 - y0)} from ({x0:.6g}, {y0:.6g}) to ({x1:.6g}, {y1:.6g})")
     shortest = "" if report.shortest is None else f", the shortest {report.shortest:.4g} mm"
+    segments = counted(report.pieces, "segment")
     lines += [
-        f"cut       {report.length:.6g} mm, {report.pieces:,} segments{shortest}, {report.nodes:,} nodes",
+        f"cut       {report.length:.6g} mm, {segments}{shortest}, {counted(report.nodes, 'node')}",
         f"places    in mm, y {'down from the upper left corner' if drawing.format == 'svg' else 'up'}",
         "",
     ]
@@ -190,9 +191,12 @@ def report_text(report: PreflightReport) -> str:
         if len(group) > PLACES_SHOWN:
             lines.append(f"  and {len(group) - PLACES_SHOWN:,} more; --json lists them all")
         lines.append(f"  {first.remedy}")
-    counts = [sum(finding.severity == severity for finding in report.findings) for severity in SEVERITIES]
+    counts = [
+        counted(sum(finding.severity == severity for finding in report.findings), noun)
+        for severity, noun in zip(SEVERITIES, ("error", "warning", "remark"), strict=True)
+    ]
     verdict = "nothing that would spoil the cut" if report.passed else "this would spoil the cut"
-    lines += ["", f"{counts[0]:,} errors, {counts[1]:,} warnings, {counts[2]:,} remarks: {verdict}."]
+    lines += ["", f"{', '.join(counts)}: {verdict}."]
     return "\n".join(lines) + "\n"
 
 
