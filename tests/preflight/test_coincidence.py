@@ -80,7 +80,7 @@ def line(_: float, begin: float, write: Writer) -> str:
 CURVES = {"arcs": circle_arcs, "cubics": circle_cubics, "parabola": parabola, "wave": wave, "line": line}
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(
     st.tuples(st.sampled_from(sorted(CURVES)), st.sampled_from(sorted(CURVES))).filter(
         lambda kinds: kinds[0] != "line" or kinds[1] != "line"
@@ -165,7 +165,7 @@ def part(corners: list[complex], ways: list[str], write: Writer, which: list[int
     return data
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=25, deadline=None)
 @given(st.integers(0, 10**9), st.sampled_from([3, 4, 6]), st.booleans())
 def test_a_line_that_is_drawn_again_is_found(seed: int, digits: int, whole: bool) -> None:
     """An outline, or one edge of it as that of a neighbour, again with fewer digits or a thousandth beside itself."""
@@ -184,7 +184,7 @@ def test_a_line_that_is_drawn_again_is_found(seed: int, digits: int, whole: bool
     assert 0.95 * chords <= length <= 1.7 * chords + 1.0
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(st.floats(0.5, 40), st.floats(0, 6), st.floats(0, 6), st.floats(0, 6.3), st.sampled_from([3, 6]))
 def test_a_circle_as_arcs_and_as_cubics_is_one(
     radius: float, one: float, other: float, turn: float, digits: int

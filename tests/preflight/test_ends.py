@@ -23,7 +23,7 @@ def found(*lines: list[complex], turn: float = 0.0) -> list[Finding]:
     return list(judge(svg_drawing(f"<svg {PAGE} fill='none' stroke='red'>{body}</svg>".encode(), "t"), "t").findings)
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @given(
     st.floats(0.01, 0.45),
     st.booleans(),
@@ -59,7 +59,7 @@ def test_a_line_that_crosses_far_from_its_end_crosses() -> None:
     assert sorted(kinds) == ["crossing", "loose end", "loose end", "loose end", "loose end"]
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=15, deadline=None)
 @given(st.floats(0.01, 0.45), st.floats(0, 6.3), st.floats(0, 5), st.floats(-5, 5), st.booleans())
 def test_lines_side_by_side_have_no_gaps(apart: float, turn: float, begin: float, end: float, backwards: bool) -> None:
     """Two lines beside each other: their ends are loose, and how narrow it is between them is said."""

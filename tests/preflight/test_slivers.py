@@ -50,7 +50,7 @@ SHAPES = {
 }
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=40, deadline=None)
 @given(
     st.sampled_from(sorted(SHAPES)),
     st.floats(5, 100),
@@ -74,7 +74,7 @@ def test_slivers_are_found_and_nothing_else_is(kind: str, a: float, b: float, tu
         assert f"{slivers[0].value:.3g} mm" in slivers[0].message
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(st.integers(0, 10**9), st.floats(0.3, 3.0))
 def test_the_width_is_that_of_the_largest_disc(seed: int, limit: float) -> None:
     """Any polygon with holes: a sliver exactly where shapely's largest disc is smaller, and as wide."""

@@ -47,7 +47,7 @@ def digest(report: PreflightReport) -> list[tuple[object, ...]]:
     )
 
 
-@settings(max_examples=15, deadline=None)
+@settings(max_examples=8, deadline=None)
 @given(st.integers(0, 10**9), st.sampled_from(["Z", "", "l0.3 0.1"]))
 def test_what_repeats_is_judged_as_what_does_not(seed: int, end: str) -> None:
     """Outlines on a lattice, near each other or across, some of them open: the same findings either way."""
