@@ -102,6 +102,24 @@ def test_the_width_is_that_of_the_largest_disc(seed: int, limit: float) -> None:
         assert shapely.Polygon(shell, holes).buffer(1e-3).contains(shapely.Point(x, y))
 
 
+@settings(max_examples=20, deadline=None)
+@given(st.sampled_from(["rectangle", "triangle", "rhombus"]), st.floats(5, 100), st.floats(0.02, 3), st.floats(0, 360))
+def test_slivers_between_loose_lines(kind: str, a: float, b: float, turn: float) -> None:
+    """Outlines of lines that are objects of their own, as CAD programs write them, rounded: as those in one path."""
+    shape, width = SHAPES[kind](a, b)
+    drawing = svg_drawing(
+        f"<svg {PAGE}><path transform='translate(300 300) rotate({turn})' d='{shape}'/></svg>".encode(), "t"
+    )
+    paths = drawing.shapes[0].paths
+    ends = zip(paths.start, paths.end, strict=True)
+    body = "".join(f"<path d='M{p.real:.3f} {600 - p.imag:.3f}L{q.real:.3f} {600 - q.imag:.3f}'/>" for p, q in ends)
+    slivers = [one for one in found(body) if one.kind == "sliver"]
+    if width > 1.005:
+        assert not slivers
+    elif width < 0.99:
+        assert [one.value for one in slivers] == [pytest.approx(width, abs=5e-3)]
+
+
 @pytest.mark.parametrize(
     ("body", "kinds"),
     [

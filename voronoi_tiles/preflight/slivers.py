@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
 
 from voronoi_tiles.base.arrays import Bools, Floats, Ints, plane, ranges
+from voronoi_tiles.base.components import components
 from voronoi_tiles.preflight.chords import Chords
 
 _STEPS: Final = 12
@@ -27,7 +29,7 @@ class Sliver(NamedTuple):
 
 
 def find_slivers(chords: Chords, limit: float, touching: float) -> list[Sliver]:
-    """The regions inside closed paths, without their holes, in which no disc of the diameter `limit` fits.
+    """The regions inside closed paths, and between lines whose ends meet, in which no disc of this diameter fits.
 
     A region that is no wider than `touching` is none: its edges are one line, drawn twice. Nor is one that is smaller
     than the limit both ways.
@@ -35,10 +37,20 @@ def find_slivers(chords: Chords, limit: float, touching: float) -> list[Sliver]:
     Most regions are wide by their area and their perimeter, for the points within a distance r of the edge cover no
     more than r times the perimeter, and a disc more for each hole. The others are shrunk.
     """
+    if limit <= 0.0:
+        return []
+    # Discs fit between curves, not their chords: what is as wide as the limit is wide enough.
+    radius = (limit - touching) / 2
+    found = [*_in_rings(chords, limit, radius), *_between_lines(chords, limit, radius, touching)]
+    return [sliver for sliver in found if sliver.width > touching]
+
+
+def _in_rings(chords: Chords, limit: float, radius: float) -> Iterator[Sliver]:
+    """The slivers inside rings, without the rings in these."""
     counts = np.diff(chords.first)
     ring = np.flatnonzero(chords.ring & (counts >= 3))
-    if not len(ring) or limit <= 0.0:
-        return []
+    if not len(ring):
+        return
     # About each ring's beginning, so that a small ring far from the origin has its area.
     begin = np.repeat(chords.start[chords.first[:-1]], counts)
     twice = ((chords.start - begin).conj() * (chords.end - begin)).imag
@@ -52,19 +64,43 @@ def find_slivers(chords: Chords, limit: float, touching: float) -> list[Sliver]:
     holes = np.bincount(outside, minlength=len(ring))
     region = area - np.bincount(outside, area[inside], len(ring))
     edge = lengths + np.bincount(outside, lengths[inside], len(ring))
-    # Discs fit between curves, not their chords: what is as wide as the limit is wide enough.
-    radius = (limit - touching) / 2
-    found = []
     large = chords.sizes[ring] >= limit
     for k in np.flatnonzero(large & (region <= radius * edge + np.pi * radius**2 * holes)).tolist():
         paths = (int(ring[k]), *ring[inside[outside == k]].tolist())
-        shape = _region(chords, paths)
-        if shape.is_empty or not shape.buffer(-radius).is_empty:
-            continue
-        width, place = _widest(shape, radius)
-        if width > touching:
-            found.append(Sliver(place, width, paths, bool(depth[k] % 2 == 0)))
-    return found
+        widest = _widest(_region(chords, paths), radius)
+        if widest is not None:
+            yield Sliver(*widest, paths, bool(depth[k] % 2 == 0))
+
+
+def _between_lines(chords: Chords, limit: float, radius: float, touching: float) -> Iterator[Sliver]:
+    """The slivers between open lines that meet at their ends."""
+    line = np.flatnonzero(~chords.ring)
+    if len(line) < 2:
+        return
+    first, last = chords.first[line], chords.first[line + 1] - 1
+    ends = np.concatenate((chords.start[first], chords.end[last]))
+    points = shapely.points(plane(ends))
+    joined = shapely.STRtree(points).query(points, predicate="dwithin", distance=touching).astype(np.intp)
+    ends = ends[components(len(ends), *joined)]
+    # A line as its points: the chords' beginnings, and its end.
+    counts = last - first + 2
+    at = np.append(0, np.cumsum(counts))
+    way = np.empty(at[-1], np.complex128)
+    inner = np.ones(len(way), np.bool_)
+    inner[at[1:] - 1] = False
+    way[inner] = chords.start[ranges(first, counts - 1)]
+    way[at[:-1]], way[at[1:] - 1] = np.split(ends, 2)
+    lines = shapely.linestrings(plane(way), indices=np.repeat(np.arange(len(line)), counts))
+    faces = shapely.get_parts(shapely.polygonize(lines))
+    box = shapely.bounds(faces)
+    large = np.maximum(box[:, 2] - box[:, 0], box[:, 3] - box[:, 1]) >= limit
+    holes = shapely.get_num_interior_rings(faces)
+    narrow = shapely.area(faces) <= radius * shapely.length(faces) + np.pi * radius**2 * holes
+    for face in faces[large & narrow]:
+        widest = _widest(face, radius)
+        if widest is not None:
+            around = shapely.covered_by(lines, shapely.boundary(face).buffer(touching))
+            yield Sliver(*widest, tuple(line[around].tolist()), True)
 
 
 def _nested(chords: Chords, ring: Ints, area: Floats) -> tuple[Ints, Ints]:
@@ -91,8 +127,10 @@ def _region(chords: Chords, paths: tuple[int, ...]) -> shapely.Geometry:
     return shape
 
 
-def _widest(shape: shapely.Geometry, radius: float) -> tuple[float, complex]:
-    """The diameter of the largest disc in a region where none of this radius fits, and its middle."""
+def _widest(shape: shapely.Geometry, radius: float) -> tuple[complex, float] | None:
+    """The middle and the diameter of the largest disc in a region; None where one of this radius fits."""
+    if shape.is_empty or not shape.buffer(-radius).is_empty:
+        return None
     low, high = 0.0, radius
     core = shape
     for _ in range(_STEPS):
@@ -103,4 +141,4 @@ def _widest(shape: shapely.Geometry, radius: float) -> tuple[float, complex]:
         else:
             low, core = middle, left
     point = core.representative_point()
-    return low + high, complex(point.x, point.y)
+    return complex(point.x, point.y), low + high

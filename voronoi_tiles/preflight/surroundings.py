@@ -47,6 +47,7 @@ class Repetition:
     def images(self, path: int, *others: int) -> Iterator[tuple[int, ...]]:
         """A judged path with others that are near to it, and the same for each path of its kind; itself comes first."""
         here = self.near[self.offsets[path] : self.offsets[path + 1]].tolist()
+        others = tuple(other for other in others if other == path or other in here)
         ranks = [None if other == path else here.index(other) for other in others]
         for image in np.flatnonzero(self.kind == self.kind[path]).tolist():
             there = self.offsets[image]
