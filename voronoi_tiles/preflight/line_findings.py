@@ -115,7 +115,7 @@ def _ends(lines: JudgedLines, ends: PathEnds, limits: Limits) -> Iterator[LineFi
             yield LineFinding(
                 "loose end",
                 "warning",
-                "a line ends with nothing near",
+                "a line ends and meets no other",
                 "Join it to the next line, unless it is meant as a slit.",
                 complex(ends.point[k]),
                 None,
@@ -219,7 +219,8 @@ def _necks(lines: JudgedLines, limits: Limits, slivers: list[Sliver]) -> Iterato
         if neck.material:
             if all(path in slim and neck.width > slim[path] / 2 for path in neck.paths):
                 continue
-            message = f"neck of {neck.width:.3g} mm"
+            beside = f"two lines side by side, {neck.width:.3g} mm apart"
+            message = beside if neck.loose else f"neck of {neck.width:.3g} mm"
             yield LineFinding("neck", "warning", message, "Widen it: it may break or burn.", *common)
         else:
             message = f"{neck.width:.3g} mm of waste between two lines"

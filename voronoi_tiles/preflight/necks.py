@@ -26,13 +26,17 @@ _WAYS_MAX: Final = 200_000_000  # and altogether
 
 
 class Neck(NamedTuple):
-    """A narrow place: its middle, its width, the paths and chords on both sides, and whether material is between."""
+    """A narrow place: its middle, its width, the paths and chords on both sides, and whether material is between.
+
+    With `loose` it is beside the loose end of a line.
+    """
 
     place: complex
     width: float
     paths: tuple[int, int]
     chords: tuple[int, int]
     material: bool
+    loose: bool
 
 
 class _Facing(NamedTuple):
@@ -75,10 +79,10 @@ def find_necks(chords: Chords, blur: Floats, limit: float) -> list[Neck]:
         return []
     one, two = (np.concatenate([part[k] for part in found]) for k in (0, 1))
     near = Nearest.concatenate([part.near for part in found])
-    return _narrowest(chords, one, two, near, limit, joints.shared)
+    return _narrowest(chords, one, two, near, limit, joints)
 
 
-def _narrowest(chords: Chords, one: Ints, two: Ints, near: Nearest, limit: float, shared: bool) -> list[Neck]:
+def _narrowest(chords: Chords, one: Ints, two: Ints, near: Nearest, limit: float, joints: _Joints) -> list[Neck]:
     """The least of each run of narrow places."""
     at = chords.before[one] + near.share_one * chords.lengths[one]
     low, high = run_beside(chords, one, two, limit)
@@ -88,7 +92,8 @@ def _narrowest(chords: Chords, one: Ints, two: Ints, near: Nearest, limit: float
     group = np.repeat(np.arange(len(begins)), np.diff(np.append(begins, len(order))))
     best = order[np.lexsort((near.distance[order], group))[begins]]
     middle = (near.one[best] + near.two[best]) / 2
-    material = np.ones(len(middle), np.bool_) if shared else _is_material(chords, middle)
+    material = np.ones(len(middle), np.bool_) if joints.shared else _is_material(chords, middle)
+    loose = (joints.is_loose(one, near.share_one) | joints.is_loose(two, near.share_two))[best]
     necks = [
         Neck(
             complex(place),
@@ -96,8 +101,9 @@ def _narrowest(chords: Chords, one: Ints, two: Ints, near: Nearest, limit: float
             (int(chords.path[one[k]]), int(chords.path[two[k]])),
             (int(one[k]), int(two[k])),
             bool(solid),
+            bool(end),
         )
-        for k, place, solid in zip(best.tolist(), middle, material, strict=True)
+        for k, place, solid, end in zip(best.tolist(), middle, material, loose, strict=True)
     ]
     necks.sort(key=lambda neck: neck.width)
     places = np.array([neck.place for neck in necks])
