@@ -27,7 +27,7 @@ def found(*lines: list[complex], turn: float = 0.0) -> list[Finding]:
 @given(
     st.floats(0.01, 0.45),
     st.booleans(),
-    st.floats(-0.7, 0.7),
+    st.floats(-0.4, 0.4),
     st.floats(0, 6.3),
     st.booleans(),
     st.sampled_from(["own", "line", "closed"]),
