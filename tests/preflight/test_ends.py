@@ -53,6 +53,13 @@ def test_an_end_past_a_line_is_no_gap_and_one_short_of_it_is(
     assert "crossing" not in kinds
 
 
+def test_what_a_line_meets_before_closes_no_gap() -> None:
+    """A line that joins a contour just before its end is not what that end should have met."""
+    contour = [20 + 10j, 60 + 10j, 60 + 40j, 20 + 40j, 20 + 10.2j]
+    assert "gap" in {one.kind for one in found(contour, [20 + 10.7j, 60 + 30j])}
+    assert "gap" in {one.kind for one in found(contour, [10 + 10.7j, 40 + 10.7j])}
+
+
 def test_a_line_that_crosses_far_from_its_end_crosses() -> None:
     """Two millimetres past are no overshoot: the lines cross, and the ends are loose."""
     kinds = [one.kind for one in found([10 + 10j, 60 + 10j], [30 + 40j, 30 + 8j])]

@@ -76,8 +76,7 @@ def find_ends(chords: Chords, contacts: Contacts, tolerance: float, gap: float) 
     facing = facing.take(starts(facing.end) if len(facing.end) else facing.end)
     nearest, near, which = np.full(len(point), np.inf), point.copy(), np.full(len(point), -1, np.intp)
     nearest[facing.end], near[facing.end], which[facing.end] = facing.distance, facing.foot, facing.chord
-    past, met = _past(chords, contacts, path, gap)
-    past[~np.isfinite(nearest)] = np.nan
+    past, met = _past(chords, contacts, path, which, gap)
     return PathEnds(point, path, nearest, near, which, nearest > tolerance, past, met)
 
 
@@ -123,8 +122,8 @@ def _beside(chords: Chords, facing: _Facing, path: Ints, at: Floats, tolerance: 
     return result
 
 
-def _past(chords: Chords, contacts: Contacts, path: Ints, gap: float) -> tuple[Floats, Complexes]:
-    """How far ends run past the last line that their paths meet, and where that is."""
+def _past(chords: Chords, contacts: Contacts, path: Ints, nearest: Ints, gap: float) -> tuple[Floats, Complexes]:
+    """How far ends run past the line with the chord that is nearest to them, and where their paths meet it last."""
     past, met = np.full(len(path), np.nan), np.zeros(len(path), np.complex128)
     first_end = np.searchsorted(path, np.arange(len(chords.total)))
     for one, other, here, there in (
@@ -139,6 +138,8 @@ def _past(chords: Chords, contacts: Contacts, path: Ints, gap: float) -> tuple[F
             some = np.flatnonzero(~chords.ring[own] & (far <= tail) & ((own != chords.path[other]) | back))
             some = some[np.argsort(-far[some], kind="stable")]
             end = first_end[own[some]] + last
-            longer = ~(past[end] <= far[some])
-            past[end[longer]], met[end[longer]] = far[some][longer], contacts.point[some][longer]
+            # What the path meets before, another line than the one that its end is near to, leaves the gap open.
+            last_met = (nearest[end] >= 0) & (chords.path[nearest[end]] == chords.path[other[some]])
+            last_met &= ~(past[end] <= far[some])
+            past[end[last_met]], met[end[last_met]] = far[some][last_met], contacts.point[some][last_met]
     return past, met

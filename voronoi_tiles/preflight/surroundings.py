@@ -102,7 +102,7 @@ def _shapes(paths: Paths, accuracy: float) -> Ints:
         known.setdefault((closed, paths.kind[low:high].tobytes()), len(known))
         for closed, low, high in zip(paths.closed.tolist(), bounds[:-1], bounds[1:], strict=True)
     ]
-    shape = _clusters(np.array(build, np.intp), sums / counts, accuracy)
+    shape = _clusters(np.array(build, np.intp), np.asarray(sums / counts, np.complex128), accuracy)
     # What has the same mean is compared with the first of it point by point; what differs is taken as like no other.
     _, model, which = np.unique(shape, return_index=True, return_inverse=True)
     model = model[which]
