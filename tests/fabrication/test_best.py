@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from helpers.sheets import circle, period
+import shapely
+from helpers.sheets import circle, flattened, period, polygon, xy
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from voronoi_tiles.fabrication.best_offset import best_shift
 from voronoi_tiles.fabrication.region import Region
@@ -50,3 +53,55 @@ def test_other_regions_take_a_grid() -> None:
     region = Region(border)
     shift = best_shift(period("p4-key"), region)
     assert whole("p4-key", region, shift) >= whole("p4-key", region, 0j)
+
+
+def rims(name: str, region: Region, shift: complex) -> tuple[float, float, float, float]:
+    """What the whole tiles leave free on the left, below, on the right and above; by points along their outlines."""
+    placement = place_tiles(period(name).placed(1.0, shift), region)
+    kept = placement.whole
+    outlines, _ = period(name).placed(1.0, shift).outlines(placement.tile[kept], placement.step[kept])
+    x0, y0, x1, y1 = shapely.total_bounds(shapely.multipoints(xy(np.concatenate(flattened(outlines)))))
+    left, bottom, right, top = region.bounds
+    return x0 - left, y0 - bottom, right - x1, top - y1
+
+
+@given(
+    st.sampled_from(NAMES), st.floats(60.0, 320.0), st.floats(60.0, 320.0), st.floats(-50.0, 50.0), st.floats(0.0, 9.0)
+)
+@settings(max_examples=15)
+def test_tiles_lie_in_the_middle_of_a_rectangle(
+    name: str, width: float, height: float, left: float, bottom: float
+) -> None:
+    """What is free is the same left and right, and above and below, wherever the rectangle is."""
+    region = Region.rectangle(left, bottom, left + width, bottom + height)
+    shift = best_shift(period(name), region)
+    if whole(name, region, shift):
+        free = rims(name, region, shift)
+        assert free[0] == pytest.approx(free[2], abs=1e-3)
+        assert free[1] == pytest.approx(free[3], abs=1e-3)
+        assert min(free) >= -1e-4
+
+
+@pytest.mark.parametrize("name", ["p4-key", pytest.param("p6-manta", marks=pytest.mark.slow)])
+def test_tiles_go_towards_the_middle_of_a_drawing_as_far_as_they_can(name: str) -> None:
+    """A step that makes rims more equal loses a tile, or there is none to make; by trying steps of all sizes."""
+    corners = [0j, 260 + 20j, 250 + 240j, 90 + 260j]
+    region = polygon(*corners)
+    shift = best_shift(period(name), region)
+    count = whole(name, region, shift)
+    left, bottom, right, top = rims(name, region, shift)
+    assert min(left, bottom, right, top) > 0.0
+    for off, unit in ((right - left, 1.0), (top - bottom, 1j)):
+        if abs(off) > 0.1:
+            steps = np.linspace(0.05, abs(off) / 2, 6) * np.sign(off)
+            assert all(whole(name, region, shift + step * unit) < count for step in steps.tolist())
+
+
+def test_a_group_that_is_not_in_the_middle_is_seen() -> None:
+    """The measure of the tests above, for a group that is moved by a millimetre."""
+    region = Region.rectangle(0.0, 0.0, 200.0, 150.0)
+    shift = best_shift(period("p4-key"), region)
+    left, bottom, right, top = rims("p4-key", region, shift)
+    assert min(left, bottom) > 0.1
+    moved = rims("p4-key", region, shift + 0.1)
+    assert moved == pytest.approx((left + 0.1, bottom, right - 0.1, top), abs=1e-6)

@@ -359,7 +359,8 @@ def test_the_reports_figures(job: dict[str, Any]) -> None:
     assert figures["cut"]["length"] == pytest.approx(length, rel=1e-9)
     assert figures["cut"]["travel"] == pytest.approx(travel, rel=1e-9)
     assert figures["cut"]["pierces"] == pierces
-    assert figures["pieces"]["count"] == sum(row["count"] for row in figures["pieces"]["kinds"])
+    counts = [row["count"] for row in figures["pieces"]["kinds"]]
+    assert figures["pieces"]["count"] + figures["pieces"]["frame"] == sum(counts)
     area = tiles.tiles[0].area * tiles.design.unit_mm**2
     assert figures["use"]["whole_tiles"] == pytest.approx(area * figures["pieces"]["whole"], rel=1e-3)
     assert figures["use"]["share"] == pytest.approx(

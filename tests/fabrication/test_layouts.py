@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -27,9 +28,8 @@ from helpers.examples import tiling
 from helpers.sheets import check_apart, shape
 
 from voronoi_tiles.designs.design import Design
-from voronoi_tiles.fabrication.job import Fit, Job
+from voronoi_tiles.fabrication.job import FRAME_MM, Fit, Job
 from voronoi_tiles.fabrication.job_options import JobError
-from voronoi_tiles.fabrication.layout import FRAME_MM
 from voronoi_tiles.fabrication.product import Product
 from voronoi_tiles.paths.paths import LINE, Paths
 
@@ -382,3 +382,48 @@ def test_a_frame_has_a_width_everywhere() -> None:
         assert min(x0, y0, 200.0 - x1, 110.0 - y1) >= FRAME_MM - 1e-9
     with pytest.raises(JobError, match="too small for a frame of 2 mm"):
         made("p4-hook", sheet=(100.0, 3.0), fit="frame")
+
+
+@pytest.mark.parametrize(("name", "frame"), [("p6-triskele", 8.0), ("p4-pinwheel", 0.5), ("p31m", "1cm")])
+def test_the_width_of_a_frame_can_be_chosen(name: str, frame: float | str) -> None:
+    """Where it is least it has that width or more, and as much left as right, and above as below."""
+    width, height = 210.0, 190.0
+    job = Job(sheet=(width, height), frame=frame)
+    assert job == Job(sheet=(width, height), frame=frame, fit="frame")
+    product = tiling(name).make(job)
+    wanted = 10.0 if frame == "1cm" else frame
+    lines = Paths.concatenate([layer.paths for layer in product.drawing.layers])
+    x0, y0, x1, y1 = lines.take(np.arange(len(lines) - 1)).bounds  # the border comes last
+    assert min(x0, y0, width - x1, height - y1) >= wanted - 1e-9
+    assert x0 == pytest.approx(width - x1, abs=1e-3)
+    assert y0 == pytest.approx(height - y1, abs=1e-3)
+
+
+def test_tiles_and_frame_are_counted_apart() -> None:
+    """In the summary and in the report; a frame that is cut through is one of several pieces."""
+    job = Job(sheet=(95.0, 95.0), frame=3.0)
+    product = squares().make(job)
+    assert product.summary().startswith("16 tiles and a frame, ")
+    figures = squares().report(job)["pieces"]
+    assert (figures["count"], figures["whole"], figures["frame"]) == (16, 16, 1)
+    assert squares().make(Job(sheet=(95.0, 95.0))).summary().startswith("16 pieces, ")
+    sites = np.array([0, -1, -1])
+    assert replace(product.pieces, site=sites).counted == "1 tile and a frame of 2 pieces"
+    assert replace(product.pieces, site=sites[1:2]).counted == "a frame"
+
+
+@pytest.mark.parametrize(
+    ("job", "message"),
+    [
+        ({"fit": "clip", "frame": 3.0}, "leaves no `frame`"),
+        ({"frame": 0.0}, "`frame` 0 mm cannot be"),
+        ({"frame": 40.0}, "too small for a frame of 40 mm"),
+        ({"sheet": None, "frame": 3.0}, "`frame` is about a sheet"),
+        ({"frame": 3.0, "kerf": 0.1}, "leaves them no room"),
+    ],
+)
+def test_frames_that_cannot_be(job: dict[str, Any], message: str) -> None:
+    """One message each, with a remedy."""
+    with pytest.raises(JobError, match=message) as caught:
+        squares().make(Job(**{"sheet": (70.0, 70.0), **job}))
+    assert caught.value.remedy

@@ -62,7 +62,7 @@ def report_text(figures: dict[str, Any]) -> str:
             "design": f"{printable(figures['design'])}, {figures['group']}",
             "page": f"{sheet['width']:.6g} x {sheet['height']:.6g} mm, {use['share']:.1%} of it tiles, "
             f"{use['whole_share']:.1%} whole ones",
-            "pieces": f"{pieces['count']:,}, {pieces['whole']:,} of them whole tiles, "
+            "pieces": f"{pieces['count']:,}{' and a frame' * (pieces['frame'] > 0)}, {pieces['whole']:,} of them whole tiles, "
             f"{pieces['turned_over']:,} turned over",
             "colours": f"{figures['colours']} suffice{'s' * (figures['colours'] == 1)} for the whole tessellation",
             "cut": f"{cut['length'] / 1000:.3f} m, {counted(cut['pierces'], 'pierce')}, "

@@ -1,4 +1,4 @@
-"""Where to lay a tessellation so that most whole tiles lie on the sheet."""
+"""Where to lay a tessellation so that most whole tiles lie on the sheet, and in its middle."""
 
 from __future__ import annotations
 
@@ -21,15 +21,29 @@ _GRID: Final = 8
 _AT_ONCE: Final = 1 << 22
 """Pairs of a tile and a place that are looked at in one go."""
 
+_ROUNDS: Final = 3
+"""How often a group of tiles is moved to the middle: there it may have grown, or be free to move on."""
+
+_NEAR_MM: Final = 0.02
+"""How near to the place where a tile would be lost a group is moved on its way to the middle; millimetres."""
+
 
 def best_shift(period: Period, region: Region) -> complex:
-    """The shift, of all that are tried, with which most tiles lie in a region as a whole; the shortest of the best.
+    """The shift, of all that are tried, with which most tiles lie in a region as a whole, in its middle.
 
     In a rectangle a best place is one where some tile touches the left or right edge and some tile the lower or upper
     one: these are tried, evenly chosen ones where there are too many. In other regions a grid over the cell is tried.
+    The shortest of the best shifts, of a grid the one that is best centred, is then changed so that what the tiles
+    together leave free on the left and on the right, and below and above, is equal: the boxes of the group and of the
+    region have one middle. In a rectangle that can always be; elsewhere the group goes as near to it as it can without
+    losing a tile.
     """
-    if not region.is_rectangle:
-        return _best_of_grid(period, region)
+    found = _best_of_edges(period, region) if region.is_rectangle else _best_of_grid(period, region)
+    return _centred(period, region, found)
+
+
+def _best_of_edges(period: Period, region: Region) -> complex:
+    """The shortest of the best shifts in a rectangle."""
     box = item_boxes(*period.own_outlines)
     left, bottom, right, top = region.bounds
     # Where a tile's place may be, by its box, for the tile to be whole.
@@ -72,9 +86,58 @@ def _touching(edges: list[tuple[float, float]], places: list[Floats], reach: flo
 
 
 def _best_of_grid(period: Period, region: Region) -> complex:
-    """The best shift of a grid over the cell, by placing the tiles."""
+    """The best shift of a grid over the cell, by placing the tiles; of several the one that is best centred."""
     a, b = (complex(vector) for vector in period.basis)
     steps = (np.arange(_GRID) - _GRID // 2) / _GRID
     shifts = sorted((complex(s * a + t * b) for s in steps for t in steps), key=abs)
-    counts = [int(place_tiles(period.placed(1.0, shift), region).whole.sum()) for shift in shifts]
-    return shifts[int(np.argmax(counts))]
+    groups = [_group(period, region, shift) for shift in shifts]
+    most = max(count for count, _ in groups)
+    best = [(abs(off.real) + abs(off.imag), k) for k, (count, off) in enumerate(groups) if count == most]
+    return shifts[min(best)[1]]
+
+
+def _group(period: Period, region: Region, shift: complex) -> tuple[int, complex]:
+    """How many whole tiles there are with a shift, and from the middle of their box to that of the region."""
+    placement = place_tiles(period.placed(1.0, shift), region)
+    tile, step = placement.tile[placement.whole], placement.step[placement.whole]
+    if not len(tile):
+        return 0, 0j
+    place = period.shifts(step) + shift
+    box = item_boxes(*period.own_outlines)[tile]
+    x0, x1 = float((box[:, 0] + place.real).min()), float((box[:, 2] + place.real).max())
+    y0, y1 = float((box[:, 1] + place.imag).min()), float((box[:, 3] + place.imag).max())
+    left, bottom, right, top = region.bounds
+    return len(tile), complex(left - x0 + right - x1, bottom - y0 + top - y1) / 2
+
+
+def _centred(period: Period, region: Region, shift: complex) -> complex:
+    """The shift changed so that the whole tiles lie in the middle of the region, as far as they all stay there."""
+    count, off = _group(period, region, shift)
+    for _ in range(_ROUNDS):
+        if abs(off) <= region.close:
+            break
+        there, rest = _group(period, region, shift + off)
+        if there >= count:
+            shift += off
+            count, off = there, rest
+            continue
+        before = shift
+        for way in (complex(off.real, 0.0), complex(0.0, off.imag)):
+            shift += way * _free(period, region, shift, way, count)
+        if shift == before:
+            break
+        count, off = _group(period, region, shift)
+    return shift
+
+
+def _free(period: Period, region: Region, shift: complex, way: complex, count: int) -> float:
+    """How much of a way, from 0 to 1, tiles can go together so that as many as before stay whole."""
+    if abs(way) <= _NEAR_MM:
+        return 0.0
+    if _group(period, region, shift + way)[0] >= count:
+        return 1.0
+    low, high = 0.0, 1.0
+    while (high - low) * abs(way) > _NEAR_MM:
+        middle = (low + high) / 2
+        low, high = (middle, high) if _group(period, region, shift + middle * way)[0] >= count else (low, middle)
+    return low

@@ -23,7 +23,25 @@ class Inventory:
     area: Floats
 
     def __repr__(self) -> str:
-        return f"<Inventory: {len(self.site)} pieces, {int(self.whole.sum())} of them whole tiles>"
+        return f"<Inventory: {self.counted}, {int(self.whole.sum())} of them whole tiles>"
+
+    @property
+    def count(self) -> int:
+        """How many pieces there are of tiles: all but those of a frame."""
+        return int(np.count_nonzero(self.site != FRAME))
+
+    @property
+    def frame(self) -> int:
+        """How many pieces a frame has; 0 where there is none."""
+        return len(self.site) - self.count
+
+    @property
+    def counted(self) -> str:
+        """The count in words: "54 pieces", "40 tiles and a frame", "a frame of 2 pieces"."""
+        count, parts = self.count, self.frame
+        what = "tile" if parts else "piece"
+        pieces = [f"{count:,} {what}{'s' * (count != 1)}"] if count or not parts else []
+        return " and ".join([*pieces, *(["a frame" if parts == 1 else f"a frame of {parts} pieces"] if parts else [])])
 
     @property
     def tile_area(self) -> float:

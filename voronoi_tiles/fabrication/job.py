@@ -48,6 +48,9 @@ APART_MM: Final = 1.0
 STROKE_MIN: Final = 0.001
 """Thinnest lines; millimetres. Thinner ones are lost in programs that keep few digits."""
 
+FRAME_MM: Final = 2.0
+"""Least width of a frame where the caller does not say; millimetres. A narrower one breaks, or is cut twice."""
+
 LABEL_MIN: Final = 0.5
 """Smallest height of a label; millimetres. What is smaller nobody reads."""
 
@@ -57,8 +60,8 @@ class Job:
     """What is to be made of a tiling; lengths are numbers of millimetres or texts with a unit, "0.15mm".
 
     Without a `sheet`, one of each tile is made, as a closed contour. The design's origin lies in the middle of the
-    sheet, turned by `rotate` and moved by `offset`; whole tiles without an offset are moved to where most of them fit.
-    `edges` None is once for sheets, and pieces without, or where another option needs them. With a kerf, pieces are
+    sheet, turned by `rotate` and moved by `offset`; whole tiles without an offset are moved to where most of them fit,
+    in the middle of the sheet. A `frame` means `fit="frame"`. `edges` None is once for sheets, and pieces without, or where another option needs them. With a kerf, pieces are
     pulled 1 mm or twice the kerf apart, unless `gap` says how far, lest a cut hurts the next piece. Raises JobError for
     values that cannot be, and that contradict each other.
 
@@ -84,14 +87,20 @@ class Job:
         Fit,
         "Whole tiles only, tiles clipped at the edge, or whole tiles and the frame around them [default: whole].",
     )
+    frame: Option[float | str | None, float | None] = length(
+        None,
+        "The least width of the frame; means `fit='frame'` [default: 2mm].",
+        least=SHEET_MIN,
+        shown="WIDTH",
+    )
     rotate: Option[float, float] = Option(
         0.0, read_angle, "Turn the tiles counter-clockwise.", kind="angle", shown="DEGREES"
     )
     offset: Option[Offset, complex | None] = Option(
         None,
         read_offset,
-        "Move the design's origin from the middle of the sheet [default: to where most whole tiles fit, or not at all "
-        "with `fit='clip'`].",
+        "Move the design's origin from the middle of the sheet [default: to where most whole tiles fit, in its "
+        "middle, or not at all with `fit='clip'`].",
         kind="text",
         shown="X,Y",
     )
@@ -147,6 +156,8 @@ class Job:
     )
 
     def __post_init__(self) -> None:
+        if self.frame is not None and self.fit == "whole":
+            object.__setattr__(self, "fit", "frame")
         self._check_sheet()
         self._check_edges()
 
@@ -162,6 +173,11 @@ class Job:
     def moves_contours(self) -> bool:
         """Whether contours differ from the tiles' outlines: by half a kerf, or by round corners."""
         return self.kerf > 0.0 or self.fillet > 0.0
+
+    @property
+    def frame_width(self) -> float:
+        """The least width of a frame around tiles; 0 where there is none."""
+        return 0.0 if self.fit != "frame" else FRAME_MM if self.frame is None else self.frame
 
     @property
     def apart(self) -> float | None:
@@ -221,8 +237,10 @@ class Job:
             )
 
     def _check_sheet(self) -> None:
+        if self.frame is not None and self.fit == "clip":
+            raise JobError("`fit='clip'` leaves no `frame`", remedy="Use one of the two.")
         if self.sheet is None:
-            for name in ("fit", "offset", "marks"):
+            for name in ("frame", "fit", "offset", "marks"):
                 if getattr(self, name) != self.options()[name].default:
                     raise JobError(f"`{name}` is about a sheet, and there is none", remedy="Add `sheet='600x300mm'`.")
         elif not isinstance(self.sheet, str) and 2.0 * self.margin >= min(self.sheet):

@@ -89,7 +89,8 @@ def report_figures(
         "group": design.group.name,
         "page": {"width": drawing.width, "height": drawing.height, "area": area},
         "pieces": {
-            "count": len(pieces.site),
+            "count": pieces.count,
+            "frame": pieces.frame,
             "whole": int(pieces.whole.sum()),
             "turned_over": int(pieces.turned_over.sum()),
             "kinds": [

@@ -37,9 +37,6 @@ from voronoi_tiles.vector.tessellation import Tessellation
 FRAME = -1
 """The site of a piece of a frame."""
 
-FRAME_MM: Final = 2.0
-"""Least width of a frame around tiles; millimetres. A narrower one breaks, or is cut twice."""
-
 TILES_MAX: Final = 100_000
 """Most tiles of a sheet; a count. They take about ten seconds."""
 
@@ -223,7 +220,7 @@ def lay_out(
         )
     _refuse_crowd(tiles.period, region)
     stretch = UNSTRETCHED if job.apart is None else _stretch(tiles, job.apart, budget.measured)
-    field = _inset(region, FRAME_MM) if job.fit == "frame" else region
+    field = _inset(region, job.frame_width) if job.frame_width > 0.0 else region
     spaced = _spaced(tiles, sheet, stretch)
     if job.offset is None and job.fit != "clip":
         tiles = tiles.moved(stretch.inverse(best_shift(spaced, field)))
@@ -325,10 +322,12 @@ def _inset(region: Region, width: float) -> Region:
         border = offset(region.border, -width).paths
     except OffsetError as error:
         raise JobError(
-            f"the sheet's outline leaves no frame of {width:g} mm: {error}", remedy="Use `fit='whole'` or `fit='clip'`."
+            f"the sheet's outline leaves no frame of {width:g} mm: {error}",
+            remedy="Use another `frame`, `fit='whole'` or `fit='clip'`.",
         ) from error
     if not len(border):
         raise JobError(
-            f"the sheet is too small for a frame of {width:g} mm", remedy="Take a larger sheet, or `fit='whole'`."
+            f"the sheet is too small for a frame of {width:g} mm",
+            remedy="Take a larger sheet, a narrower `frame`, or `fit='whole'`.",
         )
     return Region(border)

@@ -96,9 +96,9 @@ class Product:
         cuts = [layer.paths for layer in self.drawing.layers if layer.work == "cut"]
         length = fsum(float(paths.lengths.sum()) for paths in cuts) / 1000
         strokes = sum(map(len, cuts))
-        count, area = len(self.pieces.site), self.drawing.width * self.drawing.height
+        area = self.drawing.width * self.drawing.height
         return (
-            f"{count:,} piece{'s' * (count != 1)}, {self.pieces.tile_area / area:.1%} of {self.drawing.width:.5g} x "
+            f"{self.pieces.counted}, {self.pieces.tile_area / area:.1%} of {self.drawing.width:.5g} x "
             f"{self.drawing.height:.5g} mm, {length:.3g} m of cuts in {strokes:,} path{'s' * (strokes != 1)}"
         )
 
