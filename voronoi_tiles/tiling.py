@@ -277,7 +277,7 @@ class Tiling:
 
         job = Job() if job is None else instance("job", job, Job)
         # What goes into a file of its own is on a layer of its own in the one drawing that is reported of.
-        product = self.make(replace(job, colours="layers") if job.colours == "files" else job)
+        product = self.make(replace(job, colours=job.scheme, into="layers") if job.split == "files" else job)
         return report_figures(self.design, product, speeds=speeds, pierce_s=pierce_s)
 
     def template(self, path: str | os.PathLike[str], site: str | None = None) -> Art:

@@ -57,14 +57,22 @@ def report_text(figures: dict[str, Any]) -> str:
     page = _TextTable()
     sheet, use, cut, pieces = figures["page"], figures["use"], figures["cut"], figures["pieces"]
     accuracy = "" if figures["curves"] == "exact" else f", within {figures['accuracy']:g} mm"
+    framed = " and a frame" if pieces["frame"] else ""
+    match figures["colouring"]:
+        case None | "fewest":
+            coloured = "suffice for the whole tessellation"
+        case int():
+            coloured = "on as many tiles each, or nearly, no neighbours alike"
+        case scheme:
+            coloured = f"by {scheme}"
     page.head(
         {
             "design": f"{printable(figures['design'])}, {figures['group']}",
             "page": f"{sheet['width']:.6g} x {sheet['height']:.6g} mm, {use['share']:.1%} of it tiles, "
             f"{use['whole_share']:.1%} whole ones",
-            "pieces": f"{pieces['count']:,}{' and a frame' * (pieces['frame'] > 0)}, {pieces['whole']:,} of them whole tiles, "
+            "pieces": f"{pieces['count']:,}{framed}, {pieces['whole']:,} of them whole tiles, "
             f"{pieces['turned_over']:,} turned over",
-            "colours": f"{figures['colours']} suffice{'s' * (figures['colours'] == 1)} for the whole tessellation",
+            "colours": f"{figures['colours']} {coloured}",
             "cut": f"{cut['length'] / 1000:.3f} m, {counted(cut['pierces'], 'pierce')}, "
             f"{cut['travel'] / 1000:.3f} m of travel",
             "curves": f"{figures['curves']}{accuracy}; the shortest segment is {figures['shortest_piece']:.3g} mm",

@@ -82,7 +82,7 @@ def cut_pieces(contours: Contours, colouring: TileColouring, job: Job) -> list[C
     of = np.repeat(np.arange(len(contours.copy)), np.diff(contours.items))
     colour = colouring.of_copies(contours.copy)
     cuts = []
-    groups: Sequence[int | None] = sorted(set(colour.tolist())) if job.colours == "layers" else [None]
+    groups: Sequence[int | None] = sorted(set(colour.tolist())) if job.split == "layers" else [None]
     roles: tuple[tuple[Role, Bools], ...] = (("inner", ~outer), ("cut", outer))
     for role, chosen in roles:
         for group in groups:

@@ -57,11 +57,11 @@ def write_products(
     """
     from voronoi_tiles.fabrication.product import make, make_colours
 
-    if job.colours != "files":
+    if job.split != "files":
         products = {path: make(design, tessellation, job, file_format)}
     elif path == STDOUT or is_special(path):
         raise JobError(
-            "`colours='files'`: several files need a name that they can begin with",
+            "`into='files'`: several files need a name that they can begin with",
             remedy="Write to a file such as sheet.svg.",
         )
     else:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
-from typing import Any, Final, Literal
+from typing import Any, Final, Literal, cast, get_args
 
 from voronoi_tiles.fabrication.job_options import (
     SHEET_MAX,
@@ -22,6 +22,7 @@ from voronoi_tiles.fabrication.job_options import (
     length,
     read_angle,
     read_colour,
+    read_colours,
     read_offset,
     read_sheet,
     read_text,
@@ -34,7 +35,7 @@ Edges = Literal["once", "pieces"]
 Curves = Literal["exact", "arc", "spline", "polyline"]
 ArtUse = Literal["whole", "clip", "none"]
 Labels = Literal["none", "number", "site"]
-Colours = Literal["none", "layers", "files"]
+Into = Literal["layers", "files"]
 
 ACCURACY_MM: Final = 0.005
 """How far approximated curves may be from the exact ones, where the caller does not say; a twentieth of a kerf."""
@@ -61,9 +62,9 @@ class Job:
 
     Without a `sheet`, one of each tile is made, as a closed contour. The design's origin lies in the middle of the
     sheet, turned by `rotate` and moved by `offset`; whole tiles without an offset are moved to where most of them fit,
-    in the middle of the sheet. A `frame` means `fit="frame"`. `edges` None is once for sheets, and pieces without, or where another option needs them. With a kerf, pieces are
-    pulled 1 mm or twice the kerf apart, unless `gap` says how far, lest a cut hurts the next piece. Raises JobError for
-    values that cannot be, and that contradict each other.
+    in the middle of the sheet. A `frame` means `fit="frame"`. `edges` None is once for sheets, and pieces without, or
+    where another option needs them. With a kerf, pieces are pulled 1 mm or twice the kerf apart, unless `gap` says how
+    far, lest a cut hurts the next piece. Raises JobError for values that cannot be, and that contradict each other.
 
     >>> import voronoi_tiles as vt
     >>> vt.Job(sheet="30x20cm", kerf="0.15mm")
@@ -145,8 +146,16 @@ class Job:
     label_height: Length = length(3.0, "The height of labels, at most [default: 3mm].", least=LABEL_MIN, most=1000.0)
     marks: Flag = flag("Engrave marks for aligning at the sheet's corners.")
     bar: Flag = flag("Engrave a bar of 100 mm, to measure the scale by.")
-    colours: Choice[Colours] = choice(
-        "none", Colours, "Colour the tiles so that no neighbours are alike: a layer, or a file, for each colour."
+    colours: Option[str | int, str | int] = Option(
+        "none",
+        read_colours,
+        "Colour the tiles, a wood each: by N colours or the fewest, so that no neighbours are alike; by site, "
+        "handedness or orientation. `colours='layers'` and `colours='files'` are the fewest there.",
+        kind="text",
+        shown="N|fewest|site|handedness|orientation",
+    )
+    into: Choice[Into | None] = choice(
+        None, Into, "Put each colour on a layer, or in a file, of its own [default: layers]."
     )
     only_colour: Option[int | None, int | None] = Option(
         None, read_colour, "Leave out all colours but this, from 0; -1 all but a frame.", kind="number"
@@ -160,6 +169,7 @@ class Job:
             object.__setattr__(self, "fit", "frame")
         self._check_sheet()
         self._check_edges()
+        self._check_colours()
 
     def __repr__(self) -> str:
         return f"Job({', '.join(f'{name}={value!r}' for name, value in self._said())})"
@@ -173,6 +183,18 @@ class Job:
     def moves_contours(self) -> bool:
         """Whether contours differ from the tiles' outlines: by half a kerf, or by round corners."""
         return self.kerf > 0.0 or self.fillet > 0.0
+
+    @property
+    def scheme(self) -> str | int:
+        """What tiles have the same colour by: "fewest", "site", "handedness", "orientation", or a number of colours."""
+        return "fewest" if self.colours in {"none", *get_args(Into)} else self.colours
+
+    @property
+    def split(self) -> Into | None:
+        """What there is one of for each colour: layers or files; None where tiles have no colours."""
+        if self.colours == "none":
+            return None
+        return cast("Into", self.colours) if self.colours in get_args(Into) else self.into or "layers"
 
     @property
     def frame_width(self) -> float:
@@ -234,6 +256,15 @@ class Job:
             raise JobError(
                 f"`{'gap' if self.gap else 'kerf'}` pulls the tiles apart, and `fit='frame'` leaves them no room",
                 remedy="Cut the frame without it, or use `fit='whole'`.",
+            )
+
+    def _check_colours(self) -> None:
+        if self.into is not None and self.split != self.into:
+            if self.colours == "none":
+                raise JobError("`into` is about colours, and there are none", remedy="Add `colours='fewest'`.")
+            raise JobError(
+                f"`colours='{self.colours}'` and `into='{self.into}'` contradict each other",
+                remedy="Use `colours='fewest'`.",
             )
 
     def _check_sheet(self) -> None:

@@ -23,6 +23,12 @@ SHEET_MAX: Final = 100_000.0
 SHEET_MIN: Final = 0.1
 """Smallest side of a sheet; millimetres."""
 
+COLOURS_MAX: Final = 32
+"""Most colours that are asked for; a count."""
+
+SCHEMES: Final = ("none", "fewest", "site", "handedness", "orientation", "layers", "files")
+"""What colours of tiles can be called, beside their number."""
+
 Given = TypeVar("Given")
 Kept = TypeVar("Kept")
 Kind = Literal["length", "angle", "word", "flag", "text", "number"]
@@ -127,6 +133,20 @@ def read_colour(name: str, value: object) -> int | None:
     if value is not None and (isinstance(value, bool) or not isinstance(value, Integral)):
         raise JobError(f"`{name}` {shown(value)} cannot be", remedy="Give the number of a colour, from 0.")
     return None if value is None else int(value)
+
+
+def read_colours(name: str, value: object) -> str | int:
+    """Read what colours tiles have: a number of them, or a word. Raises JobError."""
+    if isinstance(value, str) and value.isascii() and value.isdigit() and len(value) < 5:
+        value = int(value)
+    if isinstance(value, Integral) and not isinstance(value, bool) and 1 <= value <= COLOURS_MAX:
+        return int(value)
+    if not (isinstance(value, str) and value in SCHEMES):
+        raise JobError(
+            f"`{name}` {shown(value)} is unknown",
+            remedy=f"Use a number up to {COLOURS_MAX}, or one of {', '.join(SCHEMES[1:])}.",
+        )
+    return value
 
 
 def read_sheet(name: str, value: Any) -> tuple[float, float] | str | None:

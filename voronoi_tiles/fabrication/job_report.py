@@ -105,6 +105,7 @@ def report_figures(
             ],
         },
         "colours": product.colours,
+        "colouring": product.scheme,
         "use": {"tiles": used, "share": used / area, "whole_tiles": whole, "whole_share": whole / area},
         "cut": {
             "length": fsum(row["length"] for row in cuts),

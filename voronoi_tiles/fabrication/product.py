@@ -27,7 +27,7 @@ from voronoi_tiles.fabrication.inventory import Inventory, cut_free, inventory
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, Sheet, lay_out
 from voronoi_tiles.fabrication.sheets import read_sheet
-from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_period
+from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_tiles
 from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
 from voronoi_tiles.formats.page import Drawing, Layer, Work
 from voronoi_tiles.formats.presets import FORMATS, Format, Preset, Role, load_preset
@@ -57,13 +57,15 @@ class Product:
     """What a job makes of a tiling, for a format of files.
 
     `notes` say in sentences what was guessed and left out of drawings, and lost to kerf or fillet; `colours` is how
-    many the whole tessellation takes; `files` are those that it was made from, which `save` does not overwrite.
+    many the whole tessellation takes by the `scheme` of the job, None where it asks for none: the fewest; `files` are
+    those that it was made from, which `save` does not overwrite.
     """
 
     form: Format
     drawing: Drawing
     pieces: Inventory
     colours: int
+    scheme: str | int | None
     notes: tuple[str, ...]
     curves: str
     accuracy: float
@@ -97,9 +99,11 @@ class Product:
         length = fsum(float(paths.lengths.sum()) for paths in cuts) / 1000
         strokes = sum(map(len, cuts))
         area = self.drawing.width * self.drawing.height
+        colours = len(np.unique(self.pieces.colour[self.pieces.site != FRAME]))
+        woods = f", {colours} colours" if self.scheme is not None and colours > 1 else ""
         return (
             f"{self.pieces.counted}, {self.pieces.tile_area / area:.1%} of {self.drawing.width:.5g} x "
-            f"{self.drawing.height:.5g} mm, {length:.3g} m of cuts in {strokes:,} path{'s' * (strokes != 1)}"
+            f"{self.drawing.height:.5g} mm, {length:.3g} m of cuts in {strokes:,} path{'s' * (strokes != 1)}{woods}"
         )
 
     def save(self, path: str | os.PathLike[str]) -> None:
@@ -123,10 +127,10 @@ def make(design: Design, tessellation: Tessellation, job: Job, file_format: str 
     Raises JobError where the job cannot be done, DesignError where the preset or the sheet's drawing is broken.
     """
     form = _format(file_format)
-    if job.colours == "files" and job.only_colour is None:
+    if job.split == "files" and job.only_colour is None:
         raise JobError(
             "a file for each colour is several drawings, and one is asked for",
-            remedy="Export it to a file's name, or use `colours='layers'`.",
+            remedy="Export it to a file's name, or use `into='layers'`.",
         )
     return _Plan.of(design, tessellation, job, form).product(job)
 
@@ -161,7 +165,8 @@ class _Plan:
         budget = AccuracyBudget.of(job, curves)
         fit = curve_fit(job, curves, budget, design.unit_mm)
         layout = lay_out(design, tessellation, job, read_sheet(job, budget), budget, fit)
-        return cls(form, preset, curves, layout, TileColouring(colour_period(layout.period), layout.copies))
+        colours = colour_tiles(tessellation, job.scheme, layout.period)
+        return cls(form, preset, curves, layout, TileColouring(colours, layout.copies))
 
     def colours(self) -> list[tuple[int, str]]:
         """The colours that the page has pieces of, each with a name for its file; FRAME for the frame."""
@@ -189,7 +194,8 @@ class _Plan:
         said = (*layout.sheet.notes, *layout.tiles.compensation.losses, *engraving.notes, *_unstroked(self.form, job))
         notes = tuple(dict.fromkeys((*said, *_doubled(layout, job), *_untabbed(cuts, job))))
         files = tuple(files_read(layout.design, job))
-        return Product(self.form, drawing, pieces, colouring.count, notes, self.curves, job.accuracy, files)
+        scheme = None if job.split is None else job.scheme
+        return Product(self.form, drawing, pieces, colouring.count, scheme, notes, self.curves, job.accuracy, files)
 
 
 def files_read(design: Design, job: Job | None) -> list[str]:
@@ -225,6 +231,8 @@ def _doubled(layout: Layout, job: Job) -> list[str]:
     """Say that neighbours' contours lie on each other, or touch, where they do."""
     if not job.pieces or (job.apart or 0.0) > 0.0 or len(layout.copies.tile) < 2 or job.sheet is None:
         return []
+    if job.split == "files" and (job.scheme == "fewest" or isinstance(job.scheme, int)):
+        return []  # neighbours are in different files
     if job.apart is not None:
         return ["neighbouring contours touch, and are cut twice where they lie on each other: `gap='1mm'` avoids it"]
     once = "" if job.needs_pieces() else "`edges='once'`, or "

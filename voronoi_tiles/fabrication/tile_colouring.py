@@ -1,15 +1,23 @@
-"""Colours of tiles: as few as their edges allow, so that no two that share one are alike."""
+"""Colours of tiles: so that no two that share an edge are alike, or by what the tiles are."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Ints
+from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.layout import FRAME, PlacedTiles
-from voronoi_tiles.groups.periodic_colouring import PeriodicColouring, colour_pairs
+from voronoi_tiles.groups.balanced_colouring import balance_colours
+from voronoi_tiles.groups.periodic_colouring import PeriodicColouring, Repeat, colour_pairs
 from voronoi_tiles.vector.complex.period import Period
+from voronoi_tiles.vector.motions import Motion, compose, reverses_orientation
+from voronoi_tiles.vector.tessellation import Tessellation
+
+_ONE_CELL: Final = Repeat(((1, 0), (0, 1)), 1, 1)
+"""What repeats in every cell."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,12 +40,60 @@ class TileColouring:
         return np.where(inside, self.repeating.of(rows), FRAME)
 
 
-def colour_period(period: Period) -> PeriodicColouring:
-    """Colour the tiles of a period, and all their translates: those that share an edge differ.
+def colour_tiles(tessellation: Tessellation, scheme: str | int, period: Period | None = None) -> PeriodicColouring:
+    """Colour the tiles of a period, and all their translates, by a scheme; `period` is another than its own.
 
-    The colours are the fewest that repeat within four by four cells.
+    - "fewest": tiles that share an edge differ, by the fewest colours that repeat within four by four cells;
+    - a number: so do they by so many colours, each on as many tiles as any other, as far as that can be;
+    - "site": each site has a colour;
+    - "handedness": tiles that are turned over have another colour than those as drawn. A tile that is its own mirror
+      image is not turned over;
+    - "orientation": tiles that are turned differently, or turned over, have different colours.
+
+    Raises JobError for a number of colours that is too small, or too large.
     """
-    pairs = neighbour_pairs(period)
+    period = tessellation.period if period is None else period
+    match scheme:
+        case "fewest" | int():
+            pairs = neighbour_pairs(period)
+            fewest = _fewest(pairs, len(period.site))
+            return fewest if isinstance(scheme, str) else _so_many(pairs, fewest, scheme)
+        case "site":
+            kinds = period.site.tolist()
+        case "handedness":
+            kinds = [min(map(reverses_orientation, motions)) for motions in _motions(tessellation, period)]
+        case _:
+            linear = list(dict.fromkeys(motion[:4] for motion in tessellation.action.motions))
+            kinds = [min(linear.index(motion[:4]) for motion in motions) for motions in _motions(tessellation, period)]
+    colour = np.unique(kinds, return_inverse=True)[1]
+    return PeriodicColouring(_ONE_CELL, np.asarray(colour, np.intp).reshape(-1, 1, 1))
+
+
+def _motions(tessellation: Tessellation, period: Period) -> list[list[Motion]]:
+    """All motions that take a site there, for each tile of a period: more than one for a symmetric site."""
+    stabilizers = [tessellation.placed[site].stabilizer for site in period.site.tolist()]
+    return [
+        [compose(motion, own) for own in stabilizer]
+        for motion, stabilizer in zip(period.motion, stabilizers, strict=True)
+    ]
+
+
+def _so_many(pairs: Ints, fewest: PeriodicColouring, colours: int) -> PeriodicColouring:
+    """A balanced colouring with so many colours. Raises JobError."""
+    found = None if colours < fewest.count else balance_colours(pairs, fewest, colours)
+    if found is None:
+        few = colours < fewest.count
+        raise JobError(
+            f"with {colours} `colours` "
+            + ("neighbours would be alike" if few else "some would be on no tile: the pattern does not repeat so late"),
+            remedy=f"Give {fewest.count} {'or more' if few else 'or a few more'}, "
+            "or colour by site, handedness or orientation.",
+        )
+    return found
+
+
+def _fewest(pairs: Ints, tiles: int) -> PeriodicColouring:
+    """The colouring with the fewest colours that repeat within four by four cells."""
     # Two tiles that share an edge with each other and with a third need three colours.
     here = {(p, q, i, j) for p, q, i, j in pairs.tolist()} | {(q, p, -i, -j) for p, q, i, j in pairs.tolist()}
     beside: dict[int, list[tuple[int, int, int]]] = {}
@@ -45,7 +101,7 @@ def colour_period(period: Period) -> PeriodicColouring:
         beside.setdefault(p, []).append((q, i, j))
     triangle = any((q, r, k - i, m - j) in here for p in beside for q, i, j in beside[p] for r, k, m in beside[p])
     least = 3 if triangle else 2
-    return colour_pairs(pairs, len(period.site), least=least, enough=least)
+    return colour_pairs(pairs, tiles, least=least, enough=least)
 
 
 def neighbour_pairs(period: Period) -> Ints:

@@ -14,14 +14,16 @@ from numpy.typing import NDArray
 
 from voronoi_tiles.base.arrays import Ints
 
-_SQUARES = tuple(sorted(((m, n) for m in range(1, 5) for n in range(1, 5)), key=lambda p: (p[0] * p[1], p)))
+SQUARES = tuple(sorted(((m, n) for m in range(1, 5) for n in range(1, 5)), key=lambda p: (p[0] * p[1], p)))
+"""The repeats that are tried, in cells along both vectors."""
+
 ENOUGH = 4
 """Colours that need no larger period where a picture is to be told apart; what four do not suffice for takes more."""
 
 _STEPS = 3_000
 """Most decisions of one search for a colouring; a count."""
 
-_SEARCHED = 500
+SEARCHED = 500
 """Most copies in a period for which the fewest colours are searched; a count. Larger ones are coloured in one go."""
 
 
@@ -64,7 +66,7 @@ def colour_pairs(pairs: Ints, placements: int, *, least: int, enough: int = ENOU
     narrow cells make it, a larger one.
     """
     best: PeriodicColouring | None = None
-    for m, n in _SQUARES:
+    for m, n in SQUARES:
         repeat = Repeat(((1, 0), (0, 1)), m, n)
         found = _colour_quotient(pairs, placements, repeat, least)
         if found is not None and (best is None or found.max() < best.colour.max()):
@@ -97,22 +99,40 @@ def _large_repeat(pairs: Ints) -> Repeat:
 def _colour_quotient(pairs: Ints, placements: int, repeat: Repeat, least: int) -> Ints | None:
     """Colour the copies in a period that goes on for ever; None where a tile meets its own translate."""
     m, n = repeat.m, repeat.n
+    count = placements * m * n
+    if count > SEARCHED:
+        here, there = _quotient_pairs(pairs, repeat)
+        met = (here == there).any()
+        return None if met else _colour_greedily(here, there, count).reshape(placements, m, n)
+    beside = quotient_graph(pairs, placements, repeat)
+    if beside is None:
+        return None
+    for colours in range(min(least, count), count + 1):
+        found = colour_graph(beside, colours)
+        if found is not None:
+            return found.reshape(placements, m, n)
+    return None
+
+
+def quotient_graph(pairs: Ints, placements: int, repeat: Repeat) -> NDArray[np.bool_] | None:
+    """Which of the copies in a repeat are beside each other, symmetric; None where a tile meets its own translate."""
+    here, there = _quotient_pairs(pairs, repeat)
+    if (here == there).any():
+        return None
+    count = placements * repeat.m * repeat.n
+    beside = np.zeros((count, count), bool)
+    beside[here, there] = beside[there, here] = True
+    return beside
+
+
+def _quotient_pairs(pairs: Ints, repeat: Repeat) -> tuple[Ints, Ints]:
+    """The copies in a repeat that are beside each other, both of each pair."""
+    m, n = repeat.m, repeat.n
     s, t = (part.ravel() for part in np.meshgrid(np.arange(m), np.arange(n), indexing="ij"))
     step_s, step_t = repeat.place(pairs[:, 2], pairs[:, 3])
     here = ((pairs[:, 0] * m + s[:, None]) * n + t[:, None]).ravel()
     there = ((pairs[:, 1] * m + (s[:, None] + step_s) % m) * n + (t[:, None] + step_t) % n).ravel()
-    if (here == there).any():
-        return None
-    count = placements * m * n
-    if count > _SEARCHED:
-        return _colour_greedily(here, there, count).reshape(placements, m, n)
-    beside = np.zeros((count, count), bool)
-    beside[here, there] = beside[there, here] = True
-    for colours in range(min(least, count), count + 1):
-        found = _colour_graph(beside, colours)
-        if found is not None:
-            return found.reshape(placements, m, n)
-    return None
+    return here, there
 
 
 def _colour_greedily(here: Ints, there: Ints, count: int) -> Ints:
@@ -127,7 +147,7 @@ def _colour_greedily(here: Ints, there: Ints, count: int) -> Ints:
     return colour
 
 
-def _colour_graph(beside: NDArray[np.bool_], colours: int) -> Ints | None:
+def colour_graph(beside: NDArray[np.bool_], colours: int) -> Ints | None:
     """Colour a graph with at most so many colours; None where there is no such colouring, or it takes too long.
 
     Depth first, the node with the fewest colours left next, of these the one with the most neighbours (Brelaz 1979).
