@@ -274,11 +274,12 @@ class Tiling:
         """
         from voronoi_tiles.fabrication.job import Job
         from voronoi_tiles.fabrication.job_report import report_figures
+        from voronoi_tiles.fabrication.product import make_reported
 
         job = Job() if job is None else instance("job", job, Job)
         # What goes into a file of its own is on a layer of its own in the one drawing that is reported of.
-        product = self.make(replace(job, colours=job.scheme, into="layers") if job.split == "files" else job)
-        return report_figures(self.design, product, speeds=speeds, pierce_s=pierce_s)
+        product, packing = make_reported(self.design, self.tessellation, job)
+        return report_figures(self.design, product, packing=packing, speeds=speeds, pierce_s=pierce_s)
 
     def template(self, path: str | os.PathLike[str], site: str | None = None) -> Art:
         """Write a page to draw a site's art on, an SVG file, and give the art that the site gets when it is drawn.

@@ -93,6 +93,12 @@ def report_text(figures: dict[str, Any]) -> str:
             for row in pieces["kinds"]
         ],
     )
+    if figures["packing"]:
+        page.table(
+            "Packed",
+            [">colour", ">pieces", ">sheets", ">use"],
+            [(row["colour"], row["pieces"], row["sheets"], f"{row['share']:.1%}") for row in figures["packing"]],
+        )
     page.table(
         "Layers in the order of work",
         ["layer", "work", "colour", ">paths", ">closed", ">length m", ">travel m", ">minutes"],

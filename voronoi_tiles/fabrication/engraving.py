@@ -61,18 +61,14 @@ def engrave(layout: Layout, contours: Contours | None, sheet: Sheet, shown: Bool
 
 
 def _labels(layout: Layout, contours: Contours) -> tuple[Paths, int]:
-    """A label in every piece of a tile, and how many pieces are too small for one.
-
-    Numbers run as one reads: from left to right, line by line from above; lines are half a tile high.
-    """
+    """A label in every piece of a tile, and how many pieces are too small for one."""
     job = layout.job
     place, room = _label_places(layout, contours)
-    pieces = np.flatnonzero(contours.copy >= 0)
-    line = np.round(-place[pieces].imag / (0.5 * float(np.sqrt(np.median(layout.tile_areas)))))
-    pieces = pieces[np.lexsort((place[pieces].real, line))]
+    pieces = _read(layout, contours, place)
+    numbers = np.arange(len(pieces)) + 1 if layout.numbers is None else layout.numbers[contours.copy[pieces]]
     names = [printable(site.name) for site in layout.design.noded]
     sites = layout.site[contours.copy[pieces]]
-    texts = [str(k + 1) if job.labels == "number" else names[sites[k]] for k in range(len(pieces))]
+    texts = [str(numbers[k]) if job.labels == "number" else names[sites[k]] for k in range(len(pieces))]
     unit = {text: fitting_height(text, 1.0, _WANTED) if text.strip() else 1.0 for text in set(texts)}
     height = np.array([unit[text] for text in texts]) * room[pieces] * _ROOM
     height = 2.0 ** (np.floor(np.log2(np.maximum(height, 1e-9)) * _SIZES) / _SIZES)
@@ -80,6 +76,21 @@ def _labels(layout: Layout, contours: Contours) -> tuple[Paths, int]:
     drawn = np.flatnonzero(height >= LABEL_MIN)
     labels = place_labels([texts[k] for k in drawn.tolist()], place[pieces[drawn]], height=height[drawn])
     return labels, len(pieces) - len(drawn)
+
+
+def piece_numbers(layout: Layout, contours: Contours) -> Ints:
+    """The number by which each tile on the page is labelled, from 1; of one in several pieces that of the last."""
+    pieces = _read(layout, contours, _label_places(layout, contours)[0])
+    numbers = np.zeros(len(layout.copies.tile), np.intp)
+    numbers[contours.copy[pieces]] = np.arange(len(pieces)) + 1
+    return numbers
+
+
+def _read(layout: Layout, contours: Contours, place: Complexes) -> Ints:
+    """The pieces of tiles as one reads: from left to right, line by line from above; lines are half a tile high."""
+    pieces = np.flatnonzero(contours.copy >= 0)
+    line = np.round(-place[pieces].imag / (0.5 * float(np.sqrt(np.median(layout.tile_areas)))))
+    return pieces[np.lexsort((place[pieces].real, line))]
 
 
 def _label_places(layout: Layout, contours: Contours) -> tuple[Complexes, Floats]:

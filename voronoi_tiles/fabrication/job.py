@@ -25,6 +25,7 @@ from voronoi_tiles.fabrication.job_options import (
     read_colours,
     read_offset,
     read_sheet,
+    read_size,
     read_text,
 )
 
@@ -157,6 +158,13 @@ class Job:
     into: Choice[Into | None] = choice(
         None, Into, "Put each colour on a layer, or in a file, of its own [default: layers]."
     )
+    pack: Flag = flag(
+        "Lay the tiles of each colour side by side on sheets of their own, a file each; they are turned as in the "
+        "picture that fills the sheet."
+    )
+    stock: Option[SheetSize, tuple[float, float] | None] = Option(
+        None, read_size, "The size of the sheets for packing [default: that of the sheet].", kind="text", shown="WxH"
+    )
     only_colour: Option[int | None, int | None] = Option(
         None, read_colour, "Leave out all colours but this, from 0; -1 all but a frame.", kind="number"
     )
@@ -170,6 +178,7 @@ class Job:
         self._check_sheet()
         self._check_edges()
         self._check_colours()
+        self._check_packing()
 
     def __repr__(self) -> str:
         return f"Job({', '.join(f'{name}={value!r}' for name, value in self._said())})"
@@ -194,7 +203,9 @@ class Job:
         """What there is one of for each colour: layers or files; None where tiles have no colours."""
         if self.colours == "none":
             return None
-        return cast("Into", self.colours) if self.colours in get_args(Into) else self.into or "layers"
+        if self.colours in get_args(Into):
+            return cast("Into", self.colours)
+        return self.into or ("files" if self.pack else "layers")
 
     @property
     def frame_width(self) -> float:
@@ -203,10 +214,17 @@ class Job:
 
     @property
     def apart(self) -> float | None:
-        """How far contours are kept apart; None where they may stay where they are."""
+        """How far contours are kept apart on the sheet; None where they may stay where they are."""
+        if self.pack:
+            return None
         if self.gap is None:
             return max(APART_MM, 2 * self.kerf) if self.kerf > 0.0 else None
         return self.gap if self.gap > 0.0 or self.kerf > 0.0 else None
+
+    @property
+    def side_by_side(self) -> float:
+        """How far contours that are packed are kept apart; millimetres."""
+        return max(APART_MM, 2 * self.kerf) if self.gap is None else self.gap
 
     @property
     def pieces(self) -> bool:
@@ -247,7 +265,7 @@ class Job:
                 f"`{name}` needs `edges='pieces'`: an edge that is cut once belongs to two of them",
                 remedy=f"Use that, or leave `{name}` out.",
             )
-        if self.tabs > 0.0 and self.sheet is not None and self.pieces and self.apart is None:
+        if self.tabs > 0.0 and self.sheet is not None and self.pieces and self.apart is None and not self.pack:
             raise JobError(
                 "`tabs` hold nothing where the contours of two pieces lie on each other",
                 remedy="Pull the pieces apart, `gap='1mm'`, or use `edges='once'`.",
@@ -266,6 +284,26 @@ class Job:
                 f"`colours='{self.colours}'` and `into='{self.into}'` contradict each other",
                 remedy="Use `colours='fewest'`.",
             )
+
+    def _check_packing(self) -> None:
+        if not self.pack:
+            if self.stock is not None:
+                raise JobError("`stock` is what pieces are packed on, and none are", remedy="Add `pack=True`.")
+            return
+        for wrong, message, remedy in (
+            (self.sheet is None, "`pack` packs the tiles of a sheet, and there is none", "Add `sheet='600x300mm'`."),
+            (self.colours == "none", "`pack` packs each colour, and there are none", "Add `colours='fewest'`."),
+            (self.split == "layers", "`pack` makes files of colours, and no layers", "Use `into='files'`."),
+            (self.fit == "clip", "`pack` packs whole tiles, and `fit='clip'` cuts them", "Use `fit='whole'`."),
+            (self.gap == 0.0, "`pack` with a `gap` of 0 would cut where pieces touch twice", "Use `gap='1mm'`."),
+            (
+                isinstance(self.sheet, str) and self.stock is None,
+                "`pack` needs sheets to pack on, and the sheet is a drawing",
+                "Add their size, `stock='600x300mm'`.",
+            ),
+        ):
+            if wrong:
+                raise JobError(message, remedy=remedy)
 
     def _check_sheet(self) -> None:
         if self.frame is not None and self.fit == "clip":

@@ -173,6 +173,14 @@ def read_sheet(name: str, value: Any) -> tuple[float, float] | str | None:
     return width, height
 
 
+def read_size(name: str, value: Any) -> tuple[float, float] | None:
+    """Read the size of a sheet, and no drawing. Raises JobError."""
+    size = read_sheet(name, value)
+    if isinstance(size, str):
+        raise JobError(f"`{name}` {shown(size)} is no size", remedy="Give a size such as 600x300mm.")
+    return size
+
+
 def read_offset(name: str, value: Any) -> complex | None:
     """Read an offset: a complex number, two lengths, or a text of two, "3mm,-2mm". Raises JobError."""
     if value is None:

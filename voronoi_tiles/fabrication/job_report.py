@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import fsum
 from typing import TYPE_CHECKING, Any
 
@@ -28,12 +28,18 @@ PIERCE_S = 0.3
 
 
 def report_figures(
-    design: Design, product: Product, *, speeds: Mapping[str, float] | None = None, pierce_s: float | None = None
+    design: Design,
+    product: Product,
+    *,
+    packing: Sequence[dict[str, Any]] = (),
+    speeds: Mapping[str, float] | None = None,
+    pierce_s: float | None = None,
 ) -> dict[str, Any]:
     """The figures of a product in the types of JSON: lengths in millimetres, areas in mm^2, times in seconds.
 
-    `speeds` are those of "cut", "score", "engrave" and "travel" (mm/s). The time counts no acceleration. Raises
-    ArgumentError for speeds and times that are none.
+    `packing` is what each colour takes of the sheets that it is packed on. `speeds` are those of "cut", "score",
+    "engrave" and "travel" (mm/s). The time counts no acceleration. Raises ArgumentError for speeds and times that are
+    none.
     """
     if not isinstance(speeds, Mapping | None):
         raise ArgumentError(f"`speeds` {shown(speeds)} cannot be", remedy='Give a mapping, such as {"cut": 12}.')
@@ -106,6 +112,7 @@ def report_figures(
         },
         "colours": product.colours,
         "colouring": product.scheme,
+        "packing": list(packing),
         "use": {"tiles": used, "share": used / area, "whole_tiles": whole, "whole_share": whole / area},
         "cut": {
             "length": fsum(row["length"] for row in cuts),

@@ -90,7 +90,8 @@ class Layout:
     """A tessellation on the page of a job, in millimetres, y up.
 
     `tiles` are those of one period where it is laid, `spaced` is the period where it is cut: pulled apart, where pieces
-    are. `placement` says which tiles lie on the page, `copies` how far each was pulled.
+    are. `placement` says which tiles lie on the page, `copies` how far each was pulled; `numbers` are what these are
+    labelled by, None where they are numbered as they lie.
     """
 
     design: Design
@@ -102,6 +103,7 @@ class Layout:
     spaced: Period
     placement: TilePlacement
     copies: PlacedTiles
+    numbers: Ints | None = None
 
     @property
     def region(self) -> Region | None:

@@ -26,6 +26,7 @@ from voronoi_tiles.fabrication.exact import design_recipe
 from voronoi_tiles.fabrication.inventory import Inventory, cut_free, inventory
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, Sheet, lay_out
+from voronoi_tiles.fabrication.packed_sheets import pack_colours
 from voronoi_tiles.fabrication.sheets import read_sheet
 from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_tiles
 from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
@@ -143,7 +144,30 @@ def make_colours(
     Raises what `make` does.
     """
     plan = _Plan.of(design, tessellation, job, _format(file_format))
+    if job.pack:
+        return plan.packed(job)
     return [(name, plan.product(replace(job, only_colour=number))) for number, name in plan.colours()]
+
+
+def make_reported(design: Design, tessellation: Tessellation, job: Job) -> tuple[Product, list[dict[str, Any]]]:
+    """One drawing of all that a job asks for, each colour on a layer, and what each takes of sheets where it is packed.
+
+    The rows, in the types of JSON, have "colour", "pieces", "sheets" and "share". Raises what `make` does.
+    """
+    plan = _Plan.of(design, tessellation, job, "svg")
+    if job.split != "files":
+        return plan.product(job), []
+    rows = [
+        {
+            "colour": one.colour + 1,
+            "pieces": sum(len(sheet.copies.tile) for sheet in one.sheets),
+            "sheets": len(one.sheets),
+            "share": one.share,
+        }
+        for one in (pack_colours(plan.layout, plan.colouring) if job.pack else ())
+    ]
+    together = replace(job, colours=job.scheme, into="layers", pack=False, stock=None)
+    return plan.product(together), rows
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,6 +199,22 @@ class _Plan:
         if self.layout.job.fit == "frame" and self.layout.rest() is not None:
             found.append(FRAME)
         return [(number, "frame" if number == FRAME else str(number + 1)) for number in found]
+
+    def packed(self, job: Job) -> list[tuple[str, Product]]:
+        """The sheets that the colours are packed on, and the frame, each with a name for its file."""
+        found = []
+        for one in pack_colours(self.layout, self.colouring):
+            job = replace(job, only_colour=one.colour)
+            for number, layout in enumerate(one.sheets):
+                plan = replace(self, layout=layout, colouring=replace(self.colouring, copies=layout.copies))
+                product = plan.product(job)
+                if number == 0:
+                    product = replace(product, notes=(one.said(), *product.notes))
+                found.append((f"colour{one.colour + 1}-{number + 1}", product))
+        frames = [
+            (name, self.product(replace(job, only_colour=FRAME))) for colour, name in self.colours() if colour < 0
+        ]
+        return found + frames
 
     def product(self, job: Job) -> Product:
         """Draw what a job asks for, which is that of the plan, or one of its colours."""
@@ -231,7 +271,7 @@ def _doubled(layout: Layout, job: Job) -> list[str]:
     """Say that neighbours' contours lie on each other, or touch, where they do."""
     if not job.pieces or (job.apart or 0.0) > 0.0 or len(layout.copies.tile) < 2 or job.sheet is None:
         return []
-    if job.split == "files" and (job.scheme == "fewest" or isinstance(job.scheme, int)):
+    if job.pack or (job.split == "files" and (job.scheme == "fewest" or isinstance(job.scheme, int))):
         return []  # neighbours are in different files
     if job.apart is not None:
         return ["neighbouring contours touch, and are cut twice where they lie on each other: `gap='1mm'` avoids it"]
