@@ -67,7 +67,7 @@ class Length(click.ParamType[float]):
 
 LENGTH = Length()
 
-_TYPES: dict[str, click.ParamType[Any] | type] = {"length": LENGTH, "angle": float, "text": str}
+_TYPES: dict[str, click.ParamType[Any] | type] = {"length": LENGTH, "angle": float, "text": str, "number": str}
 
 # A second spelling, and an option that is for the program's own use.
 _SPELLINGS = {"colours": ("--colours", "--colors")}

@@ -18,6 +18,9 @@ _PLACES: Final = 48
 _GRID: Final = 8
 """Places that are tried along each side of the cell where the region is no rectangle."""
 
+_ROUGH: Final = 4
+"""The same for a rough shift; a divisor of the one above, so that no place is another."""
+
 _AT_ONCE: Final = 1 << 22
 """Pairs of a tile and a place that are looked at in one go."""
 
@@ -28,7 +31,7 @@ _NEAR_MM: Final = 0.02
 """How near to the place where a tile would be lost a group is moved on its way to the middle; millimetres."""
 
 
-def best_shift(period: Period, region: Region) -> complex:
+def best_shift(period: Period, region: Region, *, rough: bool = False) -> complex:
     """The shift, of all that are tried, with which most tiles lie in a region as a whole, in its middle.
 
     In a rectangle a best place is one where some tile touches the left or right edge and some tile the lower or upper
@@ -36,10 +39,14 @@ def best_shift(period: Period, region: Region) -> complex:
     The shortest of the best shifts, of a grid the one that is best centred, is then changed so that what the tiles
     together leave free on the left and on the right, and below and above, is equal: the boxes of the group and of the
     region have one middle. In a rectangle that can always be; elsewhere the group goes as near to it as it can without
-    losing a tile.
+    losing a tile. A `rough` one is not centred, and comes from fewer places of the grid: with the best one there are as
+    many tiles, or more.
     """
-    found = _best_of_edges(period, region) if region.is_rectangle else _best_of_grid(period, region)
-    return _centred(period, region, found)
+    if region.is_rectangle:
+        found = _best_of_edges(period, region)
+    else:
+        found = _best_of_grid(period, region, _ROUGH if rough else _GRID)
+    return found if rough else _centred(period, region, found)
 
 
 def _best_of_edges(period: Period, region: Region) -> complex:
@@ -85,10 +92,10 @@ def _touching(edges: list[tuple[float, float]], places: list[Floats], reach: flo
     return np.asarray(shifts, np.float64)
 
 
-def _best_of_grid(period: Period, region: Region) -> complex:
+def _best_of_grid(period: Period, region: Region, side: int) -> complex:
     """The best shift of a grid over the cell, by placing the tiles; of several the one that is best centred."""
     a, b = (complex(vector) for vector in period.basis)
-    steps = (np.arange(_GRID) - _GRID // 2) / _GRID
+    steps = (np.arange(side) - side // 2) / side
     shifts = sorted((complex(s * a + t * b) for s in steps for t in steps), key=abs)
     groups = [_group(period, region, shift) for shift in shifts]
     most = max(count for count, _ in groups)

@@ -23,6 +23,7 @@ from voronoi_tiles.fabrication.job_options import (
     read_angle,
     read_colour,
     read_colours,
+    read_count,
     read_offset,
     read_sheet,
     read_size,
@@ -94,6 +95,14 @@ class Job:
         "The least width of the frame; means `fit='frame'` [default: 2mm].",
         least=SHEET_MIN,
         shown="WIDTH",
+    )
+    pieces: Option[int | str | None, int | None] = Option(
+        None,
+        read_count,
+        "So many whole tiles at least: the design is scaled to the largest at which the sheet holds them, or without a "
+        "sheet the smallest one is found [default: as many as fit].",
+        kind="number",
+        shown="N",
     )
     rotate: Option[float, float] = Option(
         0.0, read_angle, "Turn the tiles counter-clockwise.", kind="angle", shown="DEGREES"
@@ -227,7 +236,7 @@ class Job:
         return max(APART_MM, 2 * self.kerf) if self.gap is None else self.gap
 
     @property
-    def pieces(self) -> bool:
+    def cuts_pieces(self) -> bool:
         """Whether every tile is a closed contour of its own."""
         if self.edges is not None:
             return self.edges == "pieces"
@@ -265,7 +274,7 @@ class Job:
                 f"`{name}` needs `edges='pieces'`: an edge that is cut once belongs to two of them",
                 remedy=f"Use that, or leave `{name}` out.",
             )
-        if self.tabs > 0.0 and self.sheet is not None and self.pieces and self.apart is None and not self.pack:
+        if self.tabs > 0.0 and self.sheet is not None and self.cuts_pieces and self.apart is None and not self.pack:
             raise JobError(
                 "`tabs` hold nothing where the contours of two pieces lie on each other",
                 remedy="Pull the pieces apart, `gap='1mm'`, or use `edges='once'`.",
@@ -291,14 +300,18 @@ class Job:
                 raise JobError("`stock` is what pieces are packed on, and none are", remedy="Add `pack=True`.")
             return
         for wrong, message, remedy in (
-            (self.sheet is None, "`pack` packs the tiles of a sheet, and there is none", "Add `sheet='600x300mm'`."),
+            (
+                self.sheet is None and self.pieces is None,
+                "`pack` packs the tiles of a sheet, and there is none",
+                "Add `sheet='600x300mm'`.",
+            ),
             (self.colours == "none", "`pack` packs each colour, and there are none", "Add `colours='fewest'`."),
             (self.split == "layers", "`pack` makes files of colours, and no layers", "Use `into='files'`."),
             (self.fit == "clip", "`pack` packs whole tiles, and `fit='clip'` cuts them", "Use `fit='whole'`."),
             (self.gap == 0.0, "`pack` with a `gap` of 0 would cut where pieces touch twice", "Use `gap='1mm'`."),
             (
-                isinstance(self.sheet, str) and self.stock is None,
-                "`pack` needs sheets to pack on, and the sheet is a drawing",
+                not isinstance(self.sheet, tuple) and self.stock is None,
+                "`pack` needs sheets to pack on, and this one is a drawing, or not known",
                 "Add their size, `stock='600x300mm'`.",
             ),
         ):
@@ -308,8 +321,10 @@ class Job:
     def _check_sheet(self) -> None:
         if self.frame is not None and self.fit == "clip":
             raise JobError("`fit='clip'` leaves no `frame`", remedy="Use one of the two.")
+        if self.pieces is not None and self.fit == "clip":
+            raise JobError("`pieces` counts whole tiles, and `fit='clip'` cuts them", remedy="Use `fit='whole'`.")
         if self.sheet is None:
-            for name in ("frame", "fit", "offset", "marks"):
+            for name in () if self.pieces is not None else ("frame", "fit", "offset", "marks"):
                 if getattr(self, name) != self.options()[name].default:
                     raise JobError(f"`{name}` is about a sheet, and there is none", remedy="Add `sheet='600x300mm'`.")
         elif not isinstance(self.sheet, str) and 2.0 * self.margin >= min(self.sheet):

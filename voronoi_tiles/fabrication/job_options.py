@@ -23,6 +23,9 @@ SHEET_MAX: Final = 100_000.0
 SHEET_MIN: Final = 0.1
 """Smallest side of a sheet; millimetres."""
 
+COUNT_MAX: Final = 10_000
+"""Most pieces that a scale or a sheet is looked for; a count."""
+
 COLOURS_MAX: Final = 32
 """Most colours that are asked for; a count."""
 
@@ -147,6 +150,15 @@ def read_colours(name: str, value: object) -> str | int:
             remedy=f"Use a number up to {COLOURS_MAX}, or one of {', '.join(SCHEMES[1:])}.",
         )
     return value
+
+
+def read_count(name: str, value: object) -> int | None:
+    """Read how many pieces there shall be. Raises JobError."""
+    if isinstance(value, str) and value.isascii() and value.isdigit() and len(value) < 9:
+        value = int(value)
+    if value is None or (isinstance(value, Integral) and not isinstance(value, bool) and 1 <= value <= COUNT_MAX):
+        return None if value is None else int(value)
+    raise JobError(f"`{name}` {shown(value)} cannot be", remedy=f"Give a whole number from 1 to {COUNT_MAX:,}.")
 
 
 def read_sheet(name: str, value: Any) -> tuple[float, float] | str | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
@@ -90,8 +90,8 @@ class Layout:
     """A tessellation on the page of a job, in millimetres, y up.
 
     `tiles` are those of one period where it is laid, `spaced` is the period where it is cut: pulled apart, where pieces
-    are. `placement` says which tiles lie on the page, `copies` how far each was pulled; `numbers` are what these are
-    labelled by, None where they are numbered as they lie.
+    are, by `stretch`. `placement` says which tiles lie on the page, `copies` how far each was pulled; `numbers` are
+    what these are labelled by, None where they are numbered as they lie.
     """
 
     design: Design
@@ -103,6 +103,7 @@ class Layout:
     spaced: Period
     placement: TilePlacement
     copies: PlacedTiles
+    stretch: Stretch = UNSTRETCHED
     numbers: Ints | None = None
 
     @property
@@ -205,14 +206,19 @@ def lay_out(
     sheet: Sheet,
     budget: AccuracyBudget,
     fit: Callable[[Paths], Paths] | None,
+    *,
+    scale: float = 1.0,
+    rough: bool = False,
 ) -> Layout:
-    """Place the tiles of a job; `fit` replaces the exact curves (in the design's units).
+    """Place the tiles of a job, scaled; `fit` replaces the exact curves (in the design's units).
+
+    A `rough` layout only tells how many tiles there are, or a few less.
 
     Raises JobError where the sheet holds no tile, or too many, or a tile does not survive kerf or fillet.
     """
     region = sheet.region
     shift = 0j if region is None else sheet.centre + (job.offset or 0j)
-    page = PageMap(tessellation.action, design.unit_mm * unit_at(job.rotate), shift)
+    page = PageMap(tessellation.action, scale * design.unit_mm * unit_at(job.rotate), shift)
     period = tessellation.period if fit is None else approximated(tessellation.period, tessellation.quotient, fit)
     tiles = DressedTiles(period.placed(page.factor, page.shift), page, Compensation(job, budget))
     if region is None:
@@ -222,14 +228,43 @@ def lay_out(
         )
     _refuse_crowd(tiles.period, region)
     stretch = UNSTRETCHED if job.apart is None else _stretch(tiles, job.apart, budget.measured)
+    return _filled(design, tessellation, job, sheet, budget, tiles, stretch, rough)
+
+
+def refilled(layout: Layout, *, sheet: Sheet | None = None, gap: float | None = None) -> Layout:
+    """A layout's tiles on another sheet, or apart by another gap, roughly. Raises what `lay_out` does."""
+    sheet = layout.sheet if sheet is None else sheet
+    job, tiles, stretch = layout.job, layout.tiles, layout.stretch
+    if gap is not None:
+        job = replace(job, gap=gap)
+        stretch = UNSTRETCHED if job.apart is None else _stretch(tiles, job.apart, layout.budget.measured)
+    tiles = tiles.moved(sheet.centre + (job.offset or 0j) - tiles.page.shift)
+    assert sheet.region is not None
+    _refuse_crowd(tiles.period, sheet.region)
+    return _filled(layout.design, layout.tessellation, job, sheet, layout.budget, tiles, stretch, rough=True)
+
+
+def _filled(
+    design: Design,
+    tessellation: Tessellation,
+    job: Job,
+    sheet: Sheet,
+    budget: AccuracyBudget,
+    tiles: DressedTiles,
+    stretch: Stretch,
+    rough: bool,
+) -> Layout:
+    """Fill a sheet with tiles that are spread by a stretch."""
+    region = sheet.region
+    assert region is not None
     field = _inset(region, job.frame_width) if job.frame_width > 0.0 else region
     spaced = _spaced(tiles, sheet, stretch)
     if job.offset is None and job.fit != "clip":
-        tiles = tiles.moved(stretch.inverse(best_shift(spaced, field)))
+        tiles = tiles.moved(stretch.inverse(best_shift(spaced, field, rough=rough)))
         spaced = _spaced(tiles, sheet, stretch)
     placement = _placement(spaced, field, job)
     copies = _pulled(tiles, placement, sheet, stretch)
-    return Layout(design, tessellation, job, sheet, budget, tiles, spaced, placement, copies)
+    return Layout(design, tessellation, job, sheet, budget, tiles, spaced, placement, copies, stretch)
 
 
 def _refuse_crowd(period: Period, region: Region) -> None:
@@ -320,6 +355,9 @@ def piece_areas(pieces: ClosedPieces) -> Floats:
 
 def _inset(region: Region, width: float) -> Region:
     """What is left of a region inside a frame of this width. Raises JobError where nothing is."""
+    left, bottom, right, top = region.bounds
+    if region.is_rectangle and 2 * width < min(right - left, top - bottom):
+        return Region.rectangle(left + width, bottom + width, right - width, top - width)
     try:
         border = offset(region.border, -width).paths
     except OffsetError as error:

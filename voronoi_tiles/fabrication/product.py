@@ -23,11 +23,13 @@ from voronoi_tiles.fabrication.artwork import Works
 from voronoi_tiles.fabrication.cutting import Cut, cut_once, cut_pieces, toured
 from voronoi_tiles.fabrication.engraving import engrave
 from voronoi_tiles.fabrication.exact import design_recipe
+from voronoi_tiles.fabrication.gap_hint import smaller_gap
 from voronoi_tiles.fabrication.inventory import Inventory, cut_free, inventory
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, Sheet, lay_out
 from voronoi_tiles.fabrication.packed_sheets import pack_colours
 from voronoi_tiles.fabrication.sheets import read_sheet
+from voronoi_tiles.fabrication.sizing import sized
 from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_tiles
 from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
 from voronoi_tiles.formats.page import Drawing, Layer, Work
@@ -133,7 +135,8 @@ def make(design: Design, tessellation: Tessellation, job: Job, file_format: str 
             "a file for each colour is several drawings, and one is asked for",
             remedy="Export it to a file's name, or use `into='layers'`.",
         )
-    return _Plan.of(design, tessellation, job, form).product(job)
+    plan = _Plan.of(design, tessellation, job, form)
+    return plan.product(plan.layout.job)
 
 
 def make_colours(
@@ -144,6 +147,7 @@ def make_colours(
     Raises what `make` does.
     """
     plan = _Plan.of(design, tessellation, job, _format(file_format))
+    job = plan.layout.job
     if job.pack:
         return plan.packed(job)
     return [(name, plan.product(replace(job, only_colour=number))) for number, name in plan.colours()]
@@ -155,6 +159,7 @@ def make_reported(design: Design, tessellation: Tessellation, job: Job) -> tuple
     The rows, in the types of JSON, have "colour", "pieces", "sheets" and "share". Raises what `make` does.
     """
     plan = _Plan.of(design, tessellation, job, "svg")
+    job = plan.layout.job
     if job.split != "files":
         return plan.product(job), []
     rows = [
@@ -179,18 +184,24 @@ class _Plan:
     curves: str
     layout: Layout
     colouring: TileColouring
+    said: tuple[str, ...]
 
     @classmethod
     def of(cls, design: Design, tessellation: Tessellation, job: Job, form: Format) -> _Plan:
-        """Lay out the tiles."""
+        """Lay out the tiles, of a design or on a sheet that is found for a number of pieces."""
         preset = load_preset(job.preset)
         preset.require(form)
         curves = _curves(job, preset, form)
+        said: tuple[str, ...] = ()
+        if job.pieces is not None:
+            design, tessellation, job, found = sized(design, tessellation, job, curves)
+            said = (found,)
         budget = AccuracyBudget.of(job, curves)
         fit = curve_fit(job, curves, budget, design.unit_mm)
         layout = lay_out(design, tessellation, job, read_sheet(job, budget), budget, fit)
+        said += smaller_gap(layout)
         colours = colour_tiles(tessellation, job.scheme, layout.period)
-        return cls(form, preset, curves, layout, TileColouring(colours, layout.copies))
+        return cls(form, preset, curves, layout, TileColouring(colours, layout.copies), said)
 
     def colours(self) -> list[tuple[int, str]]:
         """The colours that the page has pieces of, each with a name for its file; FRAME for the frame."""
@@ -219,7 +230,7 @@ class _Plan:
     def product(self, job: Job) -> Product:
         """Draw what a job asks for, which is that of the plan, or one of its colours."""
         layout, colouring, preset = self.layout, self.colouring, self.preset
-        if job.pieces:
+        if job.cuts_pieces:
             contours = _of_colour(layout.contours, colouring, job)
             cuts = cut_pieces(contours, colouring, job)
             pieces = inventory(layout, colouring, contours.copy, contours.area)
@@ -231,8 +242,9 @@ class _Plan:
         engraving = engrave(layout, contours, layout.sheet, shown, fills=preset.fill_engraving)
         layers = _layers(preset, self.form, job, cuts, engraving, _converter(self.curves, layout.budget))
         drawing = _page(layers, layout.sheet, job, layout.design)
-        said = (*layout.sheet.notes, *layout.tiles.compensation.losses, *engraving.notes, *_unstroked(self.form, job))
-        notes = tuple(dict.fromkeys((*said, *_doubled(layout, job), *_untabbed(cuts, job))))
+        said = (*self.said, *layout.sheet.notes, *layout.tiles.compensation.losses, *engraving.notes)
+        more = (*_unstroked(self.form, job), *_doubled(layout, job), *_untabbed(cuts, job))
+        notes = tuple(dict.fromkeys((*said, *more)))
         files = tuple(files_read(layout.design, job))
         scheme = None if job.split is None else job.scheme
         return Product(self.form, drawing, pieces, colouring.count, scheme, notes, self.curves, job.accuracy, files)
@@ -253,7 +265,7 @@ def _format(name: str) -> Format:
 
 def _untabbed(cuts: list[Cut], job: Job) -> list[str]:
     """Say how many pieces are too small for tabs, where there are any."""
-    small = sum(int(cut.paths.closed.sum()) for cut in cuts) if job.tabs > 0.0 and job.pieces else 0
+    small = sum(int(cut.paths.closed.sum()) for cut in cuts) if job.tabs > 0.0 and job.cuts_pieces else 0
     if not small:
         return []
     are, fall = ("is", "falls") if small == 1 else ("are", "fall")
@@ -269,7 +281,7 @@ def _unstroked(form: Format, job: Job) -> list[str]:
 
 def _doubled(layout: Layout, job: Job) -> list[str]:
     """Say that neighbours' contours lie on each other, or touch, where they do."""
-    if not job.pieces or (job.apart or 0.0) > 0.0 or len(layout.copies.tile) < 2 or job.sheet is None:
+    if not job.cuts_pieces or (job.apart or 0.0) > 0.0 or len(layout.copies.tile) < 2 or job.sheet is None:
         return []
     if job.pack or (job.split == "files" and (job.scheme == "fewest" or isinstance(job.scheme, int))):
         return []  # neighbours are in different files
