@@ -372,11 +372,6 @@ class Tiling:
                 "a JSON document holds the exact outlines of one of each tile, and no sheet",
                 remedy="Write svg, dxf, pdf or lbrn2, or leave the other options out.",
             )
-        if check is not None and job is not None and job.pieces is not None and job.sheet is not None:
-            raise JobError(
-                "`pieces` scales the design, and the cross-check is of this one",
-                remedy="Write the design at the scale that is found, and check that.",
-            )
         evidence = None if check is None else self.evidence(check)
         return write_products(self.design, self.tessellation, name, form, job or Job(), evidence)
 

@@ -71,7 +71,7 @@ def export(
             for path, product in () if quiet or target == "-" else written:
                 for note in () if product is None else product.notes:
                     say(as_options(note))
-                say_written(path, None if product is None else product.summary())
+                say_written(path, None if product is None else as_options(product.summary()))
     if worst:
         raise click.exceptions.Exit(worst)
 

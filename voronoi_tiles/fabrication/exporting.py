@@ -57,6 +57,11 @@ def write_products(
     """
     from voronoi_tiles.fabrication.product import make, make_colours
 
+    if evidence is not None and job.pieces is not None and job.sheet is not None:
+        raise JobError(
+            "`pieces` scales the design, and the cross-check is of this one",
+            remedy="Write the design at the scale that is found, and check that.",
+        )
     if job.split != "files":
         products = {path: make(design, tessellation, job, file_format)}
     elif path == STDOUT or is_special(path):

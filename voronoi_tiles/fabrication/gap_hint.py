@@ -17,17 +17,17 @@ _NEARLY: Final = 0.9
 """A gap that is hardly smaller, as a share, is not worth a word."""
 
 
-def smaller_gap(layout: Layout) -> tuple[str, ...]:
-    """That a smaller gap would let more whole tiles on the sheet, as a sentence; none where it would not."""
+def smaller_gap(layout: Layout) -> str:
+    """That a smaller gap would let more whole tiles on the sheet, in words; nothing where it would not."""
     apart, job = layout.job.apart, layout.job
     if not apart or layout.region is None or job.fit != "whole" or layout.stretch.is_identity:
-        return ()
+        return ""
     gap = float(f"{max(_LESS * apart, 2 * job.kerf, _LEAST_MM):.2g}")
     if gap >= _NEARLY * apart:
-        return ()
+        return ""
     here = len(layout.copies.tile)
     try:
         count = len(refilled(layout, gap=gap).copies.tile)
     except JobError:
-        return ()
-    return (f"with `gap='{gap:g}mm'` {count:,} tiles would fit, not {here:,}",) if count > here else ()
+        return ""
+    return f"with `gap='{gap:g}mm'` {count:,} tiles would fit" if count > here else ""

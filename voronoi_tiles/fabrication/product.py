@@ -73,9 +73,10 @@ class Product:
     curves: str
     accuracy: float
     files: tuple[str, ...]
+    hint: str = ""
 
     def __repr__(self) -> str:
-        return f"<Product {self.form}: {self.summary()}>"
+        return f"<Product {self.form}: {self._outcome()}>"
 
     def _repr_svg_(self) -> str:
         """Draw it for a screen, on which the hairlines of files would not be seen: notebooks show this."""
@@ -97,6 +98,10 @@ class Product:
         return replace(self, drawing=self.drawing.with_evidence(evidence))
 
     def summary(self) -> str:
+        """Say in a line what it comes to, and how many more tiles a smaller gap would fit."""
+        return f"{self._outcome()}; {self.hint}" if self.hint else self._outcome()
+
+    def _outcome(self) -> str:
         """Say in a line what it comes to."""
         cuts = [layer.paths for layer in self.drawing.layers if layer.work == "cut"]
         length = fsum(float(paths.lengths.sum()) for paths in cuts) / 1000
@@ -185,6 +190,7 @@ class _Plan:
     layout: Layout
     colouring: TileColouring
     said: tuple[str, ...]
+    hint: str
 
     @classmethod
     def of(cls, design: Design, tessellation: Tessellation, job: Job, form: Format) -> _Plan:
@@ -199,9 +205,8 @@ class _Plan:
         budget = AccuracyBudget.of(job, curves)
         fit = curve_fit(job, curves, budget, design.unit_mm)
         layout = lay_out(design, tessellation, job, read_sheet(job, budget), budget, fit)
-        said += smaller_gap(layout)
         colours = colour_tiles(tessellation, job.scheme, layout.period)
-        return cls(form, preset, curves, layout, TileColouring(colours, layout.copies), said)
+        return cls(form, preset, curves, layout, TileColouring(colours, layout.copies), said, smaller_gap(layout))
 
     def colours(self) -> list[tuple[int, str]]:
         """The colours that the page has pieces of, each with a name for its file; FRAME for the frame."""
@@ -247,7 +252,9 @@ class _Plan:
         notes = tuple(dict.fromkeys((*said, *more)))
         files = tuple(files_read(layout.design, job))
         scheme = None if job.split is None else job.scheme
-        return Product(self.form, drawing, pieces, colouring.count, scheme, notes, self.curves, job.accuracy, files)
+        return Product(
+            self.form, drawing, pieces, colouring.count, scheme, notes, self.curves, job.accuracy, files, self.hint
+        )
 
 
 def files_read(design: Design, job: Job | None) -> list[str]:
