@@ -73,8 +73,12 @@ class Picture:
         renderer: Renderer,
         overlays: Sequence[Overlay] = (),
         style: PictureStyle | None = None,
+        colouring: PeriodicColouring | None = None,
     ) -> None:
-        """Prepare a picture. Raises ValueError where the region or the picture is empty."""
+        """Prepare a picture; without a `colouring` no neighbours are alike.
+
+        Raises ValueError where the region or the picture is empty.
+        """
         self.pattern, self.renderer, self.overlays = pattern, renderer, tuple(overlays)
         self.width, self.height = width, height
         self.style = style or PictureStyle.of_size(width, height)
@@ -84,7 +88,9 @@ class Picture:
         self.provenance: Provenance = renderer.provenance()
         self.renderers: dict[str, None] = {}
         """Who has rendered, in turn: more than one where OpenGL has failed between two bands."""
-        self.colouring: PeriodicColouring = colour(pattern)
+        self.distinct: PeriodicColouring = colour(pattern)
+        """Tells neighbours apart, of which the borders are seen."""
+        self.colouring: PeriodicColouring = self.distinct if colouring is None else colouring
 
     def bands(self) -> Iterator[Pixels]:
         """Render from the top: pixels (rows, width, 3), red, green, blue; `provenance` says by whom, in the end."""
@@ -104,7 +110,9 @@ class Picture:
         colours = palette(self.colouring.count)
         index = self.colouring.of(image.copies)[image.first]
         flat = colours[index]
-        ink = _borders(flat, grow)
+        alike = self.colouring is not self.distinct
+        apart = palette(self.distinct.count)[self.distinct.of(image.copies)[image.first]] if alike else flat
+        ink = _borders(apart, grow)
         inner = (slice(halo, -halo), slice(halo, -halo))
         cover = np.maximum(ink.astype(np.float32), self._sites(image))[inner]
         pixels = flat[inner].astype(np.float32)

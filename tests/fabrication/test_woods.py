@@ -17,6 +17,7 @@ from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.product import make_colours
 from voronoi_tiles.fabrication.tile_colouring import colour_tiles
+from voronoi_tiles.groups.periodic_colouring import palette
 
 NAMES = [
     "p1-heron",
@@ -146,3 +147,33 @@ def test_colours_that_cannot_be(job: dict[str, Any], message: str) -> None:
         Job(**job)
     assert caught.value.remedy
     assert not isinstance(caught.value, DesignError)
+
+
+@pytest.mark.parametrize(
+    ("name", "colours"),
+    [("pg-wave", "handedness"), ("p3-puzzle", 5), ("p4-mill", "orientation"), ("p1-heron", 3)],
+)
+def test_pictures_show_the_colours_that_are_cut(name: str, colours: int | str) -> None:
+    """Wherever a piece of a layer lies, the picture has the colour of that layer."""
+    tiles, side = tiling(name), 150.0
+    pieces = [(one, layer) for one, layer in coloured(name, side, colours=colours, fit="clip") if one.area > 20]
+    half = side / 2 / tiles.design.unit_mm
+    picture = tiles.render(size=450, region=(-half, -half, half, half), colours=colours, renderer="cpu").pixels
+    known = {tuple(row) for row in palette(32).tolist()}
+    seen: dict[str, set[tuple[int, ...]]] = {}
+    found = 0
+    for one, layer in pieces:
+        point = one.representative_point()
+        colour = tuple(picture[round(449 - point.y * 3), round(point.x * 3)].tolist())
+        if colour in known:  # no border, and no stroke
+            seen.setdefault(layer, set()).add(colour)
+            found += 1
+    assert found > len(pieces) / 2
+    assert all(len(shown) == 1 for shown in seen.values())
+    assert len(set.union(*seen.values())) == len(seen) == len({layer for _, layer in pieces})
+
+
+def test_colours_of_a_picture_that_cannot_be() -> None:
+    """They are refused as those of a job."""
+    with pytest.raises(JobError, match="'blue' is unknown"):
+        tiling("pg-wave").render(size=8, colours="blue", renderer="cpu")

@@ -12,6 +12,7 @@ import click
 
 from voronoi_tiles.cli.common import PATH, refuse_output, reporting, say, say_written
 from voronoi_tiles.cli.options import with_method, with_renderer
+from voronoi_tiles.fabrication.job import Job
 
 if TYPE_CHECKING:
     from voronoi_tiles.raster.renderer import Choice, Method
@@ -73,6 +74,12 @@ def _read_region(
     help="Draw on top: mirrors, glides and rotation centres; the cell; the exact outlines; the sites' art in the place "
     "of their strokes. May be repeated.",
 )
+@click.option(
+    "--colours",
+    "--colors",
+    metavar=Job.options()["colours"].shown,
+    help="The colours that export gives the tiles, a wood each [default: no neighbours are alike].",
+)
 @with_method
 @with_renderer
 @click.option("-q", "--quiet", is_flag=True, help="Report only what fails.")
@@ -82,6 +89,7 @@ def render(
     size: int | tuple[int, int] | None,
     region: tuple[float, float, float, float] | None,
     overlay: tuple[str, ...],
+    colours: str | None,
     method: Method,
     renderer: Choice,
     device: int | None,
@@ -100,6 +108,7 @@ def render(
             size=DEFAULT_SIZE if size is None else size,
             region=region,
             overlay=overlay,
+            colours="none" if colours is None else colours,
             method=method,
             renderer=renderer,
             device=device,

@@ -26,6 +26,7 @@ from voronoi_tiles.formats.png import PngStream
 from voronoi_tiles.groups.symmetry_elements import placed, symmetry_elements
 from voronoi_tiles.pictures import difference as diff
 from voronoi_tiles.pictures.rendered import Rendering
+from voronoi_tiles.pictures.wood_colouring import wood_colouring
 from voronoi_tiles.raster.line_coverage import dashed
 from voronoi_tiles.raster.picture import INK, Overlay, Picture, PictureStyle, Pixels, Region, default_region
 from voronoi_tiles.raster.renderer import Choice, Method, Provenance, Renderer
@@ -69,6 +70,7 @@ class RenderOptions(TypedDict, total=False):
     size: int | tuple[int, int]
     region: Region | None
     overlay: str | Sequence[str]
+    colours: str | int
     method: Method
     renderer: Choice
     device: int | None
@@ -93,6 +95,8 @@ def render(
       cells each way;
     - `overlay`: what is drawn on top, of "symmetry" (mirrors, glides and rotation centres), "cell", "outline" (the
       exact ones) and "art" (in the place of the strokes);
+    - `colours`: those that tiles get when they are cut, as `Job` takes them: a number, "fewest", "site", "handedness",
+      "orientation";
     - `method`: "exact", or "hoff" for cones and tents with a depth test; `renderer`: "auto", "gl" or "cpu"; `device`:
       the number of OpenGL's device;
     - `notice` is called with one line when OpenGL is given up, `progress` with how many rows, of how many, are done.
@@ -119,6 +123,7 @@ def paint(
     size: int | tuple[int, int] = DEFAULT_SIZE,
     region: Region | None = None,
     overlay: str | Sequence[str] = (),
+    colours: str | int = "none",
     method: Method = "exact",
     renderer: Choice = "auto",
     device: int | None = None,
@@ -152,6 +157,7 @@ def paint(
         renderer=Renderer(renderer, device=device, method=method, notice=notice),
         overlays=_dots(pattern, region, style) + _overlays(design, outlines, pattern, region, width, overlay),
         style=style,
+        colouring=None if colours == "none" else wood_colouring(design, pattern, colours),
     )
     text = {
         "Software": f"voronoi-tiles {__version__}",
