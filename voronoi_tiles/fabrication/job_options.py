@@ -142,7 +142,7 @@ def read_colours(name: str, value: object) -> str | int:
     """Read what colours tiles have: a number of them, or a word. Raises JobError."""
     if isinstance(value, str) and value.isascii() and value.isdigit() and len(value) < 5:
         value = int(value)
-    if isinstance(value, Integral) and not isinstance(value, bool) and 1 <= value <= COLOURS_MAX:
+    if not isinstance(value, bool) and isinstance(value, Integral) and 1 <= int(value) <= COLOURS_MAX:
         return int(value)
     if not (isinstance(value, str) and value in SCHEMES):
         raise JobError(
@@ -156,8 +156,10 @@ def read_count(name: str, value: object) -> int | None:
     """Read how many pieces there shall be. Raises JobError."""
     if isinstance(value, str) and value.isascii() and value.isdigit() and len(value) < 9:
         value = int(value)
-    if value is None or (isinstance(value, Integral) and not isinstance(value, bool) and 1 <= value <= COUNT_MAX):
-        return None if value is None else int(value)
+    if value is None:
+        return None
+    if not isinstance(value, bool) and isinstance(value, Integral) and 1 <= int(value) <= COUNT_MAX:
+        return int(value)
     raise JobError(f"`{name}` {shown(value)} cannot be", remedy=f"Give a whole number from 1 to {COUNT_MAX:,}.")
 
 
