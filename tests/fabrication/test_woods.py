@@ -127,6 +127,8 @@ def test_files_and_layers_of_any_scheme(colours: str) -> None:
     assert [set(product.pieces.turned_over.tolist()) for _, product in products] == [{False}, {True}]
     assert tiles.report(job)["colouring"] == "handedness"
     assert tiles.report(Job())["colouring"] is None
+    alone = tiling("p4-hook").make(Job(sheet=(170.0, 150.0), kerf=0.3, colours="handedness"))
+    assert alone.notes == ("by handedness all tiles are alike: there is one colour",)
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from typing import Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Ints, plane
+from voronoi_tiles.base.arrays import Complexes, Ints, plane
 from voronoi_tiles.fabrication.engraving import piece_numbers
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.layout import Layout, PlacedTiles, Sheet
@@ -49,7 +49,7 @@ def pack_colours(layout: Layout, colouring: TileColouring) -> list[PackedColour]
     slack = _COARSE * job.side_by_side
     shapes = [_polygon(to_lines(rings, accuracy=slack)) for rings in layout.tiles.all_rings()]
     colour = colouring.of_copies(np.arange(len(layout.copies.tile)))
-    numbers = piece_numbers(layout, layout.contours)
+    numbers = piece_numbers(layout, layout.contours) if job.labels == "number" else None
     found = []
     for number in np.unique(colour[layout.copies.whole]).tolist():
         copies = np.flatnonzero((colour == number) & layout.copies.whole)
@@ -85,7 +85,7 @@ def _stock(job: Job) -> Sheet:
     return Sheet(*size, region, complex(*size) / 2)
 
 
-def _on_sheet(layout: Layout, copies: Ints, shift: np.ndarray, page: Sheet, numbers: Ints) -> Layout:
+def _on_sheet(layout: Layout, copies: Ints, shift: Complexes, page: Sheet, numbers: Ints | None) -> Layout:
     """Some tiles of a layout on a page, each `shift` from where its tile stands in the period."""
     tile, step = layout.copies.tile[copies], layout.copies.step[copies]
     whole = np.ones(len(copies), np.bool_)
@@ -95,7 +95,7 @@ def _on_sheet(layout: Layout, copies: Ints, shift: np.ndarray, page: Sheet, numb
         sheet=page,
         placement=TilePlacement(tile, step, whole),
         copies=PlacedTiles(tile, step, whole, shift - layout.period.shifts(step)),
-        numbers=numbers[copies],
+        numbers=None if numbers is None else numbers[copies],
     )
 
 

@@ -135,7 +135,7 @@ def make(design: Design, tessellation: Tessellation, job: Job, file_format: str 
     Raises JobError where the job cannot be done, DesignError where the preset or the sheet's drawing is broken.
     """
     form = _format(file_format)
-    if job.split == "files" and job.only_colour is None:
+    if job.split == "files" and (job.only_colour is None or job.pack):
         raise JobError(
             "a file for each colour is several drawings, and one is asked for",
             remedy="Export it to a file's name, or use `into='layers'`.",
@@ -206,6 +206,8 @@ class _Plan:
         fit = curve_fit(job, curves, budget, design.unit_mm)
         layout = lay_out(design, tessellation, job, read_sheet(job, budget), budget, fit)
         colours = colour_tiles(tessellation, job.scheme, layout.period)
+        if job.split is not None and colours.count == 1:
+            said += (f"by {job.scheme} all tiles are alike: there is one colour",)
         return cls(form, preset, curves, layout, TileColouring(colours, layout.copies), said, smaller_gap(layout))
 
     def colours(self) -> list[tuple[int, str]]:
@@ -220,7 +222,6 @@ class _Plan:
         """The sheets that the colours are packed on, and the frame, each with a name for its file."""
         found = []
         for one in pack_colours(self.layout, self.colouring):
-            job = replace(job, only_colour=one.colour)
             for number, layout in enumerate(one.sheets):
                 plan = replace(self, layout=layout, colouring=replace(self.colouring, copies=layout.copies))
                 product = plan.product(job)

@@ -40,7 +40,8 @@ _DIGITS: Final = 4
 """Significant digits of a scale; it is rounded down."""
 
 _LOWER: Final = 20
-"""How often a scale is lowered by a unit of its last digit, where the scaled design has other curves than it had."""
+"""How often a scale is lowered by a unit of its last digit, or a sheet grows by a millimetre, where what was counted
+roughly is not what is laid out: the scaled design has other curves than it had."""
 
 _SHAPES: Final = (1.0, 1.4, 1 / 1.4, 2.0, 0.5)
 """Widths of the sheets that are tried, in heights."""
@@ -119,7 +120,7 @@ def _scaled(
 
 def _with_sheet(design: Design, tessellation: Tessellation, job: Job, curves: str, pieces: int) -> tuple[Job, str]:
     """The job with the smallest sheet, of those tried, that holds so many tiles; whole millimetres."""
-    job = replace(job, pieces=None, sheet=(1000.0, 1000.0))  # until it is found
+    job = replace(job, pieces=None, sheet=(SHEET_MAX, SHEET_MAX))  # until it is found
     budget = AccuracyBudget.of(job, curves)
     areas = _tile_areas(tessellation) * design.unit_mm**2
     border = job.margin + job.kerf / 2 + job.frame_width
@@ -130,9 +131,8 @@ def _with_sheet(design: Design, tessellation: Tessellation, job: Job, curves: st
     )
     side = 4 * (border + extent * design.unit_mm)  # some tiles fit, however they are turned
     start = replace(job, sheet=(side, side), margin=0.0)
-    base = lay_out(
-        design, tessellation, start, read_sheet(start, budget), budget, curve_fit(job, curves, budget, design.unit_mm)
-    )
+    fit = curve_fit(job, curves, budget, design.unit_mm)
+    base = lay_out(design, tessellation, start, read_sheet(start, budget), budget, fit, rough=True)
 
     def filled(size: tuple[float, float]) -> Layout | None:
         """The tiles on a sheet of a size; None where too few fit."""
@@ -150,9 +150,13 @@ def _with_sheet(design: Design, tessellation: Tessellation, job: Job, curves: st
             f"no sheet that was tried holds {pieces:,} `pieces`", remedy="Take fewer, or a smaller kerf, gap or margin."
         )
     size = min(found)[1]
-    layout = filled(size)
-    assert layout is not None
-    return replace(job, sheet=size), f"sheet {size[0]:g} x {size[1]:g} mm: {_tile_size(layout)}"
+    for _ in range(_LOWER):
+        done = replace(job, sheet=size)
+        layout = _laid(partial(lay_out, design, tessellation, done, read_sheet(done, budget), budget, fit))
+        if layout is not None and len(layout.copies.tile) >= pieces:
+            return done, f"sheet {size[0]:g} x {size[1]:g} mm: {_tile_size(layout)}"
+        size = (size[0] + 1.0, size[1] + 1.0)
+    raise JobError(f"no sheet was found for {pieces:,} `pieces`", remedy="Ask for one piece more or less.")
 
 
 def _grown(
