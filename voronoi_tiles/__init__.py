@@ -35,6 +35,7 @@ if TYPE_CHECKING:
         bspline,
         catmull_rom,
         circle,
+        drawing,
         hermite,
         path,
         point,
@@ -126,6 +127,7 @@ __all__ = [
     "catmull_rom",
     "circle",
     "coupon",
+    "drawing",
     "hermite",
     "path",
     "point",
@@ -149,7 +151,7 @@ _HOMES = {
     "voronoi_tiles.designs.design": "Design",
     "voronoi_tiles.designs.drawn_site": "Site",
     "voronoi_tiles.designs.drawn_strokes": (
-        "Stroke bezier bspline catmull_rom circle hermite path point polyline segment"
+        "Stroke bezier bspline catmull_rom circle drawing hermite path point polyline segment"
     ),
     "voronoi_tiles.designs.site": "NodedSite",
     "voronoi_tiles.designs.starters": "starter starter_text",

@@ -13,6 +13,7 @@ import numpy as np
 from voronoi_tiles.base.arguments import instance, path_name
 from voronoi_tiles.base.errors import ArgumentError, CheckError, UnknownNameError
 from voronoi_tiles.base.files import refuse_overwriting, write_whole
+from voronoi_tiles.base.maps import Placement
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.tile import Tile, TileCopy
 from voronoi_tiles.vector.proof import ProofReport
@@ -290,7 +291,10 @@ class Tiling:
         from voronoi_tiles.fabrication.art_template import write_template
 
         tile = self[0 if site is None else instance("site", site, str)]
-        return write_template(path, self.design.folder, tile.site, tile.outline, self.design.unit_mm)
+        art = write_template(path, self.design.folder, tile.site, tile.outline, self.design.unit_mm)
+        # Where the site is placed, its art is placed once more.
+        place = Placement(self.design.scale) @ self.design.sites[self.tiles.index(tile)].placement
+        return art if place.is_identity else art.placed(place.inverse)
 
     @overload
     def render(self, path: None = None, **options: Unpack[RenderOptions]) -> Rendering: ...

@@ -356,8 +356,13 @@ def one(*strokes: Any, **site: Any) -> Callable[[], object]:
         (lambda: vt.Site([vt.point(0), shapely.Point()]), "strokes[1]", "the geometry is empty"),
         (lambda: vt.polyline(shapely.MultiLineString()), None, "the geometry is empty"),
         (lambda: bird().scaled(0), "factor", "greater than 0"),
-        (lambda: bird(vt.path("M 1 1 L 2 2")).moved(mirror=True), "sites[0].strokes[0].data", "cannot be mirrored"),
-        (lambda: bird(art="face.svg").moved(mirror=True), "sites[0].art", "cannot be mirrored"),
+        (one(vt.point(1j, mirror=1)), "sites[0].strokes[0].mirror", "true or false, not 1"),  # type: ignore[arg-type]
+        (one(vt.point(1j), scale=0), "sites[0].scale", "must not be 0"),
+        (one(vt.point(1j), mirror="x"), "sites[0].mirror", "true or false"),
+        (one(vt.drawing("no.svg")), "sites[0].strokes[0].file", "no.svg: cannot be read"),
+        (one(vt.drawing(5)), "sites[0].strokes[0].file", "must be a file's name"),  # type: ignore[arg-type]
+        (one(vt.drawing("a.svg", layer="")), "sites[0].strokes[0].layer", "is empty"),
+        (lambda: vt.Design("p4", 60, vt.Site([vt.point(1j)]), scale=0), "scale", "greater than 0"),
         (lambda: vt.Site([vt.point(1j, rotate="x")]).moved(), "strokes[0].rotate", "must be a number"),  # type: ignore[arg-type]
     ],
 )
@@ -432,7 +437,7 @@ def test_moved_is_the_image_of_the_strokes(
     """Every control point goes where the map takes it, whatever placements the strokes have already."""
     turn = scale * np.exp(1j * math.radians(rotate))
     for site in vt.Design.from_dict(design).sites:
-        strokes = [stroke for stroke in site.strokes if stroke.kind not in ("path", "circle")]
+        strokes = [stroke for stroke in site.strokes if stroke.kind != "circle"]
         moved = vt.Site(strokes).moved(mirror=mirror, scale=scale, rotate=rotate, translate=shift)
         for before, after in zip(strokes, moved.strokes, strict=True):
             z, image = (schema.stroke(stroke.table, 1.0)[0] for stroke in (before, after))
@@ -450,8 +455,10 @@ def test_circles_and_paths_move_with_the_rest() -> None:
     assert moved.moved(translate=-1).moved(rotate=-90).moved(scale=2).noded[0].nodes.tolist() == pytest.approx(
         design.noded[0].nodes.tolist()
     )
-    flipped = bird(vt.circle(5 + 3j, 2, translate=2j, rotate=30)).moved(mirror=True)
-    assert flipped.sites[0].strokes[0] == vt.circle(-5 + 3j, 2, translate=2j, rotate=-30)
+    flipped = bird(vt.circle(5 + 3j, 2, translate=2j, rotate=30), art="face.svg").moved(mirror=True)
+    assert flipped.sites[0].strokes[0] == vt.circle(5 + 3j, 2, mirror=True, translate=2j, rotate=-30)
+    assert flipped.sites[0].art == vt.Art("face.svg", mirror=True)
+    assert flipped.moved(mirror=True) == bird(vt.circle(5 + 3j, 2, translate=2j, rotate=30), art="face.svg")
 
 
 def test_scaled_scales_the_tiles() -> None:
@@ -542,7 +549,7 @@ def test_long_strokes_are_wrapped() -> None:
 def test_the_kinds_of_strokes_are_those_of_files() -> None:
     """Each has a function of its name, in the order of the reader's table."""
     assert get_args(StrokeKind) == tuple(schema._KINDS)
-    assert all(callable(getattr(vt, kind)) for kind in get_args(StrokeKind))
+    assert all(callable(getattr(vt, "drawing" if kind == "file" else kind)) for kind in get_args(StrokeKind))
 
 
 def test_reprs_are_short() -> None:

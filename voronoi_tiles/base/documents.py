@@ -81,12 +81,37 @@ def _parse_toml(text: str, remedy: str) -> Mapping[str, Any]:
         what = str(error)
         place = re.search(r" \(at line (\d+), column (\d+)\)$", what)
         if place:
-            line, what = int(place[1]), f"{what[: place.start()]} (column {place[2]})"
+            line, column = int(place[1]), int(place[2])
+            if what.startswith(("Unclosed inline table", "Invalid initial character for a key part")):
+                broken = _broken_inline_table(text, line, column)
+                if broken is not None:
+                    raise broken from None
+            what = f"{what[: place.start()]} (column {column})"
         else:
             line, what = text.count("\n") + 1, what.removesuffix(" (at end of document)") + " at the end"
         raise DesignError(
             f"not TOML: {what[:1].lower()}{what[1:]}", line=line, remedy=_joined("Correct the line.", remedy)
         ) from None
+
+
+def _broken_inline_table(text: str, line: int, column: int) -> DesignError | None:
+    """The error where an inline table goes on in the next line, or ends in a comma, which TOML does not allow.
+
+    Python's parser stops there at a key, or at a comma or brace, that it does not find; None where it is another error.
+    """
+    row = text.split("\n")[line - 1]
+    before, after = row[: column - 1].rstrip(), row[column - 1 :].lstrip()
+    if after[:1] in ("", "#") and not before.endswith((".", "[")):
+        return DesignError(
+            f"not TOML: an inline table is broken over lines (column {column})",
+            line=line,
+            remedy="Write all from { to } in one line; only inside [ ] may a line be broken.",
+        )
+    if after.startswith("}") and before.endswith(","):
+        return DesignError(
+            f"not TOML: an inline table ends in a comma (column {column})", line=line, remedy="Leave the comma out."
+        )
+    return None
 
 
 def _without_repeats(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -79,20 +79,33 @@ class Isometry(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Placement:
-    """The similarity z -> translate + rotate(scale z), as a stroke carries it.
+    """The similarity z -> translate + rotate(scale m(z)), as strokes, sites and art carry it.
 
-    `scale` is any number but 0 (-1 is a half turn), `rotate` is in degrees, counterclockwise; quarter turns
-    are exact.
+    m mirrors, x -> -x, where `mirror` is set. `scale` is any number but 0 (-1 is a half turn), `rotate` is in degrees,
+    counterclockwise; quarter turns are exact.
     """
 
     scale: float = 1.0
     rotate: float = 0.0
     translate: complex = 0j
+    mirror: bool = False
 
     @property
     def is_identity(self) -> bool:
         """Whether nothing moves."""
-        return self.scale == 1.0 and self.rotate == 0.0 and self.translate == 0j
+        return self.scale == 1.0 and self.rotate == 0.0 and self.translate == 0j and not self.mirror
+
+    @property
+    def similarity(self) -> tuple[complex, complex, bool]:
+        """The numbers (a, b, conj) of the map z -> a z + b, or a conj(z) + b where `conj`, that this is."""
+        factor = self.scale * unit_at(self.rotate)
+        return -factor if self.mirror else factor, self.translate, self.mirror
+
+    @property
+    def inverse(self) -> Placement:
+        """The placement that undoes this one, but for rounding."""
+        back = Placement(1.0 / self.scale, self.rotate if self.mirror else -self.rotate, mirror=self.mirror)
+        return back @ Placement(translate=-self.translate)
 
     @overload
     def __call__(self, z: complex) -> complex: ...
@@ -102,16 +115,17 @@ class Placement:
         """The image of a point or of an array of points, of the same shape."""
         if self.is_identity:
             return z
-        return Isometry(unit_at(self.rotate), self.translate, conj=False)(z * self.scale)
+        start = -z.conjugate() if self.mirror else z
+        return Isometry(unit_at(self.rotate), self.translate, conj=False)(start * self.scale)
 
     def __matmul__(self, inner: Placement) -> Placement:
         """First `inner`, then this one."""
-        return Placement(self.scale * inner.scale, self.rotate + inner.rotate, self(inner.translate))
-
-    @property
-    def mirrored(self) -> Placement:
-        """The placement P' with which mirroring (x -> -x) and then P' is this one and then mirroring."""
-        return Placement(self.scale, -self.rotate, -self.translate.conjugate())
+        return Placement(
+            self.scale * inner.scale,
+            self.rotate + (-inner.rotate if self.mirror else inner.rotate),
+            self(inner.translate),
+            self.mirror != inner.mirror,
+        )
 
 
 SIMILAR: Final = 1e-9

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import click
 
 from voronoi_tiles.cli.common import PATH, print_figures, refuse_output, reporting, say, say_written, tessellate
-from voronoi_tiles.cli.options import with_method, with_renderer
+from voronoi_tiles.cli.options import with_method, with_renderer, with_scale
 
 if TYPE_CHECKING:
     from voronoi_tiles.raster.renderer import Choice, Method
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     metavar="N",
     help="Samples along the side of the cell [16 to 8192, which takes 4 GB; default: 1024].",
 )
+@with_scale
 @with_method
 @with_renderer
 @click.option("--json", "as_json", is_flag=True, help="Print the report as JSON.")

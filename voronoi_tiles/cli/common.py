@@ -14,6 +14,7 @@ import click
 from voronoi_tiles.base.errors import VoronoiTilesError
 
 if TYPE_CHECKING:
+    from voronoi_tiles.designs.design import Design
     from voronoi_tiles.tiling import Tiling
 
 PROGRAM = "voronoi-tiles"
@@ -28,17 +29,32 @@ DEBUG_VARIABLE = "VORONOI_TILES_DEBUG"
 # Whether a file can be read shows when it is read: click's own check would lose a whole batch for one of them.
 PATH = click.Path(allow_dash=True, readable=False)
 
+SCALE = "voronoi_tiles.scale"
+"""Where the options of `with_scale` are in the meta of click's context; lengths in millimetres."""
+
 _ARGUMENT = re.compile(r"`(\w+)(?:=([^`]*))?`")
 
 # Arguments that are options of another name.
 _OPTIONS = {"layers": "layer"}
 
 
-def tessellate(design: str) -> Tiling:
-    """Load a design and compute its tiles."""
+def load(design: str, *, quiet: bool = False) -> Design:
+    """Load a design, say what of its drawings is left out, and scale it by the options of `with_scale`."""
     from voronoi_tiles.designs.design import Design
 
-    return Design.load(design).tessellate()
+    loaded = Design.load(design)
+    for note in () if quiet else loaded.notes:
+        say(note)
+    scale: dict[str, float] = click.get_current_context().meta.get(SCALE, {})
+    if not scale:
+        return loaded
+    lengths = {name: value / loaded.unit_mm for name, value in scale.items() if name != "factor"}
+    return loaded.scaled(**lengths) if lengths else loaded.scaled(scale["factor"])
+
+
+def tessellate(design: str, *, quiet: bool = False) -> Tiling:
+    """Load a design, as `load`, and compute its tiles."""
+    return load(design, quiet=quiet).tessellate()
 
 
 def as_options(text: str) -> str:

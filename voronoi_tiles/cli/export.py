@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from voronoi_tiles.cli.common import PATH, as_options, report_error, say, say_written, tessellate
-from voronoi_tiles.cli.options import with_job, with_renderer
+from voronoi_tiles.cli.options import with_job, with_renderer, with_scale
 
 if TYPE_CHECKING:
     from voronoi_tiles.fabrication.job import Job
@@ -36,6 +36,7 @@ if TYPE_CHECKING:
     type=click.Choice(("svg", "json", "dxf", "pdf", "lbrn2")),
     help="The format where OUT names none: a folder or standard output.",
 )
+@with_scale
 @with_job
 @click.option("-q", "--quiet", is_flag=True, help="Report only what fails.")
 @click.option("--check", is_flag=True, help="Cross-check the outlines first, and record it in the file's metadata.")
@@ -60,7 +61,7 @@ def export(
     worst = 0
     for design, (target, target_format) in zip(designs, _targets(designs, output, file_format), strict=True):
         try:
-            tiling = tessellate(design)
+            tiling = tessellate(design, quiet=quiet)
             report = tiling.check(renderer=renderer, device=device, notice=say) if check else None
             if report is None or report.passed:  # else nothing is to be left, and export says so
                 _make_folder(target, output)

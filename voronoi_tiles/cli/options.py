@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from functools import wraps
 from typing import Any, TypeVar
 
 import click
 
-from voronoi_tiles.cli.common import as_options
+from voronoi_tiles.cli.common import SCALE, as_options
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.job_options import Option
 
@@ -66,6 +67,52 @@ class Length(click.ParamType[float]):
 
 
 LENGTH = Length()
+
+
+class Factor(click.ParamType[float]):
+    """A number above 0."""
+
+    name = "factor"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Read a factor."""
+        try:
+            factor = float(value)
+        except ValueError:
+            factor = math.nan
+        if not 0.0 < factor < math.inf:
+            self.fail(f"{value!r} is no factor. Write a number above 0, such as 1.5.", param, ctx)
+        return factor
+
+
+def _note_scale(ctx: click.Context, parameter: click.Parameter, value: float | None) -> None:
+    """Keep an option for `load`; refuse a second one of them."""
+    if value is None:
+        return
+    scale = ctx.meta.setdefault(SCALE, {})
+    if scale:
+        raise click.UsageError(
+            "Give one of --scale, --tile-width and --tile-height: each says how large the design is."
+        )
+    if value == 0.0:
+        raise click.BadParameter("0 is no size. Write a length such as 95mm.")
+    scale["factor" if parameter.name == "scale" else str(parameter.name)] = value
+
+
+def with_scale(command: Command) -> Command:
+    """Add the options that scale the design, which `load` takes into account."""
+    for flag, kind, metavar, what in reversed(
+        (
+            ("--scale", Factor(), "FACTOR", "Scale the design: its cell, strokes and art."),
+            ("--tile-width", LENGTH, "LENGTH", "Scale it until its tile, the widest of several, is so wide: 95mm."),
+            ("--tile-height", LENGTH, "LENGTH", "Scale it until its tile, the highest of several, is so high."),
+        )
+    ):
+        command = click.option(flag, type=kind, metavar=metavar, help=what, callback=_note_scale, expose_value=False)(
+            command
+        )
+    return command
+
 
 _TYPES: dict[str, click.ParamType[Any] | type] = {"length": LENGTH, "angle": float, "text": str, "number": str}
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from voronoi_tiles.cli.common import PATH, refuse_output, reporting, say, say_written
-from voronoi_tiles.cli.options import with_method, with_renderer
+from voronoi_tiles.cli.common import PATH, load, refuse_output, reporting, say, say_written
+from voronoi_tiles.cli.options import with_method, with_renderer, with_scale
 from voronoi_tiles.fabrication.job import Job
 
 if TYPE_CHECKING:
@@ -80,6 +80,7 @@ def _read_region(
     metavar=Job.options()["colours"].shown,
     help="The colours that export gives the tiles, a wood each [default: no neighbours are alike].",
 )
+@with_scale
 @with_method
 @with_renderer
 @click.option("-q", "--quiet", is_flag=True, help="Report only what fails.")
@@ -96,14 +97,13 @@ def render(
     quiet: bool,
 ) -> None:
     """Write a picture (PNG) of the tessellation: coloured tiles, their borders, and the strokes that made them."""
-    from voronoi_tiles.designs.design import Design
     from voronoi_tiles.pictures.rendering import DEFAULT_SIZE
     from voronoi_tiles.pictures.rendering import render as render_picture
 
     refuse_output(design, output, (".png",))
     with reporting(design), _progress(quiet) as progress:
         provenance = render_picture(
-            Design.load(design),
+            load(design, quiet=quiet),
             output,
             size=DEFAULT_SIZE if size is None else size,
             region=region,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from voronoi_tiles.cli.common import PATH, print_figures, reporting, tessellate
-from voronoi_tiles.cli.options import with_job
+from voronoi_tiles.cli.options import with_job, with_scale
 
 if TYPE_CHECKING:
     from voronoi_tiles.fabrication.job import Job
@@ -31,6 +31,7 @@ _TIME = _NumberType(min=0.0, max=3600.0)
 
 @click.command()
 @click.argument("design", type=PATH)
+@with_scale
 @with_job
 @click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
 @click.option("--cut-speed", type=_SPEED, metavar="MM/S", help="Speed of cutting [default: 10].")

@@ -16,10 +16,13 @@ import numpy as np
 from voronoi_tiles.base import values
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.base.maps import Placement
 from voronoi_tiles.base.tolerance import ANGLE_MIN, CELL_ASPECT_MAX, CELL_MIN, FLATTENING_MM, SITE_EXTENT_MAX
 from voronoi_tiles.base.units import UNIT_MM, Units
 from voronoi_tiles.designs import schema
 from voronoi_tiles.designs.art import Art
+from voronoi_tiles.designs.drawn_files import DrawnFiles
+from voronoi_tiles.designs.keys import PLACEMENT
 from voronoi_tiles.designs.load import STARTER
 from voronoi_tiles.designs.site import NodedSite, build_site
 from voronoi_tiles.designs.strokes import ARC_SHARE, polylines
@@ -31,7 +34,12 @@ _FULL_SYMBOLS |= {"p2gg": "pgg", "c2mm": "cmm", "p4mm": "p4m", "p4gm": "p4g", "p
 
 
 class CheckedDesign(NamedTuple):
-    """What a checked design is: `noded` and `art` have an entry for each site, and `source` is its canonical text."""
+    """What a checked design is.
+
+    `noded` and `art`, placed as its site is, have an entry for each site. `drawn` is the design as it is written, as
+    canonical JSON, and `source` the same with the paths of drawings in the place of their names, which are `drawings`.
+    `notes` are sentences on what of these is left out or guessed.
+    """
 
     group: WallpaperGroup
     lattice: Lattice
@@ -39,23 +47,44 @@ class CheckedDesign(NamedTuple):
     noded: tuple[NodedSite, ...]
     art: tuple[Art | None, ...]
     source: str
+    drawn: str
+    drawings: tuple[str, ...]
+    notes: tuple[str, ...]
 
 
-def checked(value: object) -> CheckedDesign:
-    """Check the table of a design, as TOML and JSON give it. Raises DesignError."""
-    table = values.table(value, ("schema", "group", "units", "cell", "site"), STARTER)
+def checked(value: object, folder: str) -> CheckedDesign:
+    """Check the table of a design, as TOML and JSON give it; its drawings are in `folder`. Raises DesignError."""
+    table = values.table(value, ("schema", "group", "units", "scale", "cell", "site"), STARTER)
     version = values.required(table, "schema", "Write schema = 1.")
     if isinstance(version, bool) or not isinstance(version, int) or version != 1:
         raise DesignError(f"schema {values.shown(version)} is not supported", key="schema", remedy="Write schema = 1.")
     group = read_group(values.required(table, "group", f"Write one of {', '.join(GROUPS)}."))
     units = _read_units(table.get("units", "mm"))
     cell = values.required(table, "cell", "Write [cell] and, below it, a = 60.0 and what else the group leaves free.")
+    with values.within("scale"):
+        scale = values.positive(table.get("scale", 1.0))
     with values.within("cell"):
-        lattice = _read_cell(cell, group)
+        lattice = _read_cell(cell, group, scale)
     listed = values.required(table, "site", "Write [[site]] and, below it, its strokes.")
-    sites, art = _read_sites(listed, FLATTENING_MM / UNIT_MM[units], lattice)
-    source = json.dumps(_canonical(table), sort_keys=True, separators=(",", ":"), allow_nan=False)
-    return CheckedDesign(group, lattice, units, sites, art, source)
+    reading = _Reading(FLATTENING_MM / UNIT_MM[units], lattice, Placement(scale), DrawnFiles(folder, UNIT_MM[units]))
+    sites = reading.sites(listed)
+    drawn, source = (_text({**table, "site": rows}) for rows in (listed, [site.table for site in sites]))
+    return CheckedDesign(
+        group,
+        lattice,
+        units,
+        tuple(site.noded for site in sites),
+        tuple(site.art for site in sites),
+        source,
+        drawn,
+        tuple(dict.fromkeys(reading.files.names)),
+        tuple(reading.files.notes),
+    )
+
+
+def _text(table: Mapping[str, Any]) -> str:
+    """A checked table as canonical JSON."""
+    return json.dumps(_canonical(table), sort_keys=True, separators=(",", ":"), allow_nan=False)
 
 
 def _read_units(value: object) -> Units:
@@ -76,7 +105,8 @@ def read_group(value: object) -> WallpaperGroup:
     raise DesignError(f"unknown wallpaper group {values.shown(value)}", key="group", remedy=remedy)
 
 
-def _read_cell(value: object, group: WallpaperGroup) -> Lattice:
+def _read_cell(value: object, group: WallpaperGroup, scale: float) -> Lattice:
+    """The lattice of a cell whose sides are times `scale`."""
     table = values.table(value, ("a", "b", "angle"), "Write [cell] and, below it, a = 60.0.")
     needs = f"{group.name} needs the cell's"
     a = _read_side(table, "a", f"{needs} side along x: write a = 60.0.")
@@ -99,7 +129,7 @@ def _read_cell(value: object, group: WallpaperGroup) -> Lattice:
                     f"must be between 0 and 180 degrees, not {angle:g}",
                     remedy="Write the angle from a to b, such as 75.0.",
                 )
-    lattice = group.lattice(a, b, angle)
+    lattice = group.lattice(a * scale, None if b is None else b * scale, angle)
     short, long = lattice.reduced_basis
     if not abs(long) <= CELL_ASPECT_MAX * abs(short):
         raise DesignError(
@@ -125,28 +155,80 @@ def _refuse_other(table: values.Table, name: str, fixed: float, what: str) -> No
             raise DesignError(what, remedy=f"Leave {name} out.")
 
 
-def _read_sites(
-    value: object, accuracy: float, lattice: Lattice
-) -> tuple[tuple[NodedSite, ...], tuple[Art | None, ...]]:
-    """The sites, and the art of each."""
-    remedy = "Write [[site]], in double brackets, above the keys of each site."
-    with values.within("site"):
-        listed = values.sequence(value, remedy)
-        if not listed:
-            raise DesignError("there is no site", remedy=remedy)
-    taken: dict[str, int] = {}
-    sites: list[NodedSite] = []
-    drawings: list[Art | None] = []
-    for k, item in enumerate(listed):
-        with values.within(f"site[{k}]"):
-            table = values.table(item, ("name", "tolerance", "strokes", "art"), remedy)
-            with values.within("name"):
-                name = _read_name(table.get("name", f"site{k + 1}"), taken)
-            taken[name] = k
-            sites.append(_read_site(table, name, accuracy, lattice))
-            with values.within("art"):
-                drawings.append(_read_art(table["art"]) if "art" in table else None)
-    return tuple(sites), tuple(drawings)
+class _ReadSite(NamedTuple):
+    """A site that has been checked: its table, with paths in the place of drawings, its geometry and its art."""
+
+    table: Mapping[str, Any]
+    noded: NodedSite
+    art: Art | None
+
+
+class _Reading(NamedTuple):
+    """How sites are read: flattened within `accuracy` where they do not say, and placed by the whole design's scale."""
+
+    accuracy: float
+    lattice: Lattice
+    scale: Placement
+    files: DrawnFiles
+
+    def sites(self, value: object) -> list[_ReadSite]:
+        """Read the sites of a design."""
+        remedy = "Write [[site]], in double brackets, above the keys of each site."
+        with values.within("site"):
+            listed = values.sequence(value, remedy)
+            if not listed:
+                raise DesignError("there is no site", remedy=remedy)
+        taken: dict[str, int] = {}
+        sites = []
+        for k, item in enumerate(listed):
+            with values.within(f"site[{k}]"):
+                table = values.table(item, ("name", "tolerance", "strokes", "art", *PLACEMENT), remedy)
+                with values.within("name"):
+                    name = _read_name(table.get("name", f"site{k + 1}"), taken)
+                taken[name] = k
+                sites.append(self._site(table, name))
+        return sites
+
+    def _site(self, table: values.Table, name: str) -> _ReadSite:
+        """Read one site."""
+        accuracy = self.accuracy
+        if "tolerance" in table:
+            with values.within("tolerance"):
+                accuracy = values.positive(table["tolerance"])
+        by = self.scale @ schema.placement(table)
+        remedy = "Write strokes = [{ segment = [[5, 3], [25, 11]] }]."
+        listed = values.required(table, "strokes", remedy)
+        with values.within("strokes"):
+            listed = values.sequence(listed, remedy)
+            if not listed:
+                raise DesignError("there is no stroke", remedy=remedy)
+        lines: list[Complexes] = []
+        pieces: list[Complexes] = []
+        strokes = []
+        for k, item in enumerate(listed):
+            with values.within(f"strokes[{k}]"):
+                drawn, curved = schema.stroke(item, accuracy, by, self.files.path_data)
+            (pieces if curved else lines).append(drawn)
+            if "file" in item:
+                item = {"path": self.files.texts[-1], **_but(item, "file", "layer", "id")}  # noqa: PLW2901 - the same
+            strokes.append(item)
+        if pieces:
+            # What the step from arcs to cubics may have used is taken off.
+            lines += polylines(np.concatenate(pieces), accuracy * (1.0 - ARC_SHARE))
+        site = build_site(name, lines)
+        if not site.extent <= SITE_EXTENT_MAX * math.sqrt(self.lattice.det):
+            raise DesignError(
+                f"the site is more than {SITE_EXTENT_MAX:,.0f} times larger than the cell",
+                remedy="Make the cell larger, or the strokes smaller.",
+            )
+        with values.within("art"):
+            art = _read_art(table["art"]) if "art" in table else None
+        return _ReadSite({**table, "strokes": strokes}, site, None if art is None else art.placed(by))
+
+
+def _but(table: values.Table, *keys: str) -> dict[str, Any]:
+    """A table without some of its keys."""
+    return {key: value for key, value in table.items() if key not in keys}
 
 
 def _read_art(value: object) -> Art:
@@ -155,7 +237,7 @@ def _read_art(value: object) -> Art:
         value = {"file": value}
     if not isinstance(value, Mapping):
         raise DesignError(f"must be a file's name or a table, not {values.shown(value)}", remedy=remedy)
-    table = values.table(value, ("file", *schema.PLACEMENT), remedy)
+    table = values.table(value, ("file", *PLACEMENT), remedy)
     file = values.required(table, "file", remedy)
     with values.within("file"):
         if not isinstance(file, str) or not file or "\0" in file:
@@ -176,34 +258,6 @@ def _read_name(value: object, taken: Mapping[str, int]) -> str:
             f'"{name}" is already the name of site[{taken[name]}]', remedy="Give each site a name of its own."
         )
     return name
-
-
-def _read_site(table: values.Table, name: str, accuracy: float, lattice: Lattice) -> NodedSite:
-    if "tolerance" in table:
-        with values.within("tolerance"):
-            accuracy = values.positive(table["tolerance"])
-    remedy = "Write strokes = [{ segment = [[5, 3], [25, 11]] }]."
-    listed = values.required(table, "strokes", remedy)
-    with values.within("strokes"):
-        listed = values.sequence(listed, remedy)
-        if not listed:
-            raise DesignError("there is no stroke", remedy=remedy)
-    lines: list[Complexes] = []
-    pieces: list[Complexes] = []
-    for k, item in enumerate(listed):
-        with values.within(f"strokes[{k}]"):
-            drawn, curved = schema.stroke(item, accuracy)
-        (pieces if curved else lines).append(drawn)
-    if pieces:
-        # What the step from arcs to cubics may have used is taken off.
-        lines += polylines(np.concatenate(pieces), accuracy * (1.0 - ARC_SHARE))
-    site = build_site(name, lines)
-    if not site.extent <= SITE_EXTENT_MAX * math.sqrt(lattice.det):
-        raise DesignError(
-            f"the site is more than {SITE_EXTENT_MAX:,.0f} times larger than the cell",
-            remedy="Make the cell larger, or the strokes smaller.",
-        )
-    return site
 
 
 def _canonical(value: Any) -> Any:

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import json
 import os
-import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias, get_args
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from voronoi_tiles.base import values
 from voronoi_tiles.base.arguments import path_name
@@ -19,8 +18,8 @@ from voronoi_tiles.base.units import UNIT_MM, Units
 from voronoi_tiles.designs.art import Art
 from voronoi_tiles.designs.checking import CheckedDesign, checked
 from voronoi_tiles.designs.coordinates import PointLike
+from voronoi_tiles.designs.design_arguments import argument_of, cell_table, listed_sites, scale_table
 from voronoi_tiles.designs.drawn_site import Site, site_of
-from voronoi_tiles.designs.drawn_strokes import ARGUMENTS, StrokeKind
 from voronoi_tiles.designs.load import parse, read_text
 from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.designs.toml_text import toml_text
@@ -32,6 +31,12 @@ if TYPE_CHECKING:
 Cell: TypeAlias = float | Sequence[float] | Mapping[str, float]
 """The conventional cell: the side a, (a, b), (a, b, angle), or a mapping of those that the group leaves free."""
 
+_FITTED: Final = 1e-9
+"""How near a tile's size is to the one that was asked for; relative to it."""
+
+_FITS: Final = 6
+"""How often a design is scaled to reach it, at most; a count. Two or three are enough, but where flattening jumps."""
+
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)
 class Design:
@@ -39,15 +44,17 @@ class Design:
 
     `cell` is the side along x; or (a, b) or (a, b, angle) where the group leaves them free, the angle from a to b in
     degrees; or a mapping {"a": 60, "b": 50, "angle": 75}. `sites` are Site objects, or one. Lengths are in `units`,
-    "mm", "cm" or "in"; the origin is the group's, x runs along a, y up. `name` is what files say of the design, and
-    `folder` is where the drawings of art are looked for.
+    "mm", "cm" or "in"; the origin is the group's, x runs along a, y up. Cell, strokes and art are times `scale`;
+    tolerances are not. `name` is what files say of the design, and drawings are looked for in `folder`.
 
     Derived are the `lattice`; `noded`, the geometry of each site that tiles are computed from; `art`, the drawing of
-    each site or None; and `source`, the design as JSON (ASCII, sorted keys), which files hold as their recipe
-    and `loads` reads again.
+    each site where it is placed, or None; `notes`, sentences on what is left out of drawings; and `source`, the
+    design as JSON (ASCII, sorted keys), which files hold as their recipe and `loads` reads again: it has the paths of
+    drawings that are strokes in the place of their names.
 
-    Designs are equal, and hash alike, where the group, the cell, the units and the sites are equal, whatever their
-    names and folders. Raises DesignError, which names the argument: "sites[0].strokes[1].points[2]".
+    Designs are equal, and hash alike, where the group, the cell, the units and the sites are equal, as they are placed
+    and with what drawings hold, whatever their names and folders. Raises DesignError, which names the argument:
+    "sites[0].strokes[1].points[2]".
 
     >>> import voronoi_tiles as vt
     >>> bird = vt.Site([vt.segment(5 + 3j, 25 + 11j), vt.catmull_rom([6 + 9j, 22 + 5j, 27 + 17j])], name="bird")
@@ -68,6 +75,9 @@ class Design:
     noded: tuple[NodedSite, ...]
     art: tuple[Art | None, ...]
     source: str
+    drawn: str
+    drawings: tuple[str, ...]
+    notes: tuple[str, ...]
     name: str
     folder: str
     file: str
@@ -79,21 +89,24 @@ class Design:
         sites: Site | Iterable[Site],
         *,
         units: Units = "mm",
+        scale: float = 1.0,
         name: str = "design",
         folder: str | os.PathLike[str] = "",
     ) -> None:
+        folder = path_name("folder", folder)
         table = {
             "schema": 1,
             "group": group.name if isinstance(group, WallpaperGroup) else group,
             "units": units,
-            "cell": _cell_table(cell),
-            "site": [site.table for site in _listed(sites)],
+            **scale_table(scale),
+            "cell": cell_table(cell),
+            "site": [site.table for site in listed_sites(sites)],
         }
         try:
-            parts = checked(table)
+            parts = checked(table, folder)
         except DesignError as error:
-            raise error.with_key(_argument(error.key or "")) from None
-        _fill(self, parts, name, path_name("folder", folder))
+            raise error.with_key(argument_of(error.key or "")) from None
+        _fill(self, parts, name, folder)
 
     def __repr__(self) -> str:
         sites = ", ".join(site.name for site in self.noded[:3]) + (", ..." if len(self.noded) > 3 else "")
@@ -111,9 +124,11 @@ class Design:
         """What was checked."""
         return CheckedDesign(*(getattr(self, field) for field in CheckedDesign._fields))
 
-    @property
+    @cached_property
     def _content(self) -> tuple[object, ...]:
-        return self.group.name, self.lattice, self.units, self.sites
+        listed = json.loads(self.source)["site"]
+        sites = (site_of(table, noded.name) for table, noded in zip(listed, self.noded, strict=True))
+        return self.group.name, self.lattice, self.units, tuple(site.moved(scale=self.scale) for site in sites)
 
     def _repr_svg_(self) -> str:
         """Draw the cell and the sites with their copies: notebooks show this."""
@@ -129,23 +144,29 @@ class Design:
     @cached_property
     def sites(self) -> tuple[Site, ...]:
         """The sites as they are drawn, each with its name; `noded` has their geometry."""
-        listed = json.loads(self.source)["site"]
+        listed = json.loads(self.drawn)["site"]
         return tuple(site_of(table, noded.name) for table, noded in zip(listed, self.noded, strict=True))
 
     @property
-    def files(self) -> tuple[str, ...]:
-        """The files that it was made from, which nothing overwrites: its own, and the drawings of its art."""
-        return (self.file, *self._drawings) if self.file else self._drawings
+    def scale(self) -> float:
+        """What cell, strokes and art are times."""
+        return float(json.loads(self.drawn).get("scale", 1.0))
 
     @property
-    def _drawings(self) -> tuple[str, ...]:
-        """The drawings of its art."""
-        return tuple(os.path.join(self.folder, art.file) for art in self.art if art is not None)  # noqa: PTH118 - any name
+    def files(self) -> tuple[str, ...]:
+        """The files that it was made from, which nothing overwrites: its own, and its drawings."""
+        return (self.file, *self._paths) if self.file else self._paths
+
+    @property
+    def _paths(self) -> tuple[str, ...]:
+        """The drawings of its strokes and its art."""
+        art = (art.file for art in self.art if art is not None)
+        return tuple(os.path.join(self.folder, name) for name in dict.fromkeys((*self.drawings, *art)))  # noqa: PTH118 - any name
 
     @property
     def cell(self) -> dict[str, float]:
-        """The cell as it was given: the side a, and b and the angle where the group leaves them free."""
-        cell: dict[str, float] = json.loads(self.source)["cell"]
+        """The cell as it was given, before `scale`: side a, and b and the angle where the group leaves them free."""
+        cell: dict[str, float] = json.loads(self.drawn)["cell"]
         return cell
 
     @classmethod
@@ -158,10 +179,11 @@ class Design:
         shown = "standard input" if file == "-" else file or repr(file)
         text = read_text(file, shown)
         suffix = Path(file).suffix.lower()
-        read = cls.loads(text, format=suffix[1:] if suffix in (".toml", ".json") else None, file=shown)
+        form = suffix[1:] if suffix in (".toml", ".json") else None
         if file == "-":
-            return read
-        return _fill(read, read._parts, Path(file).stem, str(Path(file).parent), file)  # noqa: SLF001 - it is one of us
+            return cls.loads(text, format=form, file=shown)
+        read = cls.loads(text, format=form, file=shown, folder=Path(file).parent)
+        return _fill(read, read._parts, Path(file).stem, read.folder, file)  # noqa: SLF001 - it is one of us
 
     @classmethod
     def loads(
@@ -171,18 +193,27 @@ class Design:
         format: str | None = None,  # noqa: A002 - the word that scripts expect
         file: str | None = None,
         name: str = "design",
+        folder: str | os.PathLike[str] = "",
     ) -> Design:
         """Read a design from text in "toml" or "json", None to see which; `file` is what messages call it.
 
-        Raises DesignError.
+        Drawings are looked for in `folder`. Raises DesignError.
         """
-        return cls.from_dict(parse(text, format, file), file=file, name=name)
+        return cls.from_dict(parse(text, format, file), file=file, name=name, folder=folder)
 
     @classmethod
-    def from_dict(cls, mapping: Mapping[str, Any], *, file: str | None = None, name: str = "design") -> Design:
+    def from_dict(
+        cls,
+        mapping: Mapping[str, Any],
+        *,
+        file: str | None = None,
+        name: str = "design",
+        folder: str | os.PathLike[str] = "",
+    ) -> Design:
         """Read a design from nested mappings and sequences, as TOML and JSON give them. Raises DesignError."""
+        folder = path_name("folder", folder)
         try:
-            return _fill(cls.__new__(cls), checked(mapping), name)
+            return _fill(cls.__new__(cls), checked(mapping, folder), name, folder)
         except DesignError as error:
             raise error.with_file(file) from None
 
@@ -192,6 +223,7 @@ class Design:
             "schema": 1,
             "group": self.group.name,
             "units": self.units,
+            **scale_table(self.scale),
             "cell": self.cell,
             "site": [site.table for site in self.sites],
         }
@@ -203,22 +235,25 @@ class Design:
         """
         return toml_text(self.to_dict())
 
+    def text_for(self, path: str | os.PathLike[str]) -> str:
+        """The design as a file of this name, TOML or JSON: its drawings are named as seen from its folder."""
+        table = self.to_dict()
+        name = path_name("path", path)
+        folder = os.path.realpath(os.path.dirname(name))  # noqa: PTH120 - the name may be any
+        for site in table["site"]:
+            for item in (*site["strokes"], site.get("art", {})):
+                file = item.get("file")
+                if file is not None and not os.path.isabs(file):  # noqa: PTH117 - same
+                    item["file"] = os.path.relpath(os.path.realpath(os.path.join(self.folder, file)), folder)  # noqa: PTH118
+        return json.dumps(table, indent=1) + "\n" if Path(name).suffix.lower() == ".json" else toml_text(table)
+
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Write the design file whole or not at all; the drawings of art are named as seen from its folder.
+        """Write the design file whole or not at all; drawings are named as seen from its folder.
 
         It is JSON where the name ends in .json, else TOML. Raises OutputError where the file cannot be written.
         """
-        table = self.to_dict()
-        name = path_name("path", path)
-        refuse_overwriting([name], self._drawings)
-        folder = os.path.realpath(os.path.dirname(name))  # noqa: PTH120 - the name may be any
-        for site in table["site"]:
-            if "art" in site:
-                file = site["art"]["file"]
-                if not os.path.isabs(file):  # noqa: PTH117 - same
-                    site["art"]["file"] = os.path.relpath(os.path.realpath(os.path.join(self.folder, file)), folder)  # noqa: PTH118
-        as_json = Path(name).suffix.lower() == ".json"
-        write_whole(name, (json.dumps(table, indent=1) + "\n" if as_json else toml_text(table)).encode())
+        refuse_overwriting([path_name("path", path)], self._paths)
+        write_whole(path_name("path", path), self.text_for(path).encode())
 
     def replace(
         self,
@@ -227,31 +262,57 @@ class Design:
         cell: Cell | None = None,
         sites: Site | Iterable[Site] | None = None,
         units: Units | None = None,
+        scale: float | None = None,
         name: str | None = None,
         folder: str | os.PathLike[str] | None = None,
     ) -> Design:
         """The design with some of its parts changed, checked again; None leaves a part as it is. Raises DesignError."""
         name = self.name if name is None else name
-        folder = self.folder if folder is None else folder
-        if group is None and cell is None and sites is None and units is None:
-            return _fill(Design.__new__(Design), self._parts, name, path_name("folder", folder), self.file)
+        if all(part is None for part in (group, cell, sites, units, scale, folder)):
+            return _fill(Design.__new__(Design), self._parts, name, self.folder, self.file)
         made = Design(
             self.group if group is None else group,
             self.cell if cell is None else cell,
             self.sites if sites is None else sites,
             units=self.units if units is None else units,
+            scale=self.scale if scale is None else scale,
+            folder=self.folder if folder is None else folder,
         )
-        return _fill(made, made._parts, name, path_name("folder", folder), self.file)
+        return _fill(made, made._parts, name, made.folder, self.file)
 
     __replace__ = replace
 
-    def scaled(self, factor: float) -> Design:
+    def scaled(
+        self, factor: float | None = None, *, tile_width: float | None = None, tile_height: float | None = None
+    ) -> Design:
         """The design with its cell and strokes times a factor above 0; tolerances stay as they are.
 
-        Raises DesignError for another factor.
+        In the place of a factor the width or the height of the tile can be given, of the largest where there are
+        several; in the design's units. Raises DesignError for what is not above 0, and for more than one of them.
         """
-        with values.within("factor"):
-            factor = values.positive(factor)
+        given = {"factor": factor, "tile_width": tile_width, "tile_height": tile_height}
+        asked = [(name, value) for name, value in given.items() if value is not None]
+        if len(asked) != 1:
+            raise DesignError("must be one of a factor, tile_width and tile_height", key="factor", remedy="Give one.")
+        name, value = asked[0]
+        with values.within(name):
+            size = values.positive(value)
+        return self._times(size) if name == "factor" else self._fitted(size, name == "tile_height")
+
+    def _fitted(self, size: float, high: bool) -> Design:
+        """The design scaled until its largest tile is so wide, or so high."""
+        found = self
+        for _ in range(_FITS):
+            bounds = (tile.outline.bounds for tile in found.tessellate().tiles)
+            now = max(box[3] - box[1] if high else box[2] - box[0] for box in bounds)
+            if abs(now - size) <= _FITTED * size:
+                break
+            # Curves are flattened anew at every size: once is not enough.
+            found = found._times(size / now)
+        return found
+
+    def _times(self, factor: float) -> Design:
+        """The design scaled by a factor."""
         cell = {name: value if name == "angle" else value * factor for name, value in self.cell.items()}
         return self.replace(cell=cell, sites=self._moved(lambda site: site.moved(scale=factor)))
 
@@ -261,8 +322,7 @@ class Design:
         """The design with all strokes and art moved in its cell, in the order of the arguments, about the origin.
 
         `mirror` is x -> -x, `rotate` in degrees counter-clockwise. The group and its origin stay, so that the tiles
-        are others, but for the motions that map the group onto itself. Raises DesignError, also where a path or art is
-        to be mirrored.
+        are others, but for the motions that map the group onto itself. Raises DesignError.
         """
         return self.replace(
             sites=self._moved(lambda site: site.moved(mirror=mirror, scale=scale, rotate=rotate, translate=translate))
@@ -274,7 +334,7 @@ class Design:
             with values.within("site"):
                 return values.each(self.sites, move)
         except DesignError as error:
-            raise error.with_key(_argument(error.key or "")) from None
+            raise error.with_key(argument_of(error.key or "")) from None
 
     def tessellate(self) -> Tiling:
         """Compute the tiles, proved.
@@ -297,53 +357,3 @@ def _fill(design: Design, parts: CheckedDesign, name: str, folder: str = "", fil
 def _check_name(name: object) -> None:
     if not isinstance(name, str) or "\0" in name:
         raise DesignError(f"{values.shown(name)} is no name", key="name", remedy="Write a text.")
-
-
-def _cell_table(cell: object) -> object:
-    """A cell as a design file has it."""
-    if isinstance(cell, Mapping):
-        return cell
-    sides = getattr(cell, "tolist", lambda: cell)()
-    if isinstance(sides, int | float):
-        sides = [sides]
-    if isinstance(sides, list | tuple) and 1 <= len(sides) <= 3:
-        return dict(zip(("a", "b", "angle"), sides, strict=False))
-    raise DesignError(
-        f"must be a side, (a, b), (a, b, angle) or a mapping, not {values.shown(cell)}",
-        key="cell",
-        remedy="Write cell=60, or what else the group leaves free.",
-    )
-
-
-def _listed(sites: object) -> list[Site]:
-    """The sites that a design is given."""
-    remedy = "Write sites=[Site([segment(5+3j, 25+11j)])]."
-    if isinstance(sites, Site):
-        sites = [sites]
-    if isinstance(sites, str | Mapping) or not isinstance(sites, Iterable):
-        raise DesignError(f"must be Site objects, not {values.shown(sites)}", key="sites", remedy=remedy)
-    listed = list(sites)
-    if not listed:
-        raise DesignError("there is no site", key="sites", remedy=remedy)
-    for k, site in enumerate(listed):
-        if not isinstance(site, Site):
-            raise DesignError(f"must be a Site, not {values.shown(site)}", key=f"sites[{k}]", remedy=remedy)
-        if not site.strokes:
-            raise DesignError("there is no stroke", key=f"sites[{k}].strokes", remedy=remedy)
-    return listed
-
-
-_OWN = re.compile(rf"(site\[\d+\]\.strokes\[\d+\])\.({'|'.join(get_args(StrokeKind))})\b(?:\[([01])\])?")
-
-
-def _argument(key: str) -> str:
-    """The argument of Design that a key of the table came from: "sites[0].strokes[1].points[2]"."""
-
-    def own(found: re.Match[str]) -> str:
-        stroke, kind, index = found.groups()
-        names = ARGUMENTS.get(kind, ("points",))
-        if len(names) == 2 and index is not None:
-            return f"{stroke}.{names[int(index)]}"
-        return f"{stroke}.{names[0]}{'' if index is None else f'[{index}]'}"
-
-    return re.sub(r"^site\b", "sites", _OWN.sub(own, key))

@@ -9,10 +9,12 @@ from typing import Any, TypeAlias
 
 from voronoi_tiles.base import values
 from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.base.maps import Placement
 from voronoi_tiles.base.values import shown
 from voronoi_tiles.designs.art import Art
 from voronoi_tiles.designs.coordinates import GeoInterface, PathData, PointLike, pair
 from voronoi_tiles.designs.drawn_strokes import Stroke, drawn_lines, path, stroke_of
+from voronoi_tiles.designs.keys import PLACEMENT, Keys, keys_of
 from voronoi_tiles.designs.schema import placement
 
 Drawn: TypeAlias = Stroke | GeoInterface | PathData
@@ -26,6 +28,8 @@ class Site:
     `strokes` are one or several strokes, geometries, of which each point, line and ring is a stroke, or paths of
     svgpathtools. The name None is "site1", "site2", ... by the place in the design. Curves are flattened to within
     `tolerance`, in the design's units; None is 0.01 mm. `art` is a drawing that every copy carries, or its file.
+    `mirror` (x -> -x), `scale`, `rotate` (degrees, counter-clockwise) and `translate` place the site, art and all, in
+    this order about the origin, after its strokes have been placed by their own: `keys` are those that say something.
 
     >>> import voronoi_tiles as vt
     >>> vt.Site([vt.segment(5 + 3j, 25 + 11j), vt.circle(9j, 2)], name="bird")
@@ -36,6 +40,7 @@ class Site:
     name: str | None
     tolerance: float | None
     art: Art | None
+    keys: Keys
 
     def __init__(
         self,
@@ -44,6 +49,10 @@ class Site:
         name: str | None = None,
         tolerance: float | None = None,
         art: Art | str | os.PathLike[str] | None = None,
+        mirror: bool = False,
+        scale: float = 1.0,
+        rotate: float = 0.0,
+        translate: PointLike = 0j,
     ) -> None:
         """Describe a site. Raises DesignError for what is no stroke and no geometry."""
         if isinstance(strokes, Stroke | GeoInterface | PathData):
@@ -59,10 +68,17 @@ class Site:
         object.__setattr__(self, "name", name)
         object.__setattr__(self, "tolerance", tolerance)
         object.__setattr__(self, "art", art if art is None or isinstance(art, Art) else Art(art))
+        keys = {"mirror": mirror, "scale": scale, "rotate": rotate, "translate": pair(translate)}
+        object.__setattr__(self, "keys", keys_of(keys))
 
     def __repr__(self) -> str:
         count = len(self.strokes)
         return f"<Site {self.name!r}: {count} stroke{'s' * (count != 1)}>"
+
+    @property
+    def placement(self) -> Placement:
+        """Where the site is laid."""
+        return placement(dict(self.keys))
 
     @property
     def table(self) -> dict[str, Any]:
@@ -70,6 +86,7 @@ class Site:
         found = {"name": self.name, "tolerance": self.tolerance, "art": None if self.art is None else self.art.table}
         return {
             **{name: value for name, value in found.items() if value is not None},
+            **dict(self.keys),
             "strokes": [stroke.table for stroke in self.strokes],
         }
 
@@ -78,14 +95,13 @@ class Site:
     ) -> Site:
         """The same site with all its strokes and its art moved, in the order of the arguments, about the origin.
 
-        `mirror` is x -> -x, `rotate` in degrees counter-clockwise. Raises DesignError where a path, or art, is to be
-        mirrored.
+        `mirror` is x -> -x, `rotate` in degrees counter-clockwise. What placed the site has become a part of what
+        places its strokes.
         """
-        by = placement({"scale": scale, "rotate": rotate, "translate": pair(translate)})
-        if mirror and self.art is not None:
-            raise DesignError("art cannot be mirrored", key="art", remedy="Mirror the drawing in its own program.")
+        by = placement({"mirror": mirror, "scale": scale, "rotate": rotate, "translate": pair(translate)})
+        by = by @ self.placement
         with values.within("strokes"):
-            strokes = values.each(self.strokes, lambda stroke: (stroke.mirrored() if mirror else stroke).placed(by))
+            strokes = values.each(self.strokes, lambda stroke: stroke.placed(by))
         art = None if self.art is None else self.art.placed(by)
         return Site(strokes, name=self.name, tolerance=self.tolerance, art=art)
 
@@ -117,4 +133,5 @@ def site_of(table: Mapping[str, Any], name: str) -> Site:
         name=table.get("name", name),
         tolerance=table.get("tolerance"),
         art=Art(**art) if isinstance(art, Mapping) else art,
+        **{key: table[key] for key in PLACEMENT if key in table},
     )

@@ -1,8 +1,8 @@
 """Strokes as they are drawn: `segment`, `catmull_rom`, ... and what they make.
 
 A stroke is a description, as a design file has it; the design that it becomes a part of checks it. Every function
-takes the keys that place a stroke: `scale` (any factor but 0), `rotate` (degrees, counter-clockwise) and `translate`,
-which are applied in this order about the origin.
+takes the keys that place a stroke: `mirror` (x -> -x), `scale` (any factor but 0), `rotate` (degrees,
+counter-clockwise) and `translate`, which are applied in this order about the origin.
 
 Points are complex numbers, pairs, arrays (complex (n,) or float (n, 2)), or a geometry with `__geo_interface__` such as
 shapely's: a LineString is its points, a ring of a Polygon is closed, and a geometry of several lines gives as many
@@ -11,24 +11,26 @@ strokes, drawn alike, which count one by one in the site that they come to.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+import os
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
-from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import Placement
-from voronoi_tiles.designs import schema
 from voronoi_tiles.designs.coordinates import GeoInterface, PathData, PointLike, PointsLike, lines, pair, pairs
 from voronoi_tiles.designs.keys import Keys, keys_of, keys_of_placement
 from voronoi_tiles.designs.schema import placement
 
-StrokeKind = Literal["point", "segment", "polyline", "bezier", "hermite", "catmull_rom", "bspline", "circle", "path"]
+StrokeKind = Literal[
+    "point", "segment", "polyline", "bezier", "hermite", "catmull_rom", "bspline", "circle", "path", "file"
+]
 
 ARGUMENTS: Mapping[str, tuple[str, ...]] = {
     "point": ("place",),
     "segment": ("start", "end"),
     "circle": ("centre",),
     "path": ("data",),
+    "file": ("file",),
 }
 """What the functions call the value of a stroke's own key, or its two; all others call it `points`."""
 
@@ -71,24 +73,6 @@ class Stroke:
         table = {**self.table, **keys_of_placement(by @ placement(self.table))}
         return Stroke(self.kind, keys_of(table), tuple(stroke.placed(by) for stroke in self.others))
 
-    def mirrored(self) -> Stroke:
-        """The mirror image under x -> -x. Raises DesignError for a path, whose text would be another."""
-        if self.kind == "path":
-            raise DesignError("the text of a path cannot be mirrored", key="path", remedy="Draw it as bezier curves.")
-        table = self.table
-        schema.stroke(table, 1.0)  # what cannot be mirrored cannot be drawn either
-        own = table[self.kind]
-        table[self.kind] = _flipped([own])[0] if self.kind in ("point", "circle") else _flipped(own)
-        if "tangents" in table:
-            table["tangents"] = _flipped(table["tangents"])
-        table.update(keys_of_placement(placement(self.table).mirrored))
-        return Stroke(self.kind, keys_of(table), tuple(stroke.mirrored() for stroke in self.others))
-
-
-def _flipped(points: Iterable[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
-    """Pairs under x -> -x."""
-    return tuple((-x, y) for x, y in points)
-
 
 def stroke_of(table: Mapping[str, Any]) -> Stroke:
     """The stroke of a table that has been checked."""
@@ -128,48 +112,72 @@ def _controlled(kind: StrokeKind, points: PointsLike, **others: object) -> Strok
     return _joined([_stroke(kind, (*line, line[0]) if ring else line, **others) for line, ring in lines(points)])
 
 
-def point(place: PointLike, *, scale: float = 1.0, rotate: float = 0.0, translate: PointLike = 0j) -> Stroke:
+def point(
+    place: PointLike,
+    *,
+    mirror: bool = False,
+    scale: float = 1.0,
+    rotate: float = 0.0,
+    translate: PointLike = 0j,
+) -> Stroke:
     """An isolated point; several for a geometry of several."""
     found = [line for line, _ in lines(place)] if isinstance(place, GeoInterface) else [(pair(place),)]
     own = [line[0] if len(line) == 1 else line for line in found]
-    return _joined([_stroke("point", one, scale=scale, rotate=rotate, translate=translate) for one in own])
+    return _joined(
+        [_stroke("point", one, mirror=mirror, scale=scale, rotate=rotate, translate=translate) for one in own]
+    )
 
 
 def segment(
-    start: PointLike, end: PointLike, *, scale: float = 1.0, rotate: float = 0.0, translate: PointLike = 0j
+    start: PointLike,
+    end: PointLike,
+    *,
+    mirror: bool = False,
+    scale: float = 1.0,
+    rotate: float = 0.0,
+    translate: PointLike = 0j,
 ) -> Stroke:
     """A straight line between two points."""
-    return _stroke("segment", (pair(start), pair(end)), scale=scale, rotate=rotate, translate=translate)
+    return _stroke("segment", (pair(start), pair(end)), mirror=mirror, scale=scale, rotate=rotate, translate=translate)
 
 
 def polyline(
     points: PointsLike,
     *,
     closed: bool | None = None,
+    mirror: bool = False,
     scale: float = 1.0,
     rotate: float = 0.0,
     translate: PointLike = 0j,
 ) -> Stroke:
     """Straight lines from point to point; `closed` joins the ends, None where the points are a ring."""
-    return _along("polyline", points, closed, scale=scale, rotate=rotate, translate=translate)
+    return _along("polyline", points, closed, mirror=mirror, scale=scale, rotate=rotate, translate=translate)
 
 
-def bezier(points: PointsLike, *, scale: float = 1.0, rotate: float = 0.0, translate: PointLike = 0j) -> Stroke:
+def bezier(
+    points: PointsLike,
+    *,
+    mirror: bool = False,
+    scale: float = 1.0,
+    rotate: float = 0.0,
+    translate: PointLike = 0j,
+) -> Stroke:
     """Cubic Bezier curves in a chain: 3n + 1 control points, every third of which lies on the curve."""
-    return _controlled("bezier", points, scale=scale, rotate=rotate, translate=translate)
+    return _controlled("bezier", points, mirror=mirror, scale=scale, rotate=rotate, translate=translate)
 
 
 def hermite(
     points: PointsLike,
     tangents: PointsLike,
     *,
+    mirror: bool = False,
     scale: float = 1.0,
     rotate: float = 0.0,
     translate: PointLike = 0j,
 ) -> Stroke:
     """The cubic curve through points with a tangent at each: the derivative by a parameter that grows by 1 a piece."""
     own = pairs(tangents)
-    return _controlled("hermite", points, tangents=own, scale=scale, rotate=rotate, translate=translate)
+    return _controlled("hermite", points, tangents=own, mirror=mirror, scale=scale, rotate=rotate, translate=translate)
 
 
 def catmull_rom(
@@ -177,37 +185,84 @@ def catmull_rom(
     *,
     alpha: float = 0.5,
     closed: bool | None = None,
+    mirror: bool = False,
     scale: float = 1.0,
     rotate: float = 0.0,
     translate: PointLike = 0j,
 ) -> Stroke:
     """The smooth curve through points; `alpha` 0 is uniform, 0.5 centripetal, 1 chordal; `closed` as in `polyline`."""
-    return _along("catmull_rom", points, closed, alpha=alpha, scale=scale, rotate=rotate, translate=translate)
+    return _along(
+        "catmull_rom", points, closed, alpha=alpha, mirror=mirror, scale=scale, rotate=rotate, translate=translate
+    )
 
 
 def bspline(
     points: PointsLike,
     *,
     closed: bool | None = None,
+    mirror: bool = False,
     scale: float = 1.0,
     rotate: float = 0.0,
     translate: PointLike = 0j,
 ) -> Stroke:
     """The uniform cubic B-spline of control points, which starts near the second; `closed` as in `polyline`."""
-    return _along("bspline", points, closed, scale=scale, rotate=rotate, translate=translate)
+    return _along("bspline", points, closed, mirror=mirror, scale=scale, rotate=rotate, translate=translate)
 
 
 def circle(
-    centre: PointLike, radius: float, *, scale: float = 1.0, rotate: float = 0.0, translate: PointLike = 0j
+    centre: PointLike,
+    radius: float,
+    *,
+    mirror: bool = False,
+    scale: float = 1.0,
+    rotate: float = 0.0,
+    translate: PointLike = 0j,
 ) -> Stroke:
     """A circle about a point."""
-    return _stroke("circle", pair(centre), radius=radius, scale=scale, rotate=rotate, translate=translate)
+    return _stroke(
+        "circle", pair(centre), radius=radius, mirror=mirror, scale=scale, rotate=rotate, translate=translate
+    )
 
 
-def path(data: str | PathData, *, scale: float = 1.0, rotate: float = 0.0, translate: PointLike = 0j) -> Stroke:
+def path(
+    data: str | PathData,
+    *,
+    mirror: bool = False,
+    scale: float = 1.0,
+    rotate: float = 0.0,
+    translate: PointLike = 0j,
+) -> Stroke:
     """The curves of SVG path data, all commands; or of a path of svgpathtools, or of others that have a method `d`.
 
     Coordinates are taken as they are, y up: what was copied from an SVG file comes out as its mirror image.
     """
     text = data.d() if isinstance(data, PathData) else data
-    return _stroke("path", text, scale=scale, rotate=rotate, translate=translate)
+    return _stroke("path", text, mirror=mirror, scale=scale, rotate=rotate, translate=translate)
+
+
+def drawing(
+    file: str | os.PathLike[str],
+    *,
+    layer: str | None = None,
+    id: str | None = None,  # noqa: A002 - the word of SVG, and of the design file
+    mirror: bool = False,
+    scale: float = 1.0,
+    rotate: float = 0.0,
+    translate: PointLike = 0j,
+) -> Stroke:
+    """The lines of an SVG or DXF file, and the outlines of what is filled, in their real size, upside up.
+
+    `file` is relative to the design's folder. With `layer` only what is on that layer, or has that colour "#rrggbb",
+    is drawn, with `id` only the object of that id (SVG), or the entity of that handle (DXF). The lower left corner of
+    what is drawn is at the origin.
+    """
+    given = {key: value for key, value in (("layer", layer), ("id", id)) if value is not None}
+    return _stroke(
+        "file",
+        os.fspath(file) if isinstance(file, os.PathLike) else file,
+        **given,
+        mirror=mirror,
+        scale=scale,
+        rotate=rotate,
+        translate=translate,
+    )

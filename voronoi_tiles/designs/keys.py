@@ -15,13 +15,17 @@ Keys = tuple[tuple[str, Any], ...]
 DEFAULTS: Final[Mapping[str, Any]] = {
     "closed": False,
     "alpha": 0.5,
+    "mirror": False,
     "scale": 1.0,
     "rotate": 0.0,
     "translate": (0.0, 0.0),
 }
-"""What the keys of strokes and art mean where they are not written."""
+"""What the keys of strokes, art and sites mean where they are not written."""
 
-_LAST: Final = ("tangents", "radius", "alpha", "closed", "scale", "rotate", "translate")
+PLACEMENT: Final = ("mirror", "scale", "rotate", "translate")
+"""The keys that place strokes, art and sites, in the order in which they are applied."""
+
+_LAST: Final = ("tangents", "radius", "alpha", "closed", "layer", "id", *PLACEMENT)
 
 
 def keys_of(table: Mapping[str, Any]) -> Keys:
@@ -46,4 +50,9 @@ def _frozen(value: Any) -> Any:
 def keys_of_placement(placement: Placement) -> dict[str, Any]:
     """A placement as keys."""
     shift = placement.translate
-    return {"scale": placement.scale, "rotate": placement.rotate, "translate": (shift.real, shift.imag)}
+    return {
+        "mirror": placement.mirror,
+        "scale": placement.scale,
+        "rotate": placement.rotate,
+        "translate": (shift.real, shift.imag),
+    }

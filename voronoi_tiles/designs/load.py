@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import shlex
 import sys
 from collections.abc import Mapping
 from typing import Any
@@ -24,10 +26,27 @@ def read_text(file: str, shown: str) -> str:
         raise DesignError(
             "cannot read the design: it is closed", file=shown, remedy="Send a design to it, or name a file."
         )
+    if _is_drawing(file):
+        raise _drawing_error(file, shown)
     try:
-        return read_document(file, "design", missing="Check the path and its permissions.", remedy=STARTER)
+        text = read_document(file, "design", missing="Check the path and its permissions.", remedy=STARTER)
     except DesignError as error:
         raise error.with_file(shown) from None
+    if text.lstrip()[:1] == "<" or text.split(maxsplit=2)[:2] == ["0", "SECTION"]:
+        raise _drawing_error(file, shown)
+    return text
+
+
+def _is_drawing(file: str) -> bool:
+    """Whether a file is a drawing by its name, and is there."""
+    return file.lower().endswith((".svg", ".svgz", ".dxf")) and os.path.exists(file)  # noqa: PTH110 - any name
+
+
+def _drawing_error(file: str, shown: str) -> DesignError:
+    """The error for a drawing in the place of a design."""
+    name, stem = (file, os.path.splitext(os.path.basename(file))[0]) if file != "-" else ("leaf.svg", "leaf")  # noqa: PTH119, PTH122 - same
+    new = f"voronoi-tiles new p4 --from {shlex.quote(name)} -o {shlex.quote(f'{stem}.toml')}"
+    return DesignError("is a drawing, not a design", file=shown, remedy=f"Make a design of it: {new}")
 
 
 def parse(text: str, form: str | None, file: str | None) -> Mapping[str, Any]:

@@ -17,6 +17,10 @@ from voronoi_tiles.base.maps import Placement
 from voronoi_tiles.base.tolerance import COORDINATE_MAX
 from voronoi_tiles.base.values import Table, each, flag, number, positive, required, sequence, table, text, within
 from voronoi_tiles.designs import strokes as curves
+from voronoi_tiles.designs.keys import PLACEMENT
+
+PathDataOf = Callable[[Table], str]
+"""What gives the path data of a stroke that names a drawing."""
 
 
 def point(value: object) -> complex:
@@ -43,11 +47,15 @@ def points(value: object, least: int, most: int | None = None) -> Complexes:
 
 @dataclass(frozen=True, slots=True)
 class _StrokeKind:
-    """A stroke's table with what its reader needs: `accuracy` in the units of the design, and its placement."""
+    """A stroke's table with what its reader needs: `accuracy` in the units of the design, and its placement.
+
+    `path_data` is that of the drawing that the stroke names.
+    """
 
     table: Table
     accuracy: float
     placement: Placement
+    path_data: PathDataOf
 
     def points(self, name: str, least: int, most: int | None = None) -> Complexes:
         with within(name):
@@ -114,8 +122,17 @@ def _circle(stroke: _StrokeKind) -> Complexes:
 
 def _path(stroke: _StrokeKind) -> Complexes:
     with within("path"):
-        data = text(stroke.table["path"], 'Write path = "M 1 1 L 5 3".')
-        return stroke.placement(curves.path_pieces(data, stroke.accuracy / abs(stroke.placement.scale)))
+        return _pieces(stroke, text(stroke.table["path"], 'Write path = "M 1 1 L 5 3".'))
+
+
+def _file(stroke: _StrokeKind) -> Complexes:
+    data = stroke.path_data(stroke.table)
+    with within("file"):
+        return _pieces(stroke, data)
+
+
+def _pieces(stroke: _StrokeKind, data: str) -> Complexes:
+    return stroke.placement(curves.path_pieces(data, stroke.accuracy / abs(stroke.placement.scale)))
 
 
 # kind: (reader, the keys it takes beside its own and the placement, whether it gives cubic pieces, not a polyline)
@@ -129,17 +146,27 @@ _KINDS: dict[str, tuple[Callable[[_StrokeKind], Complexes], tuple[str, ...], boo
     "bspline": (_bspline, ("closed",), True),
     "circle": (_circle, ("radius",), False),
     "path": (_path, (), True),
+    "file": (_file, ("layer", "id"), True),
 }
-PLACEMENT = ("scale", "rotate", "translate")
 _KEYS = tuple(dict.fromkeys([*_KINDS, *(name for row in _KINDS.values() for name in row[1]), *PLACEMENT]))
 _EXAMPLE = "Write a stroke such as { segment = [[5, 3], [25, 11]] }."
 
 
-def stroke(value: object, accuracy: float) -> tuple[Complexes, bool]:
-    """Read one stroke and place it.
+_NOWHERE = Placement()
 
-    Returns a polyline, shape (n,), and False; or cubic Bezier pieces, shape (k, 4), and True. Circles and
-    the arcs of paths keep to `accuracy` (in the units of the design); all else is exact.
+
+def _no_drawing(_stroke: Table) -> str:
+    raise DesignError("no drawing can be read here", key="file", remedy="Write the stroke itself.")
+
+
+def stroke(
+    value: object, accuracy: float, by: Placement = _NOWHERE, path_data: PathDataOf = _no_drawing
+) -> tuple[Complexes, bool]:
+    """Read one stroke, place it, and move it by what its site and its design say.
+
+    Gives a polyline, shape (n,), and False; or cubic Bezier pieces, shape (k, 4), and True. Circles and
+    the arcs of paths keep to `accuracy` (in the units of the design); all else is exact. `path_data` reads the drawing
+    that a stroke names.
     """
     of = table(value, _KEYS, _EXAMPLE)
     kinds = [name for name in of if name in _KINDS]
@@ -155,7 +182,7 @@ def stroke(value: object, accuracy: float) -> tuple[Complexes, bool]:
                 key=name,
                 remedy=f"Leave it out; beside {kind} stand {', '.join((*options, *PLACEMENT))}.",
             )
-    placed = read(_StrokeKind(of, accuracy, placement(of)))
+    placed = read(_StrokeKind(of, accuracy, by @ placement(of), path_data))
     if not (np.abs(placed.real).max() <= COORDINATE_MAX and np.abs(placed.imag).max() <= COORDINATE_MAX):
         raise DesignError(
             f"the stroke reaches beyond {COORDINATE_MAX:g}", remedy="Draw it smaller, or nearer to the origin."
@@ -168,17 +195,26 @@ def stroke(value: object, accuracy: float) -> tuple[Complexes, bool]:
 
 
 def placement(of: Table) -> Placement:
-    """Read `scale`, `rotate` and `translate`, those that are there."""
-    scale, rotate, translate = 1.0, 0.0, 0j
+    """Read `mirror`, `scale`, `rotate` and `translate`, those that are there."""
+    mirror, scale, rotate, translate = False, 1.0, 0.0, 0j
+    if "mirror" in of:
+        with within("mirror"):
+            mirror = flag(of["mirror"], "Write mirror = true, or leave it out.")
     if "scale" in of:
         with within("scale"):
-            scale = number(of["scale"], tiny="Write a factor such as 0.5.")
-            if scale == 0.0:
-                raise DesignError("must not be 0", remedy="Write a factor such as 0.5.")
+            scale = factor(of["scale"])
     if "rotate" in of:
         with within("rotate"):
             rotate = number(of["rotate"], "Write the angle in degrees.")
     if "translate" in of:
         with within("translate"):
             translate = point(of["translate"])
-    return Placement(scale, rotate, translate)
+    return Placement(scale, rotate, translate, mirror)
+
+
+def factor(value: object) -> float:
+    """Read a factor, any number but 0."""
+    result = number(value, tiny="Write a factor such as 0.5.")
+    if result == 0.0:
+        raise DesignError("must not be 0", remedy="Write a factor such as 0.5.")
+    return result

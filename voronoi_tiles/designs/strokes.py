@@ -119,7 +119,7 @@ def path_pieces(data: str, accuracy: float) -> Complexes:
     Coordinates are taken as they are: y runs up, as everywhere in a design file, so that data copied from an SVG file
     show their mirror image. Straight pieces have their inner control points on their ends (p, p, q, q); quadratic
     curves are raised exactly; elliptical arcs are replaced by cubics within ARC_SHARE * `accuracy` of them. Raises
-    DesignError, naming the character, where the data break the grammar, and where nothing is drawn.
+    DesignError, naming the character, where the data break the grammar, and where nothing, or a mere dot, is drawn.
     """
     from voronoi_tiles.formats.pen import PathPen
     from voronoi_tiles.formats.shapes import DrawingError
@@ -134,6 +134,13 @@ def path_pieces(data: str, accuracy: float) -> Complexes:
     if not len(curves.kind):
         raise DesignError(
             "the path draws nothing", remedy=f"{_PATH_REMEDY}; an isolated point is a stroke {{ point = [x, y] }}."
+        )
+    dots = pen.dots()
+    if len(dots):
+        place = f"[{dots[0].real:g}, {dots[0].imag:g}]"
+        raise DesignError(
+            f"zero length: the path goes nowhere at {place}",
+            remedy=f"Take it out, or draw an isolated point, a stroke {{ point = {place} }}.",
         )
     straight, bent = curves.kind == LINE, curves.kind == QUAD
     inner = []

@@ -18,26 +18,26 @@ def toml_text(design: Mapping[str, Any]) -> str:
 
     Raises DesignError for texts that UTF-8 does not have, as names of files may be.
     """
-    lines = [f"{key} = {_value(design[key])}" for key in ("schema", "group", "units")]
-    lines += ["", "[cell]", *(f"{key} = {_value(value)}" for key, value in design["cell"].items())]
+    lines = [f"{key} = {toml_value(design[key])}" for key in ("schema", "group", "units", "scale") if key in design]
+    lines += ["", "[cell]", *(f"{key} = {toml_value(value)}" for key, value in design["cell"].items())]
     for site in design["site"]:
         lines += ["", "[[site]]"]
-        lines += [f"{key} = {_value(value)}" for key, value in site.items() if key != "strokes"]
-        lines += ["strokes = [", *(f"  {_wrapped(_value(stroke))}," for stroke in site["strokes"]), "]"]
+        lines += [f"{key} = {toml_value(value)}" for key, value in site.items() if key != "strokes"]
+        lines += ["strokes = [", *(f"  {_wrapped(toml_value(stroke))}," for stroke in site["strokes"]), "]"]
     return "\n".join(lines) + "\n"
 
 
-def _value(value: Any) -> str:
-    """A value on one line."""
+def toml_value(value: Any) -> str:
+    """A value as TOML, on one line."""
     match value:
         case bool():
             return "true" if value else "false"
         case str():
             return _text(value)
         case Mapping():
-            return f"{{ {', '.join(f'{key} = {_value(item)}' for key, item in value.items())} }}"
+            return f"{{ {', '.join(f'{key} = {toml_value(item)}' for key, item in value.items())} }}"
         case list() | tuple():
-            return f"[{', '.join(map(_value, value))}]"
+            return f"[{', '.join(map(toml_value, value))}]"
     number = float(value)
     return repr(int(number)) if number.is_integer() else repr(number)  # repr has the digits that give the same bits
 

@@ -10,9 +10,8 @@ import numpy as np
 
 from voronoi_tiles.base.arguments import path_name
 from voronoi_tiles.base.files import refuse_existing
-from voronoi_tiles.designs.art import Art
+from voronoi_tiles.designs.art import GUIDE, Art
 from voronoi_tiles.designs.site import NodedSite
-from voronoi_tiles.fabrication.artwork import GUIDE
 from voronoi_tiles.fabrication.exporting import format_of, save_drawing
 from voronoi_tiles.formats.page import Drawing, Layer
 from voronoi_tiles.paths.paths import Paths

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Ints, offsets_of
 from voronoi_tiles.base.errors import DesignError
-from voronoi_tiles.base.maps import unit_at
-from voronoi_tiles.designs.art import Art
+from voronoi_tiles.designs.art import GUIDE, Art
 from voronoi_tiles.fabrication.arc_fitting import edge_arcs
 from voronoi_tiles.fabrication.clipping import OUTSIDE, Strands, inner_runs, outer_strands
 from voronoi_tiles.fabrication.contours import clipped_pieces
@@ -26,9 +25,6 @@ from voronoi_tiles.paths.paths import Paths
 
 if TYPE_CHECKING:
     from voronoi_tiles.formats.reading import Shape
-
-GUIDE: Final = "guide"
-"""The layer of a drawing that is a help for drawing, and not art."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -159,7 +155,8 @@ def read_art(art: Art, folder: str, site: int, unit_mm: float, *, fills: bool) -
     items = offsets_of([len(paths) for paths in filled])
     engraved, scored = Paths.concatenate(lines["engrave"]), Paths.concatenate(lines["score"])
     works = Works(engraved, scored, Paths.concatenate(filled), items, caveats(drawing, art.file))
-    return works.moved(art.placement.scale * unit_at(art.placement.rotate) / unit_mm, art.placement.translate)
+    factor, shift, mirrored = art.placement.similarity
+    return works.moved(factor / unit_mm, shift, conj=mirrored)
 
 
 def _work(shape: Shape, *, fills: bool) -> str | None:

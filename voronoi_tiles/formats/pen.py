@@ -128,6 +128,16 @@ class PathPen:
         kind = np.where(is_close, LINE, kind).astype(np.uint8)
         return DrawnCurves(start, end, control, kind, path, closed).take(long & ~is_move)
 
+    def dots(self) -> Complexes:
+        """The beginnings of all paths that were moved to and drawn, and have no length."""
+        kind = np.frombuffer(self._kinds, np.uint8)
+        path = self._path_numbers()
+        first = np.flatnonzero(np.diff(path, prepend=-1))
+        drawn = np.bincount(path[kind != MOVE], minlength=path[-1] + 1)
+        long = np.bincount(self.curves().path, minlength=path[-1] + 1)
+        begun = first[(drawn > 0) & (long == 0) & (kind[first] == MOVE)]
+        return np.frombuffer(self._numbers).view(np.complex128)[np.cumsum(POINTS[kind])[begun] - 1]
+
     def _path_numbers(self) -> Ints:
         """The path of each move, curve and closing."""
         kind = np.frombuffer(self._kinds, np.uint8)

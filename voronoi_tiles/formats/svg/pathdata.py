@@ -205,9 +205,8 @@ def _draw_arcs(pen: PathPen, values: list[float], here: complex, relative: bool)
     for k in range(0, len(values), 7):
         rx, ry, degrees, large, sweep, x, y = values[k : k + 7]
         end = complex(x, y) + (here if relative else 0j)
-        if end == here:
-            continue
-        arc = EllipticalArc.between(here, end, (abs(rx), abs(ry)), degrees, large == 1.0, sweep == 1.0)
+        radii = abs(rx), abs(ry)
+        arc = None if end == here else EllipticalArc.between(here, end, radii, degrees, large == 1.0, sweep == 1.0)
         if arc is None:
             pen.draw(LINE, [end.real, end.imag])
         else:

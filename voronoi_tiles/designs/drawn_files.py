@@ -1,0 +1,147 @@
+"""The lines of drawings, SVG and DXF files, as strokes: path data in the units of the design.
+
+A stroke that names a file is the stroke of this path data, digit for digit: the recipe in files of ours has the path in
+the place of the name, and gives the same tiles when the drawing has changed, or is gone.
+"""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.base.values import Table, shown, text
+from voronoi_tiles.designs.art import GUIDE
+from voronoi_tiles.paths.paths import Paths
+
+if TYPE_CHECKING:
+    from voronoi_tiles.formats.shapes import ReadDrawing, Shape
+
+FILE_REMEDY: Final = 'Write { file = "leaf.svg" }, the name of an SVG or DXF file beside the design.'
+
+_NAMED: Final = 12
+"""How many layers a message names."""
+
+
+class DrawnFiles:
+    """Reads the drawings that the strokes of a design name, relative to its `folder`.
+
+    `unit_mm` is the design's unit in millimetres. `names` are the files that were read, as the strokes name them,
+    `texts` the path data of one after the other, and `notes` sentences on what of them is left out or guessed.
+    """
+
+    def __init__(self, folder: str, unit_mm: float) -> None:
+        self._folder = folder
+        self._unit_mm = unit_mm
+        self.names: list[str] = []
+        self.texts: list[str] = []
+        self.notes: list[str] = []
+
+    def path_data(self, stroke: Table) -> str:
+        """The path data of a stroke's `file`, of its `layer` and its `id` alone where it has these.
+
+        All that is drawn: lines as they are, and the outlines of what is filled, closed. The lower left corner of that
+        is at the origin, y up. Raises DesignError, its key relative to the stroke.
+        """
+        name = _file_name(stroke["file"])
+        for key in ("layer", "id"):
+            if key in stroke and not text(stroke[key], f'Write {key} = "...", or leave it out.'):
+                raise DesignError("is empty", key=key, remedy="Leave it out.")
+        try:
+            drawing = self._read(name, stroke.get("id"))
+            self.names.append(name)
+            self._note(name, _remarks(drawing))
+            self.texts.append(self._text(drawing, name, stroke.get("layer")))
+        except DesignError as error:
+            what = f"{name}, line {error.line}" if error.line is not None else name
+            raise DesignError(f"{what}: {error.message}", key="file", remedy=error.remedy) from error
+        return self.texts[-1]
+
+    def _read(self, name: str, element: str | None) -> ReadDrawing:
+        from voronoi_tiles.formats.reading import read_drawing
+
+        # Never "-": a stroke is no place for standard input.
+        return read_drawing(os.path.join(self._folder or os.curdir, name), element=element)  # noqa: PTH118 - any name
+
+    def _text(self, drawing: ReadDrawing, name: str, layer: str | None) -> str:
+        """The path data of what is drawn."""
+        from voronoi_tiles.formats.svg.path_text import path_data
+
+        shapes = _chosen(drawing, layer)
+        if layer is None and len(shapes) < len(drawing.shapes):
+            self._note(name, [f'what is on the layer "{GUIDE}" is left out, as in art; name it to have it'])
+        outlines, joined = _outlines(shapes)
+        if joined:
+            many = f"{joined:,} open paths" if joined > 1 else "an open path"
+            self._note(name, [f"the fill of {many} is closed by a straight line; give lines a fill of none"])
+        if not len(outlines):
+            where = "" if layer is None else f" on the layer {shown(layer)}"
+            raise DesignError(
+                f"nothing is drawn{where}", remedy="Draw lines or curves; texts have to be converted to paths."
+            )
+        left, bottom, _, _ = outlines.bounds
+        lines = outlines.moved(1.0, -complex(left, bottom)).moved(1.0 / self._unit_mm, 0j, conj=True)
+        return path_data(lines)  # which turns y over once more
+
+    def _note(self, name: str, sentences: list[str]) -> None:
+        """Remember what there is to say of a file, once."""
+        self.notes += [note for what in sentences if (note := f"{name}: {what}") not in self.notes]
+
+
+def _file_name(value: object) -> str:
+    """The name of a drawing. Raises DesignError."""
+    if not isinstance(value, str) or not value or "\0" in value:
+        raise DesignError(f"must be a file's name, not {shown(value)}", key="file", remedy=FILE_REMEDY)
+    return value
+
+
+def _remarks(drawing: ReadDrawing) -> list[str]:
+    """What there is to say of a drawing before anything is chosen."""
+    said = list(drawing.remarks)
+    if not drawing.unit_known and drawing.format == "dxf":
+        said.append("it declares no unit; millimetres were taken")
+    elif not drawing.unit_known:
+        size = "its page has no size" if drawing.width is None else "its page's size has no unit"
+        said.append(f"{size}; 96 user units to the inch were taken, as CSS says")
+    what = ", ".join(f"{name} ({count:,})" for name, count in sorted(drawing.ignored.items()))
+    return [*said, f"left out what is no path: {what}; convert texts to paths"] if what else said
+
+
+def _chosen(drawing: ReadDrawing, layer: str | None) -> list[Shape]:
+    """The shapes of a layer, or a colour "#rrggbb"; without one, all that are not on a layer of guides.
+
+    Raises DesignError for a layer that the drawing has not.
+    """
+    if layer is None:
+        return [shape for shape in drawing.shapes if GUIDE not in shape.layer.casefold()]
+    found = [shape for shape in drawing.shapes if layer in (shape.layer, _colour(shape))]
+    if not found:
+        there = sorted({name for shape in drawing.shapes for name in (shape.layer, _colour(shape)) if name})
+        more = f" and {len(there) - _NAMED} more" if len(there) > _NAMED else ""
+        raise DesignError(
+            f"there is no layer or colour {shown(layer)}",
+            remedy=f"The drawing has {', '.join(map(shown, there[:_NAMED])) or 'none'}{more}.",
+        )
+    return found
+
+
+def _colour(shape: Shape) -> str | None:
+    """The colour that a shape is drawn in."""
+    return shape.stroke or shape.fill
+
+
+def _outlines(shapes: list[Shape]) -> tuple[Paths, int]:
+    """The paths of shapes, and how many of them, open ones that are filled, are closed by a line of their own."""
+    parts, joined = [], 0
+    for shape in shapes:
+        parts.append(shape.paths)
+        ends = shape.paths.end[shape.paths.offsets[1:] - 1], shape.paths.start[shape.paths.offsets[:-1]]
+        gaps = np.flatnonzero(~shape.paths.closed & (ends[0] != ends[1])) if shape.fill is not None else []
+        # A single line encloses nothing, and is not filled.
+        gaps = [path for path in gaps if shape.paths.counts[path] > 1 or shape.paths.kind[shape.paths.offsets[path]]]
+        if gaps:
+            parts.append(Paths.polylines(list(np.stack(ends, axis=1)[gaps])))
+            joined += len(gaps)
+    return Paths.concatenate(parts), joined
