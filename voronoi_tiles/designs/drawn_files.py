@@ -29,7 +29,8 @@ class DrawnFiles:
     """Reads the drawings that the strokes of a design name, relative to its `folder`.
 
     `unit_mm` is the design's unit in millimetres. `names` are the files that were read, as the strokes name them,
-    `texts` the path data of one after the other, and `notes` sentences on what of them is left out or guessed.
+    `texts` the path data of one after the other, and `notes` sentences on what of them is left out or guessed. `size`
+    is the longer side of the last one, in millimetres.
     """
 
     def __init__(self, folder: str, unit_mm: float) -> None:
@@ -38,6 +39,7 @@ class DrawnFiles:
         self.names: list[str] = []
         self.texts: list[str] = []
         self.notes: list[str] = []
+        self.size = 0.0
 
     def path_data(self, stroke: Table) -> str:
         """The path data of a stroke's `file`, of its `layer` and its `id` alone where it has these.
@@ -81,7 +83,8 @@ class DrawnFiles:
             raise DesignError(
                 f"nothing is drawn{where}", remedy="Draw lines or curves; texts have to be converted to paths."
             )
-        left, bottom, _, _ = outlines.bounds
+        left, bottom, right, top = outlines.bounds
+        self.size = max(right - left, top - bottom)
         lines = outlines.moved(1.0, -complex(left, bottom)).moved(1.0 / self._unit_mm, 0j, conj=True)
         return path_data(lines)  # which turns y over once more
 

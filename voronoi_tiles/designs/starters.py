@@ -11,6 +11,8 @@ from collections.abc import Mapping
 from pathlib import PurePath
 from typing import TYPE_CHECKING, NamedTuple
 
+from voronoi_tiles.designs.toml_text import toml_value
+
 if TYPE_CHECKING:
     from voronoi_tiles.designs.design import Design
 
@@ -23,11 +25,16 @@ class StarterStroke(NamedTuple):
 
 
 class Starter(NamedTuple):
-    """One starter: what the group does, the cell's sides and angle, and the strokes by site."""
+    """One starter: what the group does, the cell's sides and angle, and the strokes by site.
+
+    Sites are flattened within `tolerance`, and moved by `translate` where it is given.
+    """
 
     symmetry: str
     cell: tuple[float, ...]
     sites: Mapping[str, tuple[StarterStroke, ...]]
+    tolerance: float = 0.01
+    translate: complex | None = None
 
 
 def _curve(points: str) -> StarterStroke:
@@ -164,10 +171,12 @@ _CELL_HEAD = """
 
 _SITE_HEAD = """
 [[site]]              # one tile shape: all that is nearer to these strokes than to their copies
-name = "{name}"
-tolerance = 0.01      # curves are flattened to within this distance
-strokes = [           # x runs right, y up, from the group's origin
+name = {name}
+{tolerance:<22}# curves are flattened to within this distance
+{translate}strokes = [           # x runs right, y up, from the group's origin
 """
+
+_MOVED = "moves the whole site, after its strokes have been placed"
 
 _TAIL = """
 # Other strokes to try, also several in one site:
@@ -177,7 +186,9 @@ _TAIL = """
 #   {{ bspline = [[0, 0], [4, 1], [6, 5], [8, 2]], closed = false }}
 #   {{ circle = [5, 3], radius = 2 }}
 #   {{ path = "M 1 1 C 2 3 4 3 5 1" }}        SVG path data
-# Each may carry scale = 0.5, rotate = 30, translate = [4, 2], applied in this order about the origin.
+#   {{ file = "leaf.svg" }}                   a drawing, SVG or DXF
+# Each may carry mirror = true, scale = 0.5, rotate = 30, translate = [4, 2], applied in this order about
+# the origin; so may a whole site.
 # Copies must not touch: {clear}.
 """
 
@@ -206,7 +217,16 @@ def starter_text(group: str, file: str | None = None) -> str:
         from voronoi_tiles.designs.checking import read_group
 
         read_group(group)
-    starter = _TABLE[group]
+    return written(group, _TABLE[group], file)
+
+
+def symmetry_of(group: str) -> str:
+    """What a group does, in words."""
+    return _TABLE[group].symmetry
+
+
+def written(group: str, starter: Starter, file: str | None, result: str | None = None) -> str:
+    """A starter as the text of a design file; see `starter_text`. `result` is what its export is called."""
     path = PurePath(file or "")
     if not (path.name and path.name.isprintable()):  # a comment cannot show it
         path = PurePath(f"{group}.toml")
@@ -215,7 +235,7 @@ def starter_text(group: str, file: str | None = None) -> str:
             group=group,
             symmetry=starter.symmetry,
             file=shlex.quote(path.name),
-            result=shlex.quote(f"{path.stem}.svg"),
+            result=shlex.quote(result or f"{path.stem}.svg"),
         ),
         _CELL_HEAD,
     ]
@@ -224,7 +244,14 @@ def starter_text(group: str, file: str | None = None) -> str:
         for value, (key, comment) in zip(starter.cell, _CELL_COMMENTS, strict=False)
     ]
     for name, strokes in starter.sites.items():
-        parts.append(_SITE_HEAD.format(name=name))
+        moved = None if starter.translate is None else (starter.translate.real, starter.translate.imag)
+        parts.append(
+            _SITE_HEAD.format(
+                name=toml_value(name),
+                tolerance=f"tolerance = {starter.tolerance:g} ",
+                translate="" if moved is None else f"{f'translate = {toml_value(moved)}':<21} # {_MOVED}\n",
+            )
+        )
         parts += [f"  # {stroke.comment}\n  {stroke.toml},\n" for stroke in strokes]
         parts.append("]\n")
     places = ["mirrors"] * (group in _MIRRORED) + ["centres of rotation"] * (group in _TURNED)

@@ -48,7 +48,7 @@ def _text(text: str) -> str:
         text.encode()
     except UnicodeEncodeError:
         raise DesignError(
-            f"{text!r} is no text that a file can hold", key="art.file", remedy="Rename the drawing."
+            f"{text!r} is no text that a file can hold", key="file", remedy="Rename the drawing."
         ) from None
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
