@@ -6,6 +6,7 @@ An example is a TOML block under `<!-- picture: NAME -->`. Where it is no whole 
 from __future__ import annotations
 
 import re
+import tempfile
 import tomllib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -25,6 +26,7 @@ FRAME = 'schema = 1\ngroup = "p4"\n\n[cell]\na = 60.0\n\n[[site]]\n'
 _TOLERANCE = 0.06  # of curves, in millimetres: a fifth of a line's width here, and a fifth of the bytes
 
 _EXAMPLE = re.compile(r"<!-- picture: (\S+) -->\n+```toml\n(.*?)```", re.DOTALL)
+_FILE = re.compile(r"<!-- file: (\S+\.svg) -->\n+```xml\n(.*?)```", re.DOTALL)
 
 
 def examples(page: str) -> Iterator[tuple[str, str]]:
@@ -36,15 +38,19 @@ def examples(page: str) -> Iterator[tuple[str, str]]:
 def write() -> None:
     """Write the pictures of all examples."""
     for page in PAGES:
-        for name, text in examples(page.read_text(encoding="utf-8")):
-            _draw(name, text)
+        content = page.read_text(encoding="utf-8")
+        with tempfile.TemporaryDirectory() as folder:
+            for name, text in _FILE.findall(content):
+                (Path(folder) / name).write_text(text, encoding="utf-8")
+            for name, text in examples(content):
+                _draw(name, text, folder)
 
 
-def _draw(name: str, text: str) -> None:
+def _draw(name: str, text: str, folder: str) -> None:
     source = tomllib.loads(text)
     for site in source["site"]:
         site.setdefault("tolerance", _TOLERANCE)
-    design = Design.from_dict(source)
+    design = Design.from_dict(source, folder=folder)
     tiling = design.tessellate()
     tiles = tiling.tiles
     with drawing(f"{name}.svg", (2.5, 2.5)) as (_, axes):

@@ -26,8 +26,8 @@ Arc Art ArgumentError CheckError CheckReport Design DesignError Dots Drawing Dra
 GROUPS Inventory Isometry Job JobError Lattice Layer LayerUse Limits LineArc Marks MissingLibraryError Neighbour
 NodedSite Operation Outline OutputError ParabolaArc Paths Placement PreflightReport Product ProofError ProofReport
 Provenance ReadDrawing RenderError RenderOptions Rendering Shape Site Stroke Tile TileCopy Tiling TouchingCopiesError
-UnknownNameError VoronoiTilesError WallpaperGroup __version__ bezier bspline catmull_rom circle coupon hermite path
-point polyline preflight render segment starter starter_text
+UnknownNameError VoronoiTilesError WallpaperGroup __version__ bezier bspline catmull_rom circle coupon drawing hermite
+path point polyline preflight render segment starter starter_text
 """
 
 INTERNAL = {
@@ -238,8 +238,13 @@ WRONG: list[Callable[[], object]] = [
     lambda: pair().render(overlay=5),  # type: ignore[call-overload]
     lambda: pair().make(vt.Job(sheet=(200, 100), colours="layers", only_colour=9)),
     lambda: vt.starter([]),  # type: ignore[arg-type]
-    lambda: vt.Site([vt.polyline(5)]).moved(mirror=True),  # type: ignore[arg-type]
-    lambda: vt.Site([vt.hermite([0, 5], [1, "x"])]).moved(mirror=True),  # type: ignore[list-item]
+    lambda: vt.Design("p4", 60, vt.Site([vt.polyline(5)]).moved(mirror=True)),  # type: ignore[arg-type]
+    lambda: vt.Design("p4", 60, vt.Site([vt.hermite([0, 5], [1, "x"])]).moved(mirror=True)),  # type: ignore[list-item]
+    lambda: vt.Design("p4", 60, vt.Site([vt.drawing("none.svg")])),
+    lambda: vt.starter("p4").scaled(tile_width=-1),
+    lambda: vt.starter("p4").scaled(2, tile_width=9),
+    lambda: vt.starter("p4").scaled(),
+    lambda: vt.Design("p4", 60, vt.Site([vt.point(0)]), folder=5),  # type: ignore[arg-type]
     lambda: vt.starter("p4").save(b"a.toml"),  # type: ignore[arg-type]
     lambda: vt.starter("p4").replace(name=5),  # type: ignore[arg-type]
     lambda: vt.starter("p4").replace(group=""),

@@ -413,14 +413,17 @@ def test_every_stroke_has_a_picture() -> None:
         assert f"(pictures/{name}.svg)" in text, name
 
 
-def test_the_examples_of_the_reference_are_designs() -> None:
+def test_the_examples_of_the_reference_are_designs(tmp_path: Path) -> None:
     """Each example of the reference gives tiles: alone, or as the end of the frame that the page shows."""
     text = text_of("design-file.md")
     frame = next(block.body for block in blocks(text) if "frame" in block.comments)
     examples = [block.body for block in blocks(text) if "picture" in block.comments]
     assert len(examples) > len(reading._KINDS)
+    for block in blocks(text):
+        if "file" in block.comments:
+            (tmp_path / block.comments["file"]).write_text(block.body, encoding="utf-8")
     for body in examples:
-        assert vt.Design.loads(body if "schema" in body else frame + body).tessellate().tiles
+        assert vt.Design.loads(body if "schema" in body else frame + body, folder=tmp_path).tessellate().tiles
 
 
 def test_every_command_and_option_is_documented() -> None:
