@@ -68,7 +68,8 @@ def checked(value: object, folder: str) -> CheckedDesign:
     listed = values.required(table, "site", "Write [[site]] and, below it, its strokes.")
     reading = _Reading(FLATTENING_MM / UNIT_MM[units], lattice, Placement(scale), DrawnFiles(folder, UNIT_MM[units]))
     sites = reading.sites(listed)
-    drawn, source = (_text({**table, "site": rows}) for rows in (listed, [site.table for site in sites]))
+    drawn = _text(table)
+    source = _text({**table, "site": [site.table for site in sites]}) if reading.files.names else drawn
     return CheckedDesign(
         group,
         lattice,
