@@ -47,7 +47,8 @@ def matrix(keys: dict[str, Any]) -> np.ndarray:
 
 def image(whole: np.ndarray, points: Any) -> np.ndarray:
     """Points, float (n, 2), under a map."""
-    return np.column_stack((np.asarray(points), np.ones(len(points)))) @ whole[:2].T
+    found: np.ndarray = np.column_stack((np.asarray(points), np.ones(len(points)))) @ whole[:2].T
+    return found
 
 
 def plane(z: np.ndarray) -> np.ndarray:
@@ -162,7 +163,7 @@ def test_art_is_mirrored_as_strokes_are(tmp_path: Path) -> None:
         '<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="40mm" viewBox="0 0 40 40">'
         '<path d="M 5 37 L 25 29 14 18" fill="none" stroke="black"/></svg>'
     )
-    placed = {"mirror": True, "rotate": 30.0, "scale": 0.8, "translate": (40.0, 8.0)}
+    placed: dict[str, Any] = {"mirror": True, "rotate": 30.0, "scale": 0.8, "translate": (40.0, 8.0)}
     site = vt.Site([vt.polyline(POINTS)], name="bird", art="face.svg", **placed)
     design = vt.Design("p4", 70, site, scale=1.5, folder=tmp_path)
     tiling = design.tessellate()

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import errno
+import os
+
 import click
 
 from voronoi_tiles.cli.common import PATH, say
@@ -47,7 +50,7 @@ def new(
 
     What is written exports as it is.
     """
-    from voronoi_tiles.base.files import STDOUT, is_special, refuse_existing, write_whole
+    from voronoi_tiles.base.files import STDOUT, is_special, output_error, refuse_existing, write_whole
     from voronoi_tiles.designs.starters import GROUP_NAMES, starter_text
 
     if group not in GROUP_NAMES:
@@ -60,6 +63,9 @@ def new(
         raise click.UsageError("The design names the drawing: --from needs a file.")
     stream = output == STDOUT or is_special(output)
     refuse_existing(output)
+    folder = os.path.dirname(output) or os.curdir  # noqa: PTH120 - any name
+    if not stream and not os.path.isdir(folder):  # noqa: PTH112 - same
+        raise output_error(output, FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT)))
     name = None if stream else output
     if drawing is not None:
         from voronoi_tiles.designs.proposals import drawing_text

@@ -14,7 +14,7 @@ import numpy as np
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.values import Table, shown, text
 from voronoi_tiles.designs.art import GUIDE
-from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.paths.paths import LINE, Paths
 
 if TYPE_CHECKING:
     from voronoi_tiles.formats.shapes import ReadDrawing, Shape
@@ -36,6 +36,7 @@ class DrawnFiles:
     def __init__(self, folder: str, unit_mm: float) -> None:
         self._folder = folder
         self._unit_mm = unit_mm
+        self._read_before: dict[tuple[str, str | None], ReadDrawing] = {}
         self.names: list[str] = []
         self.texts: list[str] = []
         self.notes: list[str] = []
@@ -64,8 +65,11 @@ class DrawnFiles:
     def _read(self, name: str, element: str | None) -> ReadDrawing:
         from voronoi_tiles.formats.reading import read_drawing
 
-        # Never "-": a stroke is no place for standard input.
-        return read_drawing(os.path.join(self._folder or os.curdir, name), element=element)  # noqa: PTH118 - any name
+        if (name, element) not in self._read_before:
+            # Never "-": a stroke is no place for standard input.
+            path = os.path.join(self._folder or os.curdir, name)  # noqa: PTH118 - any name
+            self._read_before[name, element] = read_drawing(path, element=element)
+        return self._read_before[name, element]
 
     def _text(self, drawing: ReadDrawing, name: str, layer: str | None) -> str:
         """The path data of what is drawn."""
@@ -139,12 +143,14 @@ def _outlines(shapes: list[Shape]) -> tuple[Paths, int]:
     """The paths of shapes, and how many of them, open ones that are filled, are closed by a line of their own."""
     parts, joined = [], 0
     for shape in shapes:
-        parts.append(shape.paths)
-        ends = shape.paths.end[shape.paths.offsets[1:] - 1], shape.paths.start[shape.paths.offsets[:-1]]
-        gaps = np.flatnonzero(~shape.paths.closed & (ends[0] != ends[1])) if shape.fill is not None else []
+        paths = shape.paths
+        parts.append(paths)
+        if shape.fill is None:
+            continue
+        start, end = paths.start[paths.offsets[:-1]], paths.end[paths.offsets[1:] - 1]
         # A single line encloses nothing, and is not filled.
-        gaps = [path for path in gaps if shape.paths.counts[path] > 1 or shape.paths.kind[shape.paths.offsets[path]]]
-        if gaps:
-            parts.append(Paths.polylines(list(np.stack(ends, axis=1)[gaps])))
-            joined += len(gaps)
+        flat = (paths.counts == 1) & (paths.kind[paths.offsets[:-1]] == LINE)
+        gaps = np.flatnonzero(~paths.closed & (start != end) & ~flat)
+        parts.append(Paths.polylines(list(np.stack((end, start), axis=1)[gaps])))
+        joined += len(gaps)
     return Paths.concatenate(parts), joined

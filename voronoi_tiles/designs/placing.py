@@ -232,7 +232,8 @@ class _CellSearch(NamedTuple):
     def _fits(self, shape: tuple[float, float], size: float) -> bool:
         """Whether some place in a cell keeps the copies apart."""
         lattice = self._lattice(shape, size)
-        return bool(self._clearance(lattice, self._places(lattice)).max() >= CLEARANCE * self.drawing.diameter)
+        goal = CLEARANCE * self.drawing.diameter
+        return bool(self._clearance(lattice, self._places(lattice), goal).max() >= goal)
 
     def _places(self, lattice: Lattice) -> Complexes:
         """Places all over a cell; along directions in which nothing changes, one."""
@@ -244,20 +245,28 @@ class _CellSearch(NamedTuple):
         places: Complexes = (x * lattice.a + y * lattice.b).ravel()
         return places
 
-    def _clearance(self, lattice: Lattice, places: Complexes) -> Floats:
-        """The least distance between copies, for the middle of the drawing at each of some places."""
+    def _clearance(self, lattice: Lattice, places: Complexes, goal: float = 0.0) -> Floats:
+        """The least distance between copies, for the middle of the drawing at each of some places.
+
+        A place is given up, its distance being too large, as soon as it is nearer than the goal.
+        """
         basis = lattice.reduced
-        reach = math.hypot(*(2.0 + _REACH,) * 2) * self.drawing.diameter
-        steps = self._steps(basis, reach)
+        steps = self._steps(basis, math.hypot(*(2.0 + _REACH,) * 2) * self.drawing.diameter)
         least = np.full(len(places), np.inf)
+        left = np.arange(len(places))
         for number, operation in enumerate(self.group.operations):
             factor, shift, conj = lattice.isometry(operation)
-            apart = move(places, factor, shift, conj) - places
+            apart = move(places[left], factor, shift, conj) - places[left]
             x, y = basis.fractional(apart)
             apart = apart - (np.rint(x) * basis.a + np.rint(y) * basis.b)
             # The identity moves nothing, and is no copy.
             for step in steps[1:] if number == 0 else steps:
-                np.minimum(least, self._looked_up((factor, conj), apart + step), out=least)
+                least[left] = np.minimum(least[left], self._looked_up((factor, conj), apart + step))
+                near = least[left] < goal
+                if near.any():
+                    left, apart = left[~near], apart[~near]
+            if not len(left):
+                break
         return least
 
     def _steps(self, basis: Lattice, reach: float) -> list[complex]:
@@ -289,6 +298,6 @@ class _CellSearch(NamedTuple):
             near = best + (x + 1j * y).ravel()
             best = near[self._clearance(lattice, near).argmax()]
             spread /= 2.0
-        x, y = lattice.fractional(complex(best))
-        inside = lattice.cartesian(x - math.floor(x), y - math.floor(y))
+        across, up = lattice.fractional(complex(best))
+        inside = lattice.cartesian(across - math.floor(across), up - math.floor(up))
         return inside - self.drawing.middle

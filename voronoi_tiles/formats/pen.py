@@ -136,7 +136,9 @@ class PathPen:
         drawn = np.bincount(path[kind != MOVE], minlength=path[-1] + 1)
         long = np.bincount(self.curves().path, minlength=path[-1] + 1)
         begun = first[(drawn > 0) & (long == 0) & (kind[first] == MOVE)]
-        return np.frombuffer(self._numbers).view(np.complex128)[np.cumsum(POINTS[kind])[begun] - 1]
+        points = np.frombuffer(self._numbers).view(np.complex128)
+        found: Complexes = points[np.cumsum(POINTS[kind])[begun] - 1]
+        return found
 
     def _path_numbers(self) -> Ints:
         """The path of each move, curve and closing."""
