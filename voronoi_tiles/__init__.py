@@ -42,6 +42,7 @@ if TYPE_CHECKING:
         polyline,
         segment,
     )
+    from voronoi_tiles.designs.proposals import placed
     from voronoi_tiles.designs.site import NodedSite
     from voronoi_tiles.designs.starters import starter, starter_text
     from voronoi_tiles.fabrication.coupon import coupon
@@ -130,6 +131,7 @@ __all__ = [
     "drawing",
     "hermite",
     "path",
+    "placed",
     "point",
     "polyline",
     "preflight",
@@ -153,6 +155,7 @@ _HOMES = {
     "voronoi_tiles.designs.drawn_strokes": (
         "Stroke bezier bspline catmull_rom circle drawing hermite path point polyline segment"
     ),
+    "voronoi_tiles.designs.proposals": "placed",
     "voronoi_tiles.designs.site": "NodedSite",
     "voronoi_tiles.designs.starters": "starter starter_text",
     "voronoi_tiles.fabrication.coupon": "coupon",

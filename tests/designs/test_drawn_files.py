@@ -200,7 +200,7 @@ def test_what_is_left_out_or_guessed_is_said(tmp_path: Path, name: str, text: st
         ({"file": "-"}, "-: cannot be read"),
         ({"file": "text.svg"}, "text.svg: nothing is drawn. Draw lines"),
         ({"file": "dot.svg"}, "dot.svg: nothing is drawn"),
-        ({"file": "broken.svg"}, "broken.svg, line 1: "),
+        ({"file": "broken.svg"}, "broken.svg, line 1, d: broken SVG path data"),
         ({"file": "design.toml"}, "design.toml: neither an SVG nor a DXF file"),
         ({"file": "leaf.svg", "layer": "rim"}, "there is no layer or colour 'rim'. The drawing has '#000000'"),
         ({"file": "leaf.svg", "id": "leaf"}, "has no element with the id 'leaf'"),

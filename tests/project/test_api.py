@@ -27,7 +27,7 @@ GROUPS Inventory Isometry Job JobError Lattice Layer LayerUse Limits LineArc Mar
 NodedSite Operation Outline OutputError ParabolaArc Paths Placement PreflightReport Product ProofError ProofReport
 Provenance ReadDrawing RenderError RenderOptions Rendering Shape Site Stroke Tile TileCopy Tiling TouchingCopiesError
 UnknownNameError VoronoiTilesError WallpaperGroup __version__ bezier bspline catmull_rom circle coupon drawing hermite
-path point polyline preflight render segment starter starter_text
+path placed point polyline preflight render segment starter starter_text
 """
 
 INTERNAL = {

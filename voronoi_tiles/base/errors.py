@@ -106,8 +106,7 @@ class TouchingCopiesError(VoronoiTilesError, ValueError):
         else:
             what = f'site "{self.site}" touches the copy of site "{self.other}" under {self.operation} at {place}'
         text = f"{self.file}: {what}" if self.file else what
-        remedy = "Move or shorten the strokes there, or make the cell larger: copies must keep apart."
-        return f'{text}. {remedy} "voronoi-tiles new GROUP --fill DESIGN" finds a place.'
+        return f"{text}. Move or shorten the strokes there, or make the cell larger: copies must keep apart."
 
     def with_file(self, file: str | None) -> Self:
         """A copy of this error that names `file`; a file that is already named stays."""

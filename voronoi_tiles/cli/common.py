@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from voronoi_tiles.base.errors import VoronoiTilesError
+from voronoi_tiles.base.errors import TouchingCopiesError, VoronoiTilesError
 
 if TYPE_CHECKING:
     from voronoi_tiles.designs.design import Design
@@ -75,6 +75,8 @@ def explain(error: BaseException, design: str | None = None) -> tuple[int, str]:
         case VoronoiTilesError():
             name = error.file or ""  # which may hold anything
             text = name + as_options(str(error).removeprefix(name))
+            if isinstance(error, TouchingCopiesError):
+                text += ' "voronoi-tiles new GROUP --fill DESIGN" finds a place.'
             code, message = error.exit_code, f"{'Error: ' if error.file is not None else start}{text}"
         case click.UsageError():
             text = error.format_message().rstrip()

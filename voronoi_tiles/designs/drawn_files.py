@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from voronoi_tiles.base.errors import DesignError
-from voronoi_tiles.base.values import Table, shown, text
+from voronoi_tiles.base.values import Table, shown, text, within
 from voronoi_tiles.designs.art import GUIDE
 from voronoi_tiles.paths.paths import LINE, Paths
 
@@ -50,16 +50,19 @@ class DrawnFiles:
         """
         name = _file_name(stroke["file"])
         for key in ("layer", "id"):
-            if key in stroke and not text(stroke[key], f'Write {key} = "...", or leave it out.'):
-                raise DesignError("is empty", key=key, remedy="Leave it out.")
+            if key in stroke:
+                with within(key):
+                    if not text(stroke[key], f'Write {key} = "...", or leave it out.'):
+                        raise DesignError("is empty", remedy="Leave it out.")
         try:
             drawing = self._read(name, stroke.get("id"))
             self.names.append(name)
             self._note(name, _remarks(drawing))
             self.texts.append(self._text(drawing, name, stroke.get("layer")))
         except DesignError as error:
-            what = f"{name}, line {error.line}" if error.line is not None else name
-            raise DesignError(f"{what}: {error.message}", key="file", remedy=error.remedy) from error
+            line = None if error.line is None else f"line {error.line}"
+            place = ", ".join(part for part in (name, line, error.key) if part)
+            raise DesignError(f"{place}: {error.message}", key="file", remedy=error.remedy) from error
         return self.texts[-1]
 
     def _read(self, name: str, element: str | None) -> ReadDrawing:
@@ -123,7 +126,7 @@ def _chosen(drawing: ReadDrawing, layer: str | None) -> list[Shape]:
     """
     if layer is None:
         return [shape for shape in drawing.shapes if GUIDE not in shape.layer.casefold()]
-    found = [shape for shape in drawing.shapes if layer in (shape.layer, _colour(shape))]
+    found = [shape for shape in drawing.shapes if layer == shape.layer or layer.lower() == _colour(shape)]
     if not found:
         there = sorted({name for shape in drawing.shapes for name in (shape.layer, _colour(shape)) if name})
         more = f" and {len(there) - _NAMED} more" if len(there) > _NAMED else ""

@@ -103,7 +103,7 @@ class _Silhouette:
             for site in sites
         ]
         points = np.unique(np.concatenate([lines, *(_inside(face, pixel) for face in faces)]))
-        # A point of a disc is nearer to its middle's parts than to anything outside.
+        # A bridge is nearer to its own ends than to anything outside the disc over it.
         bridges = _bridges(points, 1.5 * pixel)
         middles, radii = bridges.mean(axis=1), np.abs(bridges[:, 1] - bridges[:, 0]) / 2.0
         discs = shapely.buffer(shapely.points(plane(middles)), radii)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Final
 
 import shapely
@@ -13,6 +13,7 @@ from voronoi_tiles.base.arrays import plane
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import Placement
 from voronoi_tiles.base.tolerance import FLATTENING_MM
+from voronoi_tiles.base.units import Units
 from voronoi_tiles.designs.checking import read_group
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.designs.drawn_files import DrawnFiles
@@ -23,6 +24,7 @@ from voronoi_tiles.designs.placing import CLEARANCE, find_place
 from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.designs.starters import Starter, StarterStroke, symmetry_of, written
 from voronoi_tiles.designs.toml_text import toml_value
+from voronoi_tiles.groups.wallpaper import WallpaperGroup
 
 _FINE: Final = 2e3
 _COARSE: Final = 1e5
@@ -53,6 +55,7 @@ def drawing_text(
     Its cell is made for it, and its tiles have been computed. Also gives the notes of the design. Raises DesignError
     where the drawing cannot be read.
     """
+    kind = read_group(group)
     files = DrawnFiles("", 1.0)
     chosen = {key: value for key, value in (("layer", layer), ("id", id)) if value is not None}
     try:
@@ -60,7 +63,7 @@ def drawing_text(
     except DesignError as error:
         raise error.with_key("") from None
     tolerance = min(max(FLATTENING_MM, _one_digit(files.size / _COARSE)), _one_digit(files.size / _FINE))
-    place = find_place(Design("p1", _ROOM, Site(lines, tolerance=tolerance)).noded, read_group(group))
+    place = find_place(Design("p1", _ROOM, Site(lines, tolerance=tolerance)).noded, kind)
     folder = os.path.realpath(os.path.dirname(output or ""))  # noqa: PTH120 - any name
     beside, base = os.path.split(file)
     stroke = {"file": os.path.relpath(os.path.join(os.path.realpath(beside), base), folder), **chosen}  # noqa: PTH118
@@ -88,13 +91,24 @@ def _one_digit(value: float) -> float:
     return float(f"{value:.0e}")
 
 
-def placed(design: Design, group: str) -> Design:
-    """The strokes of a design in another group, or the same one, with a cell and placement keys of their own.
+def placed(
+    drawn: Design | Site | Iterable[Site],
+    group: str | WallpaperGroup,
+    *,
+    units: Units = "mm",
+    folder: str | os.PathLike[str] = "",
+) -> Design:
+    """The sites of a design, or others, in a group, in a cell and at a place where their copies keep well apart.
 
-    Its sites stay as they lie to each other; those that are too near to others are laid beside them. Raises DesignError
-    for an unknown group.
+    Sites stay as they lie to each other; those that are too near to others are laid beside them. `units` and `folder`
+    are those of a design of the sites. Raises DesignError as Design does.
+
+    >>> import voronoi_tiles as vt
+    >>> vt.placed(vt.Site([vt.segment(-9 + 1j, 25 + 4j)]), "p4").cell
+    {'a': 42.8}
     """
-    kind = read_group(group)
+    kind = group if isinstance(group, WallpaperGroup) else read_group(group)
+    design = drawn if isinstance(drawn, Design) else Design("p1", _ROOM, drawn, units=units, folder=folder)
     moves = _apart(design.noded)
     moved = [
         NodedSite(site.name, site.nodes + move, site.segments) for site, move in zip(design.noded, moves, strict=True)
@@ -134,6 +148,6 @@ def _apart(sites: Sequence[NodedSite]) -> list[complex]:
 
 
 def _shape(site: NodedSite) -> list[shapely.Geometry]:
-    """The lines, points and faces of a site."""
+    """The lines and points of a site."""
     lines = shapely.linestrings(plane(site.ends[site.ends[:, 0] != site.ends[:, 1]]))
-    return [*lines, *shapely.points(plane(site.nodes[site.isolated])), shapely.polygonize(lines)]
+    return [*lines, *shapely.points(plane(site.nodes[site.isolated]))]
