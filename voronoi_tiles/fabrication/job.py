@@ -80,7 +80,7 @@ class Job:
     sheet: Option[SheetSize, tuple[float, float] | str | None] = Option(
         None,
         read_sheet,
-        "Fill a sheet, 600x300mm, or the closed paths of an SVG or DXF file [default: one of each tile].",
+        "Fill a sheet, 600x300mm, or what the paths of an SVG or DXF file bound [default: one of each tile].",
         kind="text",
         shown="WxH|FILE",
     )
