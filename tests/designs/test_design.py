@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import math
+import re
 import subprocess
 import sys
 from collections.abc import Mapping
@@ -631,3 +632,31 @@ def test_extreme_numbers(strokes: list[dict[str, Any]], tolerance: float) -> Non
     assert len(site.elements)
     lengths = np.abs(site.nodes[site.segments[:, 0]] - site.nodes[site.segments[:, 1]])
     assert (lengths > 0.0).all()
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (
+            "strokes = [\n  { segment = [[1, 2], [3, 4]],\n    scale = 2 },\n]\n",
+            "line 2: not TOML: an inline table is broken",
+        ),
+        (
+            "strokes = [\n  { polyline = [[1, 2],\n  [3, 4]],\n  closed = true },\n]\n",
+            "line 3: not TOML: an inline table is",
+        ),
+        ("cell = {\n  a = 60\n}\n", "line 1: not TOML: an inline table is broken"),
+        ("cell = { a = 60 # mm\n}\n", "line 1: not TOML: an inline table is broken"),
+        ("cell = { a = 60, }\n", "line 1: not TOML: an inline table ends in a comma"),
+        ("cell = { a = 60 ]\n", "not TOML: unclosed inline table"),
+        ("cell.\n", "not TOML: invalid initial character"),
+        ('name = "{\n"\n', "not TOML: illegal character"),
+    ],
+)
+def test_a_broken_inline_table_says_what_to_do(text: str, message: str) -> None:
+    """TOML wants one on one line, which many expect otherwise; other slips are not taken for it."""
+    with pytest.raises(DesignError) as caught:
+        Design.loads(f"schema = 1\n{text}", format="toml")
+    line = re.sub(r"line (\d)", lambda found: f"line {int(found[1]) + 1}", message)
+    assert line in str(caught.value)
+    assert caught.value.remedy

@@ -56,7 +56,7 @@ def plane(z: np.ndarray) -> np.ndarray:
     return np.column_stack((z.real, z.imag))
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(stroke=PLACEMENTS, site=PLACEMENTS, factor=st.sampled_from([1.0, 1.5]), form=st.sampled_from(["toml", "json"]))
 def test_strokes_are_placed_by_their_own_keys_their_site_and_the_scale(
     stroke: dict[str, Any], site: dict[str, Any], factor: float, form: str
@@ -91,7 +91,7 @@ def test_strokes_are_placed_by_their_own_keys_their_site_and_the_scale(
     assert again.noded[0].nodes.tobytes() == design.noded[0].nodes.tobytes()
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=20, deadline=None)
 @given(outer=PLACEMENTS, inner=PLACEMENTS)
 def test_placements_compose_and_invert(outer: dict[str, Any], inner: dict[str, Any]) -> None:
     """P @ Q is Q and then P; the inverse brings every point back."""
@@ -112,8 +112,7 @@ def test_placements_compose_and_invert(outer: dict[str, Any], inner: dict[str, A
     assert np.abs(factor * (z.conj() if mirrored else z) + shift - both(z)).max() < 1e-12
 
 
-@pytest.mark.parametrize("factor", [1.5, 0.25, 3])
-@pytest.mark.parametrize("group", ["p4", "pg", "p6"])
+@pytest.mark.parametrize(("group", "factor"), [("p4", 1.5), ("pg", 0.25), ("p6", 3)])
 def test_the_scale_of_a_design_is_scaled_numbers(group: str, factor: float) -> None:
     """The key, `scaled`, and a file with all numbers multiplied by hand give one outline document."""
     curve = [(8.0, 4.0), (12.0, 16.0), (18.0, -2.0), (24.0, 6.0)]
@@ -145,7 +144,7 @@ def test_tolerances_are_not_scaled() -> None:
 
 
 @pytest.mark.parametrize(("key", "side"), [("tile_width", 0), ("tile_height", 1)])
-@pytest.mark.parametrize("group", ["p4", "p4m", "p3"])
+@pytest.mark.parametrize("group", ["p4m", "p3"])
 def test_a_tile_gets_the_size_that_is_asked_for(group: str, key: str, side: int) -> None:
     """The largest tile of several; in the design's units."""
     fitted = vt.starter(group).replace(units="cm").scaled(**{key: 9.5})
