@@ -66,6 +66,8 @@ LONG = {"README.md", "laser.md", "start.md"}
 
 FIXTURES = {
     "README.md": {
+        "leaf.svg": '<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="30mm" viewBox="0 0 40 30">'
+        '<path d="M 4 24 C 4 8 16 4 34 6 C 34 20 22 28 4 24 Z"/></svg>',
         "outline.svg": '<svg xmlns="http://www.w3.org/2000/svg" width="200mm" height="200mm" viewBox="0 0 200 200">'
         '<path d="M 100 180 C 40 130 10 90 20 50 Q 60 0 100 50 Q 140 0 180 50 C 190 90 160 130 100 180 Z"/></svg>',
     },
