@@ -7,6 +7,7 @@ the place of the name, and gives the same tiles when the drawing has changed, or
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -14,6 +15,7 @@ import numpy as np
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.values import Table, shown, text, within
 from voronoi_tiles.designs.art import GUIDE
+from voronoi_tiles.formats.caveats import caveats
 from voronoi_tiles.paths.paths import LINE, Paths
 
 if TYPE_CHECKING:
@@ -57,7 +59,7 @@ class DrawnFiles:
         try:
             drawing = self._read(name, stroke.get("id"))
             self.names.append(name)
-            self._note(name, _remarks(drawing))
+            self._note(caveats(drawing, name))
             self.texts.append(self._text(drawing, name, stroke.get("layer")))
         except DesignError as error:
             line = None if error.line is None else f"line {error.line}"
@@ -80,11 +82,11 @@ class DrawnFiles:
 
         shapes = _chosen(drawing, layer)
         if layer is None and len(shapes) < len(drawing.shapes):
-            self._note(name, [f'what is on the layer "{GUIDE}" is left out, as in art; name it to have it'])
+            self._note([f'{name}: what is on the layer "{GUIDE}" is left out, as in art; name it to have it'])
         outlines, joined = _outlines(shapes)
         if joined:
             many = f"{joined:,} open paths" if joined > 1 else "an open path"
-            self._note(name, [f"the fill of {many} is closed by a straight line; give lines a fill of none"])
+            self._note([f"{name}: the fill of {many} is closed by a straight line; give lines a fill of none"])
         if not len(outlines):
             where = "" if layer is None else f" on the layer {shown(layer)}"
             raise DesignError(
@@ -95,9 +97,9 @@ class DrawnFiles:
         lines = outlines.moved(1.0, -complex(left, bottom)).moved(1.0 / self._unit_mm, 0j, conj=True)
         return path_data(lines)  # which turns y over once more
 
-    def _note(self, name: str, sentences: list[str]) -> None:
-        """Remember what there is to say of a file, once."""
-        self.notes += [note for what in sentences if (note := f"{name}: {what}") not in self.notes]
+    def _note(self, sentences: Iterable[str]) -> None:
+        """Remember what there is to say of files, each sentence once."""
+        self.notes += [note for note in sentences if note not in self.notes]
 
 
 def _file_name(value: object) -> str:
@@ -105,18 +107,6 @@ def _file_name(value: object) -> str:
     if not isinstance(value, str) or not value or "\0" in value:
         raise DesignError(f"must be a file's name, not {shown(value)}", key="file", remedy=FILE_REMEDY)
     return value
-
-
-def _remarks(drawing: ReadDrawing) -> list[str]:
-    """What there is to say of a drawing before anything is chosen."""
-    said = list(drawing.remarks)
-    if not drawing.unit_known and drawing.format == "dxf":
-        said.append("it declares no unit; millimetres were taken")
-    elif not drawing.unit_known:
-        size = "its page has no size" if drawing.width is None else "its page's size has no unit"
-        said.append(f"{size}; 96 user units to the inch were taken, as CSS says")
-    what = ", ".join(f"{name} ({count:,})" for name, count in sorted(drawing.ignored.items()))
-    return [*said, f"left out what is no path: {what}; convert texts to paths"] if what else said
 
 
 def _chosen(drawing: ReadDrawing, layer: str | None) -> list[Shape]:
