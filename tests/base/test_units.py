@@ -9,7 +9,7 @@ import pytest
 
 from voronoi_tiles.base.units import MILLIMETRES, UNIT_MM
 from voronoi_tiles.formats.dxf.drawing_unit import unit_of
-from voronoi_tiles.formats.svg.viewport import length
+from voronoi_tiles.formats.svg.lengths import length
 
 
 def test_the_inch_is_exact() -> None:

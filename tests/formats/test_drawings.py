@@ -23,7 +23,6 @@ from voronoi_tiles.base.units import parse_length, parse_size
 from voronoi_tiles.formats.dxf.loading import entity_count
 from voronoi_tiles.formats.dxf.reader import dxf_drawing
 from voronoi_tiles.formats.reading import DrawingError, ReadDrawing, read_drawing
-from voronoi_tiles.formats.svg.colours import parse_colour
 from voronoi_tiles.formats.svg.reader import svg_drawing
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
 
@@ -171,7 +170,7 @@ def test_styles_layers_and_what_is_not_drawn() -> None:
     assert drawing.shapes[0].stroke_width == 2.0
     assert drawing.shapes[4].paths.bounds == (5.0, 50.0, 6.0, 50.0)
     assert drawing.shapes[5].fill is None
-    assert drawing.ignored == {"image": 1, "nested svg": 1, "text": 1, "use of another file": 1}
+    assert drawing.ignored == {"image": 1, "text": 1, "use of another file": 1}
     assert drawing.clones == 1
 
 
@@ -193,15 +192,6 @@ def test_one_element_of_a_file_can_be_read(tmp_path: Path) -> None:
     assert shape.source == f"LINE {lines[1].dxf.handle}"
     with pytest.raises(DrawingError, match="no entity with the handle 'NONE'"):
         read_drawing(tmp_path / "d.dxf", element="none")
-
-
-def test_colours_are_those_of_another_reader() -> None:
-    """Names and notations, against svgelements."""
-    for text in ("red", "rebeccapurple", "#abc", "#a1b2c3", "rgb(1, 2, 3)", "rgb(10%,20%,100%)", "seagreen"):
-        if text != "rebeccapurple":  # svgelements is older than that name
-            assert parse_colour(text) == svgelements.Color(text).hexrgb
-    assert parse_colour("rebeccapurple") == "#663399"
-    assert parse_colour("nonsense") is None
 
 
 def doubling(levels: int, inner: str) -> str:

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Final
 
 from voronoi_tiles.base.maps import Affine
 from voronoi_tiles.base.tolerance import COORDINATE_MAX
 from voronoi_tiles.formats.pen import Pen
 from voronoi_tiles.formats.shapes import DrawingError
+from voronoi_tiles.formats.svg.lengths import Units, length
 from voronoi_tiles.formats.svg.pathdata import draw_path
 from voronoi_tiles.formats.svg.transforms import numbers
-from voronoi_tiles.formats.svg.viewport import length
 from voronoi_tiles.paths.ellipses import EllipticalArc
 
 DRAWN: Final = frozenset({"path", "rect", "circle", "ellipse", "line", "polyline", "polygon"})
 
 
-def draw_shape(pen: Pen, tag: str, attributes: dict[str, str], view: tuple[float, float]) -> None:
-    """Draw one of DRAWN; `view` is the size that percentages refer to.
+def draw_shape(pen: Pen, tag: str, attributes: Mapping[str, str], view: tuple[float, float], units: Units) -> None:
+    """Draw one of DRAWN; `view` is the size that percentages refer to, `units` what relative units are.
 
     Raises DrawingError for attributes that are broken, and for negative sizes.
     """
@@ -31,26 +32,32 @@ def draw_shape(pen: Pen, tag: str, attributes: dict[str, str], view: tuple[float
         case "polyline" | "polygon":
             _draw_points(pen, attributes.get("points", ""), tag == "polygon")
         case "line":
-            sizes = _Sizes(attributes, view)
+            sizes = _Sizes(attributes, view, units)
             pen.move(complex(sizes.across("x1"), sizes.down("y1")))
             pen.line(complex(sizes.across("x2"), sizes.down("y2")))
         case "rect":
-            _draw_rect(pen, _Sizes(attributes, view))
+            _draw_rect(pen, _Sizes(attributes, view, units))
         case "circle":
-            sizes = _Sizes(attributes, view)
-            radius = sizes.size("r", math.hypot(*view) / math.sqrt(2.0))
+            sizes = _Sizes(attributes, view, units)
+            radius = sizes.size("r", diagonal(view))
             _draw_ellipse(pen, complex(sizes.across("cx"), sizes.down("cy")), radius, radius)
         case _:
-            sizes = _Sizes(attributes, view)
+            sizes = _Sizes(attributes, view, units)
             rx, ry = sizes.radii()
             _draw_ellipse(pen, complex(sizes.across("cx"), sizes.down("cy")), rx, ry)
+
+
+def diagonal(view: tuple[float, float]) -> float:
+    """What percentages refer to that run neither across nor down."""
+    return math.hypot(*view) / math.sqrt(2.0)
 
 
 class _Sizes:
     """The lengths of an element's attributes, in user units; one that is missing is 0."""
 
-    def __init__(self, attributes: dict[str, str], view: tuple[float, float]) -> None:
+    def __init__(self, attributes: Mapping[str, str], view: tuple[float, float], units: Units) -> None:
         self._attributes = attributes
+        self._units = units
         self.view = view
 
     def _length(self, name: str, whole: float) -> float:
@@ -58,7 +65,7 @@ class _Sizes:
         if text is None:
             return 0.0
         try:
-            return length(text, whole)
+            return length(text, whole, self._units)
         except DrawingError as error:
             raise error.under(name) from None
 
@@ -69,15 +76,15 @@ class _Sizes:
         return self._length(name, self.view[1])
 
     def size(self, name: str, whole: float) -> float:
-        """A length that must not be negative."""
-        value = self._length(name, whole)
+        """A length that must not be negative; "auto" is 0."""
+        value = 0.0 if self._attributes.get(name, "").strip().lower() == "auto" else self._length(name, whole)
         if value < 0.0:
             raise DrawingError(f"must not be negative, but is {value:g}", key=name, remedy="Remove the object.")
         return value
 
     def radii(self) -> tuple[float, float]:
         """The radii rx, ry; one that is missing is as the other."""
-        said = [self._attributes.get(name, "auto").strip() != "auto" for name in ("rx", "ry")]
+        said = [self._attributes.get(name, "auto").strip().lower() != "auto" for name in ("rx", "ry")]
         rx = self.size("rx", self.view[0]) if said[0] else 0.0
         ry = self.size("ry", self.view[1]) if said[1] else rx
         return (rx if said[0] else ry), ry

@@ -1,65 +1,117 @@
-"""CSS colours: the names of CSS Color 4, and the notations of a colour in a drawing."""
+"""CSS colours as they are shown on a screen: all notations of CSS Color 4, and those of 5 that need no other file."""
 
 from __future__ import annotations
 
 import re
-from typing import Final
+from functools import lru_cache
+from typing import Final, NamedTuple
 
-_TABLE: Final = """
+from coloraide import Color
 
-aliceblue:f0f8ff antiquewhite:faebd7 aqua:00ffff aquamarine:7fffd4 azure:f0ffff beige:f5f5dc bisque:ffe4c4
-black:000000 blanchedalmond:ffebcd blue:0000ff blueviolet:8a2be2 brown:a52a2a burlywood:deb887 cadetblue:5f9ea0
-chartreuse:7fff00 chocolate:d2691e coral:ff7f50 cornflowerblue:6495ed cornsilk:fff8dc crimson:dc143c cyan:00ffff
-darkblue:00008b darkcyan:008b8b darkgoldenrod:b8860b darkgray:a9a9a9 darkgreen:006400 darkgrey:a9a9a9
-darkkhaki:bdb76b darkmagenta:8b008b darkolivegreen:556b2f darkorange:ff8c00 darkorchid:9932cc darkred:8b0000
-darksalmon:e9967a darkseagreen:8fbc8f darkslateblue:483d8b darkslategray:2f4f4f darkslategrey:2f4f4f
-darkturquoise:00ced1 darkviolet:9400d3 deeppink:ff1493 deepskyblue:00bfff dimgray:696969 dimgrey:696969
-dodgerblue:1e90ff firebrick:b22222 floralwhite:fffaf0 forestgreen:228b22 fuchsia:ff00ff gainsboro:dcdcdc
-ghostwhite:f8f8ff gold:ffd700 goldenrod:daa520 gray:808080 green:008000 greenyellow:adff2f grey:808080
-honeydew:f0fff0 hotpink:ff69b4 indianred:cd5c5c indigo:4b0082 ivory:fffff0 khaki:f0e68c lavender:e6e6fa
-lavenderblush:fff0f5 lawngreen:7cfc00 lemonchiffon:fffacd lightblue:add8e6 lightcoral:f08080 lightcyan:e0ffff
-lightgoldenrodyellow:fafad2 lightgray:d3d3d3 lightgreen:90ee90 lightgrey:d3d3d3 lightpink:ffb6c1 lightsalmon:ffa07a
-lightseagreen:20b2aa lightskyblue:87cefa lightslategray:778899 lightslategrey:778899 lightsteelblue:b0c4de
-lightyellow:ffffe0 lime:00ff00 limegreen:32cd32 linen:faf0e6 magenta:ff00ff maroon:800000 mediumaquamarine:66cdaa
-mediumblue:0000cd mediumorchid:ba55d3 mediumpurple:9370db mediumseagreen:3cb371 mediumslateblue:7b68ee
-mediumspringgreen:00fa9a mediumturquoise:48d1cc mediumvioletred:c71585 midnightblue:191970 mintcream:f5fffa
-mistyrose:ffe4e1 moccasin:ffe4b5 navajowhite:ffdead navy:000080 oldlace:fdf5e6 olive:808000 olivedrab:6b8e23
-orange:ffa500 orangered:ff4500 orchid:da70d6 palegoldenrod:eee8aa palegreen:98fb98 paleturquoise:afeeee
-palevioletred:db7093 papayawhip:ffefd5 peachpuff:ffdab9 peru:cd853f pink:ffc0cb plum:dda0dd powderblue:b0e0e6
-purple:800080 rebeccapurple:663399 red:ff0000 rosybrown:bc8f8f royalblue:4169e1 saddlebrown:8b4513 salmon:fa8072
-sandybrown:f4a460 seagreen:2e8b57 seashell:fff5ee sienna:a0522d silver:c0c0c0 skyblue:87ceeb slateblue:6a5acd
-slategray:708090 slategrey:708090 snow:fffafa springgreen:00ff7f steelblue:4682b4 tan:d2b48c teal:008080
-thistle:d8bfd8 tomato:ff6347 turquoise:40e0d0 violet:ee82ee wheat:f5deb3 white:ffffff whitesmoke:f5f5f5
-yellow:ffff00 yellowgreen:9acd32
+from voronoi_tiles.formats.svg.css_text import arguments_of, function_of
+
+LENGTH_MAX: Final = 400
+"""Longest text that is looked at as a colour; characters. Mixtures of mixtures would be longer."""
+
+
+class Colour(NamedTuple):
+    """A colour "#rrggbb" and its opacity from 0 to 1."""
+
+    rgb: str
+    alpha: float = 1.0
+
+
+BLACK: Final = Colour("#000000")
+
+# What Chromium shows for the system's colours in a light scheme; any visible colour would do.
+_SYSTEM: Final = """
+accentcolor:0075ff accentcolortext:ffffff activetext:ff0000 buttonborder:000000 buttonface:efefef buttontext:000000
+canvas:ffffff canvastext:000000 field:ffffff fieldtext:000000 graytext:808080 highlight:3367d1 highlighttext:ffffff
+linktext:0000ee mark:ffff00 marktext:000000 selecteditem:1967d2 selecteditemtext:ffffff visitedtext:551a8b
+activeborder:000000 activecaption:ffffff appworkspace:ffffff background:ffffff buttonhighlight:efefef
+buttonshadow:efefef captiontext:000000 inactiveborder:000000 inactivecaption:ffffff inactivecaptiontext:808080
+infobackground:ffffff infotext:000000 menu:ffffff menutext:000000 scrollbar:ffffff threeddarkshadow:000000
+threedface:efefef threedhighlight:000000 threedlightshadow:000000 threedshadow:000000 window:ffffff
+windowframe:000000 windowtext:000000
 """
-_NAMES: Final = dict(entry.split(":") for entry in _TABLE.split())
+_SYSTEM_COLOURS: Final = {name: f"#{rgb}" for name, _, rgb in (entry.partition(":") for entry in _SYSTEM.split())}
 
-_RGB: Final = re.compile(r"rgba?\(([^()]{1,100})\)")
+_HEX: Final = re.compile(r"#[0-9a-f]{3,8}")
+_PERCENTAGE: Final = re.compile(r"[+]?([0-9]+(?:\.[0-9]+)?|\.[0-9]+)%")
+_SPACES: Final = frozenset(
+    {"srgb", "srgb-linear", "display-p3", "a98-rgb", "prophoto-rgb", "rec2020", "lab", "oklab", "xyz", "xyz-d50"}
+    | {"xyz-d65", "hsl", "hwb", "lch", "oklch"}
+)
+_HUES: Final = re.compile(r"(shorter|longer|increasing|decreasing) hue")
 
 
-def parse_colour(text: str) -> str | None:
-    """The colour "#rrggbb" of a CSS colour; None where it is no colour that is known here."""
+@lru_cache(maxsize=4096)
+def parse_colour(text: str, current: Colour = BLACK, dark: bool = False) -> Colour | None:
+    """The colour that a text stands for; None where it is none that is known here.
+
+    `current` is what currentColor stands for, `dark` chooses the second of light-dark(). A colour beyond what screens
+    show is clipped channel by channel, as browsers do.
+    """
     word = text.strip().lower()
-    if word in _NAMES:
-        return f"#{_NAMES[word]}"
-    if re.fullmatch(r"#[0-9a-f]+", word):
-        if len(word) in {4, 5}:
-            return "#" + "".join(2 * digit for digit in word[1:4])
-        return word[:7] if len(word) in {7, 9} else None
-    match = _RGB.fullmatch(word)
-    if match is None:
-        return None
-    parts = re.split(r"[\s,/]+", match[1].strip())
-    if len(parts) not in {3, 4}:
-        return None
-    channels = [channel for channel in map(_channel, parts[:3]) if channel is not None]
-    return f"#{bytes(channels).hex()}" if len(channels) == 3 else None
+    if _HEX.fullmatch(word) or len(word) > LENGTH_MAX:
+        return _hexadecimal(word[1:])
+    match function_of(word):
+        case "light-dark":
+            both = [parse_colour(part, current, dark) for part in arguments_of(word)]
+            return both[int(dark)] if len(both) == 2 and None not in both else None
+        case "color-mix":
+            return _mixed(arguments_of(word), current, dark)
+        case "" if word == "currentcolor":
+            return current
+        case "" if word in _SYSTEM_COLOURS:
+            return Colour(_SYSTEM_COLOURS[word])
+    found = Color.match(word, fullmatch=True)
+    return None if found is None else _shown(found.color)
 
 
-def _channel(text: str) -> int | None:
-    """A channel of a colour, "255" or "100%"."""
-    match = re.fullmatch(r"([+-]?[0-9]{1,9}(?:\.[0-9]{0,9})?)(%?)", text)
-    if match is None:
+def _hexadecimal(digits: str) -> Colour | None:
+    """The colour of three, four, six or eight hexadecimal digits."""
+    if len(digits) in {3, 4}:
+        digits = "".join(2 * digit for digit in digits)
+    return Colour(f"#{digits[:6]}", int(digits[6:] or "ff", 16) / 255) if len(digits) in {6, 8} else None
+
+
+def _shown(colour: Color) -> Colour:
+    """A colour in eight bits a channel; what is missing ("none") is 0."""
+    shown = colour.convert("srgb").fit("srgb", method="clip")
+    alpha = shown.alpha(nans=False)
+    return Colour(shown.set("alpha", 1.0).to_string(hex=True, fit=False), min(max(alpha, 0.0), 1.0))
+
+
+def _mixed(parts: list[str], current: Colour, dark: bool) -> Colour | None:
+    """The mixture that color-mix(in space, colour share, colour share) stands for."""
+    space, hue = "oklab", "shorter"
+    if parts and parts[0].startswith("in "):
+        space, _, rest = parts[0].removeprefix("in ").strip().partition(" ")
+        match = _HUES.fullmatch(" ".join(rest.split()))
+        if space not in _SPACES or (rest and match is None):
+            return None
+        hue = match[1] if match else hue
+        parts = parts[1:]
+    colours, shares = [], []
+    for part in parts:
+        words = part.split()
+        share = next((word for word in (words[0], words[-1]) if _PERCENTAGE.fullmatch(word)), None) if words else None
+        colour = parse_colour(part if share is None else part.replace(share, "", 1), current, dark)
+        if colour is None:
+            return None
+        colours.append(Color(colour.rgb).set("alpha", colour.alpha))
+        shares.append(None if share is None else float(share[:-1]) / 100)
+    if len(colours) != 2 or any(share is not None and share > 1.0 for share in shares):
         return None
-    value = float(match[1]) * (2.55 if match[2] else 1.0)
-    return round(min(max(value, 0.0), 255.0))
+    one, two = shares
+    if one is None:
+        one = 1.0 - two if two is not None else 0.5
+    two = 1.0 - one if two is None else two
+    if one + two == 0.0:
+        return None
+    mixture = colours[0].mix(
+        colours[1], two / (one + two), space={"xyz": "xyz-d65"}.get(space, space), hue=hue, powerless=True
+    )
+    shown = _shown(mixture)
+    return shown._replace(alpha=shown.alpha * min(1.0, one + two))

@@ -1,21 +1,28 @@
-"""Reading SVG: what is drawn, in millimetres on the page, y up.
+"""Reading SVG as browsers draw it: what is drawn, in millimetres on the page, y up.
 
-Drawn are path, rect, circle, ellipse, line, polyline and polygon, in groups, under transforms, and through `use`. Text,
-images, nested drawings and what lies outside the file are counted and left out; nothing outside the file is opened.
+Drawn are path, rect, circle, ellipse, line, polyline and polygon, in groups and nested drawings, under transforms, and
+through `use`, as attributes and styles say. Text, images, what lies outside the file and what is not understood are
+counted; nothing outside the file is opened.
 """
 
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Mapping
+from functools import partial
 from typing import Final, NamedTuple
 
-from voronoi_tiles.base.maps import Affine
+from voronoi_tiles.base.maps import IDENTITY_MAP, Affine
 from voronoi_tiles.formats.pen import Pen
 from voronoi_tiles.formats.shapes import DEPTH_MAX, VISITS_MAX, Dots, DrawingError, ReadDrawing, Shape
-from voronoi_tiles.formats.svg.basic_shapes import DRAWN, draw_shape
-from voronoi_tiles.formats.svg.style import Style, StyleSheet, inherited, properties
-from voronoi_tiles.formats.svg.transforms import parse_transform
-from voronoi_tiles.formats.svg.viewport import Page, length, read_page, view_box, viewport
+from voronoi_tiles.formats.svg.basic_shapes import DRAWN, diagonal, draw_shape
+from voronoi_tiles.formats.svg.cascade import Cascade, Declarations
+from voronoi_tiles.formats.svg.conditions import applies, first_that_applies
+from voronoi_tiles.formats.svg.lengths import Units, length
+from voronoi_tiles.formats.svg.placing import placed
+from voronoi_tiles.formats.svg.properties import EFFECTS, MARKERS, opacity
+from voronoi_tiles.formats.svg.style import Style, inherited
+from voronoi_tiles.formats.svg.viewport import Clip, Page, read_page, view_box, viewport
 from voronoi_tiles.formats.svg.xml_tree import Node, parse_tree
 
 SVG: Final = "http://www.w3.org/2000/svg "
@@ -23,22 +30,18 @@ XLINK: Final = "http://www.w3.org/1999/xlink "
 INKSCAPE: Final = "http://www.inkscape.org/namespaces/inkscape "
 
 _GROUPS: Final = frozenset({"g", "a", "switch"})
+_VIEWPORTS: Final = frozenset({"svg", "symbol"})
 # What SVG itself does not draw where it stands.
 _NOT_HERE: Final = """
     defs symbol clipPath mask marker pattern linearGradient radialGradient filter metadata title desc style view
     cursor color-profile font font-face solidcolor meshgradient hatch
 """
 _SILENT: Final = frozenset(_NOT_HERE.split())
-# What changes how an object looks, and is not followed.
-_EFFECTS: Final = (
-    "clip-path",
-    "mask",
-    "transform-origin",
-    "stroke-dasharray",
-    "marker-start",
-    "marker-mid",
-    "marker-end",
-)
+_SERVERS: Final = frozenset({"pattern", "linearGradient", "radialGradient", "solidcolor", "meshgradient", "hatch"})
+_ANIMATIONS: Final = frozenset({"animate", "animateMotion", "animateTransform", "set"})
+# What means that there is no effect.
+_WITHOUT: Final = frozenset({"none", "normal", "auto", "1", "100%"})
+_MARKED: Final = frozenset({"path", "line", "polyline", "polygon"})
 
 
 def svg_drawing(data: bytes, file: str, element: str | None = None) -> ReadDrawing:
@@ -52,11 +55,7 @@ def svg_drawing(data: bytes, file: str, element: str | None = None) -> ReadDrawi
     tag = _tag(root)
     if tag != "svg":
         raise DrawingError(f"no SVG drawing: its root is <{root.tag.rpartition(' ')[2][:40]}>", file=file)
-    try:
-        page = read_page(root.attributes)
-    except DrawingError as error:
-        raise _at(error, root, file) from None
-    return _SvgWalk(root, page, file, element).drawing()
+    return _SvgWalk(root, file, element).drawing()
 
 
 def _tag(node: Node) -> str:
@@ -87,28 +86,21 @@ class _SvgVisit(NamedTuple):
     depth: int
     users: frozenset[int]  # the clones around it, by their targets: a clone of one of them is a circle
     chosen: bool  # whether it is the element that is asked for, or stands in it
-    symbol_size: tuple[str | None, str | None] | None = None
-
-
-def _transformed(visit: _SvgVisit) -> Affine:
-    """The map to the page from the coordinates inside an element."""
-    text = visit.node.attributes.get("transform")
-    to_page = visit.to_page if text is None else visit.to_page @ parse_transform(text)
-    if not abs(to_page.c) < float("inf"):
-        raise DrawingError("transforms beyond all measure", remedy="Draw in units that keep numbers small.")
-    return to_page
+    view: tuple[float, float]  # what percentages refer to
+    clips: tuple[Clip, ...] = ()
+    faded: bool = False  # whether an opacity of 0 hides it
+    size: tuple[str | None, str | None] | None = None  # width and height of the clone that draws it
 
 
 class _SvgWalk:
     """Draws a tree, with its own stack: the depth of a file is no depth of calls."""
 
-    def __init__(self, root: Node, page: Page, file: str, element: str | None) -> None:
+    def __init__(self, root: Node, file: str, element: str | None) -> None:
         self._root = root
         self._element = element
-        self._page = page
         self._file = file
         self._pen = Pen()
-        self._sheet = StyleSheet()
+        self._cascade = Cascade(root)
         self._targets: dict[str, Node] = {}
         self._ignored: Counter[str] = Counter()
         self._drawn: list[_SvgVisit] = []
@@ -118,15 +110,12 @@ class _SvgWalk:
     def drawing(self) -> ReadDrawing:
         """All that is drawn."""
         self._index()
-        page = self._page
-        # y is turned about the page's height; a file without one keeps the origin where it is.
-        to_page = Affine(0j, 1 + 0j, complex(0.0, page.height or 0.0)) @ page.to_page
         if self._element is not None and self._element not in self._targets:
             raise self._no_element(self._element)
-        chosen = self._element in {None, self._root.attributes.get("id")}
-        self._push_children(
-            _SvgVisit(self._root, to_page, self._style(self._root, Style()), "", 0, frozenset(), chosen)
-        )
+        try:
+            page = self._begin()
+        except DrawingError as error:
+            raise _at(error, self._root, self._file) from None
         visits = 0
         while self._stack:
             visit = self._stack.pop()
@@ -142,9 +131,9 @@ class _SvgWalk:
                 self._visit(visit)
             except DrawingError as error:
                 raise _at(error, visit.node, self._file) from None
-        if self._sheet.unread:
-            self._ignored["style rule"] += self._sheet.unread
         shapes, dots = self._shapes()
+        if self._cascade.unread:
+            self._ignored["style rule"] += self._cascade.unread
         return ReadDrawing(
             format="svg",
             width=page.width,
@@ -157,6 +146,27 @@ class _SvgWalk:
             dots=dots,
         )
 
+    def _begin(self) -> Page:
+        """Read the page, and have what it holds drawn."""
+        root = self._root
+        said = self._cascade.declared(root)
+        said.note = partial(self._leave_out, True)
+        style = inherited(Style(), said, self._is_server)
+        page = read_page(said.geometry(), style.units, said.note)
+        em = style.units.em
+        style = style._replace(units=Units(em, em, page.window))
+        # y is turned about the page's height; a file without one keeps the origin where it is.
+        to_page = Affine(0j, 1 + 0j, complex(0.0, page.height or 0.0)) @ page.to_page
+        chosen = self._element in {None, root.attributes.get("id")}
+        visit = _SvgVisit(root, to_page, style, "", 0, frozenset(), chosen, page.view)
+        said.note = partial(self._leave_out, chosen)
+        self._note_effects(visit, said)
+        if placed(said, page.view, style.units, None) != IDENTITY_MAP:
+            said.note("transform of the page")
+        if not _is("none", said, "display"):
+            self._push(visit._replace(faded=_is_faded(said)), root.children)
+        return page
+
     def _shapes(self) -> tuple[tuple[Shape, ...], tuple[Dots, ...]]:
         """The shapes that were drawn, and what has no size."""
         try:
@@ -166,20 +176,25 @@ class _SvgWalk:
         shapes, dots = [], []
         for visit, (paths, places) in zip(self._drawn, drawn, strict=True):
             node, style = visit.node, visit.style
+            source = _source(node, _tag(node))
+            shown = (style.stroke_shown, style.fill_shown)
+            stroke, fill = (None if paint is None else paint.rgb for paint in shown)
             if len(places):
-                dots.append(Dots(places, visit.layer, style.stroke, _source(node, _tag(node))))
+                dots.append(Dots(places, visit.layer, stroke, source))
             if not len(paths):
                 continue
-            try:
-                width = abs(length(style.width, self._page.view[0])) * visit.to_page.scale
-            except DrawingError as error:
-                raise _at(error.under("stroke-width"), node, self._file) from None
-            shapes.append(Shape(paths, visit.layer, style.stroke, style.fill, width, _source(node, _tag(node))))
+            held = [clip.holds(paths) for clip in visit.clips]
+            if not all(held):
+                self._ignored["clip of a nested svg"] += 1
+            if False in held:
+                continue
+            width = style.width.of(diagonal(visit.view)) * visit.to_page.scale
+            shapes.append(Shape(paths, visit.layer, stroke, fill, width, source))
         return tuple(shapes), tuple(dots)
 
-    def _leave_out(self, visit: _SvgVisit, what: str) -> None:
+    def _leave_out(self, chosen: bool, what: str) -> None:
         """Count what is not read."""
-        self._ignored[what] += visit.chosen
+        self._ignored[what] += chosen
 
     def _no_element(self, name: str) -> DrawingError:
         """The error for an id that the file has not."""
@@ -195,18 +210,19 @@ class _SvgWalk:
             if "id" in node.attributes:
                 self._targets.setdefault(node.attributes["id"], node)
             if _tag(node) == "style":
-                self._sheet.add(node.text)
+                try:
+                    self._cascade.add_sheet(node)
+                except DrawingError as error:
+                    raise _at(error, node, self._file) from None
             todo.extend(reversed(node.children))
 
-    def _style(self, node: Node, parent: Style) -> Style:
-        return inherited(parent, properties(node, _tag(node), self._sheet))
+    def _is_server(self, name: str) -> bool:
+        """Whether the file has a gradient or a pattern of this name."""
+        return name in self._targets and _tag(self._targets[name]) in _SERVERS
 
-    def _push_children(self, visit: _SvgVisit) -> None:
-        """Have the children drawn next, in their order."""
-        self._stack.extend(
-            visit._replace(node=child, depth=visit.depth + 1, symbol_size=None)
-            for child in reversed(visit.node.children)
-        )
+    def _push(self, visit: _SvgVisit, nodes: list[Node]) -> None:
+        """Have elements drawn next, in their order, as children of one."""
+        self._stack.extend(visit._replace(node=node, depth=visit.depth + 1, size=None) for node in reversed(nodes))
 
     def _visit(self, visit: _SvgVisit) -> None:
         """Draw one element, or have its content drawn."""
@@ -216,80 +232,161 @@ class _SvgWalk:
         tag = _tag(node)
         if not visit.chosen and node.attributes.get("id") == self._element:
             visit = visit._replace(chosen=True)
-        if tag == "symbol" and visit.symbol_size is not None:
-            self._symbol(visit)
+        is_viewport = tag == "svg" or (tag == "symbol" and visit.size is not None)
+        if not tag or (tag in _SILENT and not is_viewport) or not applies(node):
             return
-        if not tag or tag in _SILENT:
+        said = self._cascade.declared(node)
+        said.note = partial(self._leave_out, visit.chosen)
+        if _is("none", said, "display"):
             return
-        said = properties(node, tag, self._sheet)
-        if said.get("display") == "none":
+        if tag not in DRAWN and tag not in _GROUPS and tag != "use" and not is_viewport:
+            said.note(tag[:40])
             return
-        if tag not in DRAWN and tag not in _GROUPS and tag != "use":
-            self._leave_out(visit, "nested svg" if tag == "svg" else tag[:40])
-            return
-        for effect in _EFFECTS:
-            if node.attributes.get(effect, "none") != "none":
-                self._leave_out(visit, effect)
-        visit = visit._replace(to_page=_transformed(visit), style=inherited(visit.style, said))
+        style = inherited(visit.style, said, self._is_server)
+        visit = visit._replace(style=style, faded=visit.faded or _is_faded(said))
+        self._note_effects(visit, said)
         if tag in DRAWN:
-            self._draw(visit, tag)
-        elif tag == "use":
-            self._use(visit)
+            self._draw(visit, said, tag)
+            return
+        visit = visit._replace(to_page=visit.to_page @ placed(said, visit.view, style.units, None))
+        if tag == "use":
+            self._use(visit, said)
+        elif is_viewport:
+            self._viewport(visit, said)
         else:
             if node.attributes.get(f"{INKSCAPE}groupmode") == "layer":
                 visit = visit._replace(layer=node.attributes.get(f"{INKSCAPE}label", node.attributes.get("id", "")))
-            self._push_children(visit)
+            self._push(visit, first_that_applies(node, _is_svg) if tag == "switch" else node.children)
 
-    def _draw(self, visit: _SvgVisit, tag: str) -> None:
+    def _note_effects(self, visit: _SvgVisit, said: Declarations) -> None:
+        """Count the effects of an element, which are not followed."""
+        for effect in EFFECTS:
+            if effect in said.names and (said.own(effect) or "none").lower().split()[0] not in _WITHOUT:
+                said.note(effect)
+        tag = _tag(visit.node)
+        if tag in DRAWN or tag == "use":
+            for child in visit.node.children:
+                if _tag(child) in _ANIMATIONS:
+                    said.note(_tag(child))
+
+    def _draw(self, visit: _SvgVisit, said: Declarations, tag: str) -> None:
         """Draw a shape; one that nobody sees, or that a transform flattens to nothing, is left out."""
-        if not visit.chosen or not visit.style.visible or (visit.style.stroke is None and visit.style.fill is None):
+        style = visit.style
+        if not visit.chosen or not style.visible or (style.stroke is None and style.fill is None):
             return
-        if visit.to_page.scale == 0.0:
+        stroke, fill = style.stroke_shown, style.fill_shown
+        if visit.faded or (stroke is None and fill is None):
+            if style.shown(style.stroke, 1.0) or style.shown(style.fill, 1.0):
+                said.note("invisible object")
             return
-        self._pen.begin(visit.to_page)
-        draw_shape(self._pen, tag, visit.node.attributes, self._page.view)
-        self._drawn.append(visit)
+        attributes = said.geometry()
 
-    def _use(self, visit: _SvgVisit) -> None:
+        def bounds() -> tuple[float, float, float, float] | None:
+            pen = Pen()
+            pen.begin(IDENTITY_MAP)
+            draw_shape(pen, tag, attributes, visit.view, style.units)
+            (paths,) = pen.shapes()
+            return paths.bounds if len(paths) else None
+
+        to_page = visit.to_page @ placed(said, visit.view, style.units, bounds)
+        if to_page.scale == 0.0:
+            return
+        if stroke is not None and style.dashed:
+            said.note("stroke-dasharray")
+        for name, marked in zip(MARKERS, style.markers, strict=True):
+            if marked and tag in _MARKED:
+                said.note(name)
+        self._pen.begin(to_page)
+        draw_shape(self._pen, tag, attributes, visit.view, style.units)
+        self._drawn.append(visit._replace(to_page=to_page))
+
+    def _use(self, visit: _SvgVisit, said: Declarations) -> None:
         """Have the target of a clone drawn."""
-        attributes = visit.node.attributes
+        attributes = said.geometry()
         target = attributes.get("href", attributes.get(f"{XLINK}href", "")).strip()
         if not target.startswith("#"):
-            self._leave_out(visit, "use of another file" if target else "use of nothing")
+            said.note("use of another file" if target else "use of nothing")
             return
         node = self._targets.get(target[1:])
         if node is None:
-            self._leave_out(visit, "use of nothing")
+            said.note("use of nothing")
             return
         if id(node) in visit.users:
             raise DrawingError(f"the clone {target[:60]!r} contains itself", remedy="Remove it.")
-        across, down = self._page.view
-        shift = complex(length(attributes.get("x", "0"), across), length(attributes.get("y", "0"), down))
+        style = visit.style
         self._clones += visit.chosen
         self._stack.append(
             visit._replace(
                 node=node,
-                to_page=visit.to_page @ Affine(1 + 0j, 0j, shift),
+                to_page=visit.to_page @ _shift(attributes, visit),
+                style=style._replace(used=(style.shown(style.fill, 1.0), style.shown(style.stroke, 1.0))),
                 depth=visit.depth + 1,
                 users=visit.users | {id(node)},
-                symbol_size=(attributes.get("width"), attributes.get("height")),
+                size=(attributes.get("width"), attributes.get("height")),
             )
         )
 
-    def _symbol(self, visit: _SvgVisit) -> None:
-        """Have the content of a symbol drawn, in its own viewport where it has one."""
-        node = visit.node
-        said = properties(node, "symbol", self._sheet)
-        if said.get("display") == "none":
+    def _viewport(self, visit: _SvgVisit, said: Declarations) -> None:
+        """Have the content of a nested drawing or a symbol drawn, in its own viewport."""
+        node, attributes = visit.node, said.geometry()
+        sides = []
+        for name, whole, size in zip(("width", "height"), visit.view, visit.size or (None, None), strict=True):
+            if attributes.get(name) != node.attributes.get(name):
+                said.note(f"{name} of a nested svg in a style")  # Chromium and Firefox do not agree on it
+            text = size or node.attributes.get(name) or "100%"
+            sides.append(length("100%" if text.strip() == "auto" else text, whole, visit.style.units))
+        across, down = sides
+        box = view_box(node.attributes, nested=True)
+        if min(sides) <= 0.0 or (box is not None and min(box[2:]) <= 0.0):
             return
-        to_page = _transformed(visit)
-        box = view_box(node.attributes)
-        if box is not None and visit.symbol_size is not None:
-            size = [
-                length(said_size or node.attributes.get(name) or "100%", whole)
-                for said_size, name, whole in zip(visit.symbol_size, ("width", "height"), self._page.view, strict=True)
-            ]
-            if min(size) <= 0.0:
-                return
-            to_page = to_page @ viewport(box, (size[0], size[1]), node.attributes.get("preserveAspectRatio", ""))
-        self._push_children(visit._replace(to_page=to_page, style=inherited(visit.style, said)))
+        to_page = visit.to_page @ _shift(attributes, visit)
+        clips, view = visit.clips, (across, down)
+        if (said.own("overflow") or "hidden").lower().split()[0] not in {"visible", "auto"}:
+            clips = (*clips, Clip(to_page, view))
+        if box is not None:
+            to_page = to_page @ viewport(box, view, node.attributes.get("preserveAspectRatio", ""))
+            view = box[2:]
+        self._push(visit._replace(to_page=to_page, clips=clips, view=view), node.children)
+
+
+def _tag(node: Node) -> str:
+    """The name of an SVG element, "" for those of other namespaces; files without a namespace are taken as SVG."""
+    if node.tag.startswith(SVG):
+        return node.tag[len(SVG) :]
+    return "" if " " in node.tag else node.tag
+
+
+def _is_svg(node: Node) -> bool:
+    """Whether it is an element of SVG."""
+    return _tag(node) != ""
+
+
+def _at(error: DrawingError, node: Node, file: str) -> DrawingError:
+    """The same error with its file and line."""
+    return DrawingError(error.message, file=file, key=error.key, line=node.line, remedy=error.remedy)
+
+
+def _source(node: Node, tag: str) -> str:
+    """What messages call an object."""
+    name = node.attributes.get("id")
+    return f"{tag} {name[:80]!r}, line {node.line}" if name else f"{tag}, line {node.line}"
+
+
+def _is(word: str, said: Declarations, name: str) -> bool:
+    """Whether a property that is not inherited has this value."""
+    return name in said.names and (said.own(name) or "").lower() == word
+
+
+def _is_faded(said: Declarations) -> bool:
+    """Whether an opacity of 0 hides an element."""
+    value = said.own("opacity") if "opacity" in said.names else None
+    return value is not None and opacity(value) == 0.0
+
+
+def _shift(attributes: Mapping[str, str], visit: _SvgVisit) -> Affine:
+    """The translation by x and y."""
+    x, y = (
+        length(attributes.get(name, "0"), whole, visit.style.units)
+        for name, whole in zip(("x", "y"), visit.view, strict=True)
+    )
+    return Affine(1 + 0j, 0j, complex(x, y))

@@ -1,150 +1,194 @@
-"""What CSS says of an object's strokes and fill: presentation attributes, simple style sheets, style attributes."""
+"""How an object is painted: the properties that elements hand on to what they hold."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator
-from dataclasses import dataclass, field
-from typing import Final, NamedTuple
+from collections.abc import Callable, Mapping
+from typing import Final, Literal, NamedTuple
 
-from voronoi_tiles.formats.shapes import DrawingError
-from voronoi_tiles.formats.svg.colours import parse_colour
-from voronoi_tiles.formats.svg.xml_tree import Node
+from voronoi_tiles.formats.svg.cascade import Declarations
+from voronoi_tiles.formats.svg.colours import BLACK, Colour, parse_colour
+from voronoi_tiles.formats.svg.css_text import words
+from voronoi_tiles.formats.svg.lengths import Measure, Units, parse_measure
+from voronoi_tiles.formats.svg.properties import INHERITED, MARKERS, SIZES, opacity, paint_fallback
 
-WORK_MAX: Final = 2_000_000
-"""Most rules that are looked at for all elements; a count. Two seconds' work."""
+SUBSTITUTE: Final = Colour("#808080")
+"""What stands for gradients, patterns, and paint that is not understood."""
 
-PROPERTIES: Final = frozenset({"stroke", "fill", "stroke-width", "display", "visibility", "color"})
-
-_COMMENT: Final = re.compile(r"/\*.*?(?:\*/|\Z)", re.DOTALL)
-_SELECTOR: Final = re.compile(r"(\*|[A-Za-z][\w-]*)?((?:[.#][\w-]+)*)")
-_NONE: Final = frozenset({"none", "transparent"})
+Paint = Colour | Literal["current"] | None
+"""A colour, that of the property `color`, or no paint."""
 
 
 class Style(NamedTuple):
-    """The inherited properties: colours "#rrggbb" or None, `width` as text in the object's own units."""
+    """The inherited properties; `width` may be a share, `used` is the paint of the clone around: fill, stroke."""
 
-    stroke: str | None = None
-    fill: str | None = "#000000"
-    width: str = "1"
+    stroke: Paint = None
+    fill: Paint = BLACK
+    stroke_opacity: float = 1.0
+    fill_opacity: float = 1.0
+    width: Measure = Measure(1.0)
+    dashed: bool = False
+    markers: tuple[bool, bool, bool] = (False, False, False)
     visible: bool = True
-    colour: str = "#000000"
+    colour: Colour = BLACK
+    dark: bool = False
+    units: Units = Units()
+    custom: Mapping[str, str] = {}
+    used: tuple[Paint, Paint] | None = None
+
+    def shown(self, paint: Paint, share: float) -> Colour | None:
+        """A paint as it is seen; None where it is not."""
+        colour = self.colour if paint == "current" else paint
+        return None if colour is None or colour.alpha * share == 0.0 else colour
+
+    @property
+    def stroke_shown(self) -> Colour | None:
+        """The stroke's colour, None where there is none or it cannot be seen."""
+        return self.shown(self.stroke, self.stroke_opacity)
+
+    @property
+    def fill_shown(self) -> Colour | None:
+        """The fill's colour, None where there is none or it cannot be seen."""
+        return self.shown(self.fill, self.fill_opacity)
 
 
-class _Selector(NamedTuple):
-    tag: str
-    names: frozenset[str]  # ".class" and "#id"
+def inherited(parent: Style, said: Declarations, is_server: Callable[[str], bool]) -> Style:
+    """The style of an element from its parent's and from what is declared for it.
 
-
-@dataclass
-class StyleSheet:
-    """The rules of all style sheets; `unread` counts those with selectors or at-rules that are not understood."""
-
-    rules: list[tuple[tuple[int, int, int], _Selector, dict[str, str]]] = field(default_factory=list)
-    unread: int = 0
-    _keyed: dict[str, list[int]] = field(default_factory=dict)
-    _known: dict[tuple[str, frozenset[str]], dict[str, str]] = field(default_factory=dict)
-    _named: set[str] = field(default_factory=set)
-    _work: int = 0
-
-    def add(self, text: str) -> None:
-        """Read a style sheet: rules for elements, classes and ids, and lists of them."""
-        text = _COMMENT.sub(" ", text).replace("<!--", " ").replace("-->", " ")
-        for rule in text.split("}"):
-            selectors, brace, body = rule.partition("{")
-            declarations = dict(_declarations(body.rpartition("{")[2]))
-            if not brace or not declarations:
-                continue
-            if "{" in body:  # a condition, such as @media, about the rule
-                self.unread += 1
-                continue
-            for part in selectors.rpartition(";")[2].split(","):
-                selector = _SELECTOR.fullmatch(part.strip())
-                if selector is None or not part.strip():
-                    self.unread += 1
-                    continue
-                tag = "" if selector[1] in {None, "*"} else selector[1]
-                names = frozenset(re.findall(r"[.#][\w-]+", selector[2]))
-                ids = sum(name.startswith("#") for name in names)
-                weight = (ids, len(names) - ids, int(bool(tag)))
-                # Rules are found by one of their names, so that many rules and many objects are no product.
-                self._keyed.setdefault(min(names, default=tag), []).append(len(self.rules))
-                self.rules.append((weight, _Selector(tag, names), declarations))
-                self._named |= names
-
-    def declared(self, tag: str, attributes: dict[str, str]) -> dict[str, str]:
-        """What the rules declare for an element.
-
-        Raises DrawingError when more than WORK_MAX rules have been looked at for all elements.
-        """
-        if not self.rules:
-            return {}
-        names = {f".{name}" for name in attributes.get("class", "").split()}
-        if "id" in attributes:
-            names.add(f"#{attributes['id']}")
-        key = tag, frozenset(names & self._named)
-        if key not in self._known:
-            found = [number for name in (*key[1], tag, "") for number in self._keyed.get(name, ())]
-            self._work += len(found)
-            if self._work > WORK_MAX:
-                raise DrawingError("its style sheets are too large", remedy="Save it as plain SVG.")
-            result: dict[str, str] = {}
-            for number in sorted(found, key=lambda n: (self.rules[n][0], n)):
-                _, selector, declarations = self.rules[number]
-                if selector.tag in {"", tag} and selector.names <= names:
-                    result.update(declarations)
-            self._known[key] = result
-        return self._known[key]
-
-
-def properties(node: Node, tag: str, sheet: StyleSheet) -> dict[str, str]:
-    """What is said of an element itself, by the order of CSS; the keys are those of PROPERTIES."""
-    attributes = node.attributes
-    said = {name: value for name, value in attributes.items() if name in PROPERTIES}
-    said.update(sheet.declared(tag, attributes))
-    if "style" in attributes:
-        said.update(_declarations(attributes["style"]))
-    return said
-
-
-def _declarations(text: str) -> Iterator[tuple[str, str]]:
-    """The declarations "name: value; ..." of PROPERTIES."""
-    for part in text.split(";"):
-        name, colon, value = part.partition(":")
-        if colon and name.strip() in PROPERTIES:
-            yield name.strip(), value.replace("!important", "").strip()
-
-
-def inherited(parent: Style, said: dict[str, str]) -> Style:
-    """The style of an element from its parent's and from what is said of itself."""
-    if not said:
-        return parent
-    colour = _paint(said.get("color"), parent.colour, parent.colour) or parent.colour
-    return Style(
-        stroke=_paint(said.get("stroke"), parent.stroke, colour),
-        fill=_paint(said.get("fill"), parent.fill, colour),
-        width=said.get("stroke-width", "inherit").replace("inherit", parent.width),
-        visible=_visible(said.get("visibility"), parent.visible),
-        colour=colour,
+    `is_server` tells whether the file has a gradient or pattern of a name. Raises DrawingError for styles beyond the
+    limits.
+    """
+    custom = said.inherit_custom(parent.custom)
+    names = said.names & INHERITED
+    if not names:
+        return parent if custom is parent.custom else parent._replace(custom=custom)
+    style = parent._replace(custom=custom)
+    # The size of the font and the colour come first: others refer to them.
+    style = style._replace(units=_with_font(style, said))
+    scheme = said.value("color-scheme")
+    if scheme is not None and scheme != "inherit":
+        style = style._replace(dark=scheme.lower().split()[:1] == ["dark"])
+    style = style._replace(colour=_colour(style, said))
+    stroke = _paint("stroke", parent.stroke, Style().stroke, style, said, is_server)
+    fill = _paint("fill", parent.fill, Style().fill, style, said, is_server)
+    return style._replace(
+        stroke=stroke,
+        fill=fill,
+        stroke_opacity=_opacity("stroke-opacity", parent.stroke_opacity, said),
+        fill_opacity=_opacity("fill-opacity", parent.fill_opacity, said),
+        width=_width(style, said),
+        dashed=_dashed(style, said),
+        markers=_markers(parent.markers, said),
+        visible=_visible(parent.visible, said),
     )
 
 
-def _paint(text: str | None, before: str | None, current: str) -> str | None:
-    """A stroke or fill; what is no colour leaves that of the parent, as CSS says. A gradient or pattern is grey."""
-    if text is None or text == "inherit":
+def _inherits(value: str) -> bool:
+    return value.lower() in {"inherit", "unset", "revert"}
+
+
+def _with_font(style: Style, said: Declarations) -> Units:
+    """The units, `em` being the size of the element's font."""
+    value = said.value("font-size")
+    em = style.units.em
+    if value is None or _inherits(value):
+        return style.units
+    word = value.strip().lower()
+    if word in {"larger", "smaller"}:
+        size = em * 1.2 if word == "larger" else em / 1.2
+    elif word in SIZES or word == "initial":
+        size = SIZES.get(word, SIZES["medium"])
+    else:
+        measure = parse_measure(value, style.units)
+        size = measure.of(em) if measure is not None else em
+    return style.units._replace(em=size)
+
+
+def _colour(style: Style, said: Declarations) -> Colour:
+    value = said.value("color")
+    if value is None or _inherits(value):
+        return style.colour
+    found = BLACK if value.lower() == "initial" else parse_colour(value, style.colour, style.dark)
+    return found or style.colour
+
+
+def _paint(
+    name: Literal["stroke", "fill"],
+    before: Paint,
+    initial: Paint,
+    style: Style,
+    said: Declarations,
+    is_server: Callable[[str], bool],
+) -> Paint:
+    """A stroke or fill. What is not understood is never invisible: SUBSTITUTE stands for it."""
+    value, _, doubtful = said.found(name)
+    word = "inherit" if value is None else value.strip().lower()
+    paint: Paint
+    if _inherits(word):
+        paint = before
+    elif word == "initial":
+        paint = initial
+    elif word == "none":
+        paint = None
+    elif word == "currentcolor":
+        paint = "current"
+    elif word in {"context-fill", "context-stroke"}:
+        paint = None if style.used is None else style.used[word == "context-stroke"]
+    elif word.startswith("url("):
+        paint = _server(value or "", style, said, is_server)
+    else:
+        paint = parse_colour(word, style.colour, style.dark)
+    return SUBSTITUTE if doubtful and style.shown(paint, 1.0) is None else paint
+
+
+def _server(value: str, style: Style, said: Declarations, is_server: Callable[[str], bool]) -> Paint:
+    """What stands for a gradient or a pattern; where there is none, the colour that is given for that case."""
+    url, rest = words(value)[0], paint_fallback(value)
+    name = url[4:-1].strip("\"' ")
+    if is_server(name.removeprefix("#")):
+        return SUBSTITUTE
+    if rest is None:
+        said.note(f"paint {url[:40]!r}")
+        return SUBSTITUTE
+    return None if rest.lower() == "none" else parse_colour(rest, style.colour, style.dark)
+
+
+def _opacity(name: str, before: float, said: Declarations) -> float:
+    value = said.value(name)
+    if value is None or _inherits(value):
         return before
-    word = text.lower()
-    if word in _NONE:
-        return None
-    if word == "currentcolor":
-        return current
-    if word.startswith("url("):
-        rest = text.rpartition(")")[2].strip()
-        return None if rest.lower() in _NONE else parse_colour(rest) or "#808080"
-    return parse_colour(text) or before
+    share = opacity(value)
+    return 1.0 if share is None else share
 
 
-def _visible(text: str | None, before: bool) -> bool:
-    if text in {"visible", "hidden", "collapse"}:
-        return text == "visible"
-    return before
+def _width(style: Style, said: Declarations) -> Measure:
+    value = said.value("stroke-width")
+    if value is None or _inherits(value):
+        return style.width
+    if value.lower() == "hairline":
+        return Measure(0.0)
+    return parse_measure(value, style.units) or Measure(1.0)
+
+
+def _dashed(style: Style, said: Declarations) -> bool:
+    """Whether a stroke has gaps; dashes of no length at all mean none."""
+    value = said.value("stroke-dasharray")
+    if value is None or _inherits(value):
+        return style.dashed
+    if value.lower() in {"none", "initial"}:
+        return False
+    measures = [parse_measure(word, style.units) for word in words(value)]
+    return any(measure is not None and (measure.pixels > 0.0 or measure.share > 0.0) for measure in measures)
+
+
+def _markers(before: tuple[bool, bool, bool], said: Declarations) -> tuple[bool, bool, bool]:
+    found = list(before)
+    for k, name in enumerate(MARKERS):
+        value = said.value(name)
+        if value is not None and not _inherits(value):
+            found[k] = value.lower() not in {"none", "initial"}
+    return found[0], found[1], found[2]
+
+
+def _visible(before: bool, said: Declarations) -> bool:
+    value = said.value("visibility")
+    return before if value is None or _inherits(value) else value.lower() in {"visible", "initial"}

@@ -1,30 +1,26 @@
-"""SVG's lengths and viewports: how user units become millimetres on the page."""
+"""SVG's viewports: how user units become millimetres on the page, and what is cut off at their edges."""
 
 from __future__ import annotations
 
 import math
 import re
-from typing import Final, NamedTuple
+from collections.abc import Mapping
+from typing import NamedTuple
 
 from voronoi_tiles.base.maps import IDENTITY_MAP, Affine, from_matrix
 from voronoi_tiles.base.text import NUMBER
 from voronoi_tiles.base.tolerance import COORDINATE_MAX, NUMBER_MIN
-from voronoi_tiles.base.units import MILLIMETRES
-from voronoi_tiles.formats.shapes import DrawingError
+from voronoi_tiles.formats.shapes import CURVE_ACCURACY, DrawingError
+from voronoi_tiles.formats.svg.cascade import Note
+from voronoi_tiles.formats.svg.lengths import PIXEL, RELATIVE, Units, length, parse_measure
 from voronoi_tiles.formats.svg.transforms import numbers
-
-PIXEL: Final = float(MILLIMETRES["px"])
-"""One CSS pixel; millimetres."""
-
-_UNITS: Final = ("px", "mm", "cm", "in", "pt", "pc", "q")
-_PIXELS: Final = {"": 1.0} | {unit: float(MILLIMETRES[unit] / MILLIMETRES["px"]) for unit in _UNITS}
-_LENGTH: Final = re.compile(rf"({NUMBER})\s*([a-z]*|%)", re.IGNORECASE)
+from voronoi_tiles.paths.paths import Paths
 
 
 class Page(NamedTuple):
     """The page of an SVG file: its size in millimetres, its unit, and the map from its user units, y still down.
 
-    `view` is the size that percentages refer to, in user units.
+    `view` is the size that percentages refer to, in user units; `window` is the page's in pixels, 0 where it has none.
     """
 
     width: float | None
@@ -33,40 +29,29 @@ class Page(NamedTuple):
     unit_known: bool
     to_page: Affine
     view: tuple[float, float]
+    window: tuple[float, float]
 
 
-def length(text: str, whole: float) -> float:
-    """A length in user units (CSS pixels); percentages are of `whole`.
+def read_page(attributes: Mapping[str, str], units: Units, note: Note) -> Page:
+    """The page of the root element; a size that is no length is noted, and as good as none.
 
-    Raises DrawingError for what is no length or is beyond COORDINATE_MAX.
-    """
-    match = _LENGTH.fullmatch(text.strip())
-    unit = match[2].lower() if match else ""
-    if match is None or (unit not in _PIXELS and unit != "%"):
-        raise DrawingError(
-            f"{text[:40]!r} is no length", remedy="Write a number with mm, cm, in, pt, pc, px or no unit."
-        )
-    value = float(match[1]) * (whole / 100 if unit == "%" else _PIXELS[unit])
-    if not abs(value) <= COORDINATE_MAX:
-        raise DrawingError(f"length beyond {COORDINATE_MAX:g}", remedy="Draw in units that keep the numbers small.")
-    return value
-
-
-def read_page(attributes: dict[str, str]) -> Page:
-    """The page of the root element.
-
-    Raises DrawingError where width, height or viewBox are broken, not greater than 0, or not finite.
+    Raises DrawingError where width or height are not greater than 0 or not finite, and where viewBox is broken.
     """
     box = view_box(attributes)
     sides: list[float | None] = []
-    units = []
+    found = []
     for name in ("width", "height"):
         text = attributes.get(name, "").strip()
-        if text in {"", "auto"} or text.endswith("%"):
+        unit = "calc()" if text.endswith(")") else _NUMERAL.sub("", text).strip().lower()
+        if text in {"", "auto"} or unit == "%" or unit.startswith("v"):
+            sides.append(None)
+            continue
+        if parse_measure(text, units) is None:
+            note(f"{name} {text[:40]!r}")
             sides.append(None)
             continue
         try:
-            value = length(text, 0.0)
+            value = length(text, 0.0, units)
         except DrawingError as error:
             raise error.under(name) from None
         if value < NUMBER_MIN:
@@ -74,11 +59,10 @@ def read_page(attributes: dict[str, str]) -> Page:
                 f"must be greater than 0, not {text[:40]}", key=name, remedy='Write the size of the page, "300mm".'
             )
         sides.append(value)
-        match = _LENGTH.fullmatch(text)
-        assert match is not None  # length() has taken it
-        units.append(match[2].lower())
-    unit = units[0] if units else ""
-    known = all(units) and (len(units) == 2 or (len(units) == 1 and box is not None))
+        found.append(unit)
+    unit = found[0] if found else ""
+    known = all(found) and not {*RELATIVE, "calc()"}.intersection(found)
+    known = known and (len(found) == 2 or (len(found) == 1 and box is not None))
     width, height = sides
     if box is not None:
         # A side that is missing follows from the other by the viewBox.
@@ -93,14 +77,23 @@ def read_page(attributes: dict[str, str]) -> Page:
         to_page, view = IDENTITY_MAP, (width or 0.0, height or 0.0)
     scaled = Affine(to_page.a * PIXEL, to_page.b * PIXEL, to_page.c * PIXEL)
     return Page(
-        None if width is None else width * PIXEL, None if height is None else height * PIXEL, unit, known, scaled, view
+        None if width is None else width * PIXEL,
+        None if height is None else height * PIXEL,
+        unit,
+        known,
+        scaled,
+        view,
+        (width or 0.0, height or 0.0),
     )
 
 
-def view_box(attributes: dict[str, str]) -> tuple[float, float, float, float] | None:
+_NUMERAL = re.compile(rf"\A\s*{NUMBER}")
+
+
+def view_box(attributes: Mapping[str, str], *, nested: bool = False) -> tuple[float, float, float, float] | None:
     """The viewBox of an element: x, y, width, height; None where it has none.
 
-    Raises DrawingError where it is broken.
+    Raises DrawingError where it is broken, or empty, unless it is that of a nested drawing, which is not drawn then.
     """
     text = attributes.get("viewBox")
     if text is None:
@@ -108,7 +101,7 @@ def view_box(attributes: dict[str, str]) -> tuple[float, float, float, float] | 
     v = numbers(text)
     if v is None or len(v) != 4 or not all(abs(value) <= COORDINATE_MAX for value in v):
         raise DrawingError(f"{text[:60]!r} is no viewBox", key="viewBox", remedy='Write it as "0 0 300 200".')
-    if min(v[2], v[3]) < NUMBER_MIN:
+    if min(v[2], v[3]) < (0.0 if nested else NUMBER_MIN):
         raise DrawingError(
             f"its width and height must be greater than 0, not {v[2]:g} {v[3]:g}",
             key="viewBox",
@@ -133,3 +126,28 @@ def viewport(box: tuple[float, float, float, float], size: tuple[float, float], 
     if not all(math.isfinite(abs(part)) for part in result):
         raise DrawingError("the viewBox is beyond all measure", key="viewBox", remedy='Write it as "0 0 300 200".')
     return result
+
+
+class Clip(NamedTuple):
+    """A viewport at whose edges is cut off what it holds: a rectangle from the origin, and its map to the page."""
+
+    to_page: Affine
+    size: tuple[float, float]
+
+    def holds(self, paths: Paths) -> bool | None:
+        """Whether paths lie in the viewport; None where its edges cut them, False where nothing of them is left.
+
+        Paths that pass by one of its corners may count as cut.
+        """
+        across, down = self.size
+        corners = [self.to_page(corner) for corner in (0j, complex(across), complex(across, down), complex(0.0, down))]
+        whole = True
+        for end in (corners[1], corners[3]):
+            side = end - corners[0]
+            turn = side.conjugate() / abs(side) if side else 1 + 0j
+            _, low, _, high = paths.moved(turn, 0j).bounds
+            least, most = (pick((corner * turn).imag for corner in corners) for pick in (min, max))
+            if low > most + CURVE_ACCURACY or high < least - CURVE_ACCURACY:
+                return False
+            whole &= low >= least - CURVE_ACCURACY and high <= most + CURVE_ACCURACY
+        return whole or None
