@@ -17,6 +17,7 @@ import pytest
 import shapely
 import svgelements
 from ezdxf.entities import Insert
+from helpers.svg_text import NS, PAGE, svg
 
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.units import parse_length, parse_size
@@ -25,15 +26,6 @@ from voronoi_tiles.formats.dxf.reader import dxf_drawing
 from voronoi_tiles.formats.reading import DrawingError, ReadDrawing, read_drawing
 from voronoi_tiles.formats.svg.reader import svg_drawing
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
-
-NS = 'xmlns="http://www.w3.org/2000/svg" xmlns:xlink="http://www.w3.org/1999/xlink"'
-INKSCAPE = 'xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape"'
-PAGE = 'width="100mm" height="50mm" viewBox="0 0 100 50"'
-
-
-def svg(body: str, page: str = PAGE) -> ReadDrawing:
-    """Read a drawing with this body."""
-    return svg_drawing(f"<svg {NS} {INKSCAPE} {page}>{body}</svg>".encode(), "t.svg")
 
 
 def dxf(draw: Any, version: str = "R2000", units: int = 4) -> ReadDrawing:

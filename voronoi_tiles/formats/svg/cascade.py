@@ -19,6 +19,7 @@ from voronoi_tiles.formats.svg.css_text import check_nesting, split
 from voronoi_tiles.formats.svg.properties import (
     ATTRIBUTES,
     GEOMETRY,
+    INHERITED,
     WIDE,
     Origin,
     Verdict,
@@ -98,6 +99,19 @@ class Declarations:
         """What styles declare, what wins last."""
         return self._sheet.normal, self._style.normal, self._sheet.important, self._style.important
 
+    def paint_key(self) -> tuple[object, ...]:
+        """What the inherited properties of an element depend on, beside its parent's."""
+        attributes = self._attributes
+        return id(self._sheet), id(self._style), *((name, attributes.get(name)) for name in self.names & INHERITED)
+
+    def is_attribute(self, name: str) -> bool:
+        """Whether a property is written as an attribute, and nowhere else."""
+        return name in self._attributes and not any(name in part for part in self._css())
+
+    def attribute(self, name: str) -> str:
+        """The text of an attribute."""
+        return self._attributes[name]
+
     def value(self, name: str) -> str | None:
         """The value of a property that counts, which may be one of WIDE; None where there is none.
 
@@ -111,7 +125,7 @@ class Declarations:
         if value is None or value.lower() not in WIDE:
             return value
         if value.lower() == "inherit":
-            self.note(_called(name, value))
+            self.note(called(name, value))
         return None
 
     def found(self, name: str) -> tuple[str | None, Origin, bool]:
@@ -127,14 +141,14 @@ class Declarations:
                 if word == "revert-layer":
                     continue
                 if text is None:
-                    self.note(_called(name, value))
+                    self.note(called(name, value))
                 if unknown:
-                    self.note(_called(name, passed))
+                    self.note(called(name, passed))
                 return word, origin, unknown or text is None
             judged = verdict(name, text, origin)
             if judged == Verdict.VALID:
                 if unknown:
-                    self.note(_called(name, passed))
+                    self.note(called(name, passed))
                 return text, origin, unknown
             if not passed or (judged == Verdict.UNKNOWN and not unknown):
                 passed = text
@@ -142,7 +156,7 @@ class Declarations:
             if text is not value:  # what var() made counts, or nothing
                 break
         if passed.strip():
-            self.note(_called(name, passed))
+            self.note(called(name, passed))
         return None, Origin.ATTRIBUTE, bool(passed.strip())
 
     def _candidates(self, name: str) -> list[tuple[str, Origin]]:
@@ -183,7 +197,7 @@ def _ignore(_name: str) -> None:
     """Note nothing."""
 
 
-def _called(name: str, value: str) -> str:
+def called(name: str, value: str) -> str:
     """What a value that is not read is called."""
     text = " ".join(value.split())
     shown = text if len(text) <= 40 else f"{text[:37]}..."

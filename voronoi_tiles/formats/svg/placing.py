@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from voronoi_tiles.base.maps import IDENTITY_MAP, Affine
 from voronoi_tiles.formats.shapes import DrawingError
-from voronoi_tiles.formats.svg.cascade import Declarations
+from voronoi_tiles.formats.svg.cascade import Declarations, called
 from voronoi_tiles.formats.svg.lengths import Units
 from voronoi_tiles.formats.svg.properties import MOVING, TRANSFORMS, Origin
 from voronoi_tiles.formats.svg.transforms import (
@@ -18,6 +18,8 @@ from voronoi_tiles.formats.svg.transforms import (
     parse_transform,
     transform_origin,
 )
+
+_OTHERS = TRANSFORMS - {"transform"}
 
 Bounds = Callable[[], tuple[float, float, float, float] | None]
 """Gives the bounds of an element in its own coordinates: least x, least y, greatest x, greatest y."""
@@ -31,9 +33,13 @@ def placed(said: Declarations, view: tuple[float, float], units: Units, bounds: 
     """
     if said.names.isdisjoint(MOVING):
         return IDENTITY_MAP
+    if said.is_attribute("transform") and said.names.isdisjoint(_OTHERS):
+        text = said.attribute("transform")
+        found = parse_transform(text)
+        if found is None:
+            said.note(called("transform", text))
+        return found or IDENTITY_MAP
     text, origin, _ = said.found("transform")
-    if origin == Origin.ATTRIBUTE and said.names.isdisjoint(TRANSFORMS - {"transform"}):
-        return parse_transform(text or "") or IDENTITY_MAP
     box = Box(0j, *view, units)
     if (said.own("transform-box") or "view-box").lower() != "view-box":
         box = _own_box(said, bounds, units) or box

@@ -118,7 +118,7 @@ def verdict(name: str, value: str, origin: Origin) -> Verdict:
 def _judged(name: str, value: str, origin: Origin) -> Verdict:
     if name in GEOMETRY and origin == Origin.ATTRIBUTE:
         return Verdict.VALID  # what is wrong with it is said where it is drawn
-    return _JUDGES[name](value, origin)
+    return _JUDGES[name](value, origin) if value.strip() else Verdict.INVALID
 
 
 _verdict = lru_cache(maxsize=8192)(_judged)
@@ -160,7 +160,10 @@ def _word(*allowed: str) -> Callable[[str, Origin], Verdict]:
 
 
 def _any_word(value: str, _origin: Origin) -> Verdict:
-    return _said(bool(value.strip()), value)
+    return _said(_WORDS.fullmatch(value.strip()) is not None, value)
+
+
+_WORDS: Final = re.compile(r"[A-Za-z-]+(?:\s+[A-Za-z-]+)*")
 
 
 def _share(value: str, _origin: Origin) -> Verdict:
@@ -234,6 +237,9 @@ def _transform(value: str, origin: Origin) -> Verdict:
     return Verdict.INVALID if known else _said(False, value)
 
 
+_EFFECT: Final = re.compile(r"[\w\s.,%+-]+|.*[\w-]+\(.*", re.DOTALL)
+"""What may be the value of an effect: words and numbers, or something with a function."""
+
 _BOX: Final = Box()
 _PLANE: Final = re.compile(r"matrix|(?:translate|scale|skew)[xy]?|rotate|")
 """The transforms that are read in full, and what is no function."""
@@ -259,7 +265,7 @@ _JUDGES: Final[dict[str, Callable[[str, Origin], Verdict]]] = {
     "rotate": lambda value, _: _said(css_rotate(value) is not None, value),
     "scale": lambda value, _: _said(css_scale(value) is not None, value),
     "d": _path,
-    **dict.fromkeys((*EFFECTS, *MARKERS), lambda value, _: Verdict.VALID if value.strip() else Verdict.INVALID),
+    **dict.fromkeys((*EFFECTS, *MARKERS), lambda value, _: _said(_EFFECT.fullmatch(value.strip()) is not None, value)),
     **dict.fromkeys(("x", "y", "cx", "cy"), _length(negative=True)),
     **dict.fromkeys(("width", "height", "rx", "ry"), _length("auto")),
     "r": _length(),

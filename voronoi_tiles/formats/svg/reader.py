@@ -21,7 +21,7 @@ from voronoi_tiles.formats.svg.conditions import applies, first_that_applies
 from voronoi_tiles.formats.svg.lengths import Units, length
 from voronoi_tiles.formats.svg.placing import placed
 from voronoi_tiles.formats.svg.properties import EFFECTS, MARKERS, opacity
-from voronoi_tiles.formats.svg.style import Style, inherited
+from voronoi_tiles.formats.svg.style import Style, Styles
 from voronoi_tiles.formats.svg.viewport import Clip, Page, read_page, view_box, viewport
 from voronoi_tiles.formats.svg.xml_tree import Node, parse_tree
 
@@ -41,6 +41,9 @@ _SERVERS: Final = frozenset({"pattern", "linearGradient", "radialGradient", "sol
 _ANIMATIONS: Final = frozenset({"animate", "animateMotion", "animateTransform", "set"})
 # What means that there is no effect.
 _WITHOUT: Final = frozenset({"none", "normal", "auto", "1", "100%"})
+_FLAT: Final = 1e-7
+"""An object is nothing but a line where a transform makes it so much flatter: what rounding leaves of a scale of 0."""
+
 _MARKED: Final = frozenset({"path", "line", "polyline", "polygon"})
 
 
@@ -101,6 +104,7 @@ class _SvgWalk:
         self._file = file
         self._pen = Pen()
         self._cascade = Cascade(root)
+        self._styles = Styles(self._is_server)
         self._targets: dict[str, Node] = {}
         self._ignored: Counter[str] = Counter()
         self._drawn: list[_SvgVisit] = []
@@ -151,7 +155,7 @@ class _SvgWalk:
         root = self._root
         said = self._cascade.declared(root)
         said.note = partial(self._leave_out, True)
-        style = inherited(Style(), said, self._is_server)
+        style = self._styles.inherited(Style(), said)
         page = read_page(said.geometry(), style.units, said.note)
         em = style.units.em
         style = style._replace(units=Units(em, em, page.window))
@@ -242,7 +246,7 @@ class _SvgWalk:
         if tag not in DRAWN and tag not in _GROUPS and tag != "use" and not is_viewport:
             said.note(tag[:40])
             return
-        style = inherited(visit.style, said, self._is_server)
+        style = self._styles.inherited(visit.style, said)
         visit = visit._replace(style=style, faded=visit.faded or _is_faded(said))
         self._note_effects(visit, said)
         if tag in DRAWN:
@@ -289,7 +293,7 @@ class _SvgWalk:
             return paths.bounds if len(paths) else None
 
         to_page = visit.to_page @ placed(said, visit.view, style.units, bounds)
-        if to_page.scale == 0.0:
+        if to_page.scale <= _FLAT * to_page.largest:
             return
         if stroke is not None and style.dashed:
             said.note("stroke-dasharray")

@@ -16,7 +16,7 @@ from tinycss2.nth import parse_nth
 from voronoi_tiles.formats.shapes import DrawingError
 from voronoi_tiles.formats.svg.xml_tree import Node
 
-WORK_MAX: Final = 2_000_000
+WORK_MAX: Final = 1_000_000
 """Most comparisons of elements with parts of selectors; a count. Some seconds' work."""
 
 TOKENS_MAX: Final = 200
@@ -91,8 +91,8 @@ class Selectors:
                     return True
                 above = None if tree.combinator == ">" else self._place(above)[0]
             return False
-        before = parent.children[max(place - 1, 0) : place] if tree.combinator == "+" else parent.children[:place]
-        return any(self._matches(sibling, tree.left) for sibling in before)
+        first = max(place - 1, 0) if tree.combinator == "+" else 0
+        return any(self._matches(parent.children[k], tree.left) for k in range(first, place))
 
     def _is(self, node: Node, part: Any) -> bool:  # noqa: PLR0911 - one answer for each kind of selector
         """Whether an element is meant by a simple selector."""
@@ -140,8 +140,8 @@ class Selectors:
         if parent is None:
             number = 1
         elif typed:
+            self.count(len(parent.children))
             among = parent.children[place:] if backwards else parent.children[: place + 1]
-            self.count(len(among))
             number = sum(sibling.tag == node.tag for sibling in among)
         else:
             number = len(parent.children) - place if backwards else place + 1

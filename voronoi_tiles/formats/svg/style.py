@@ -51,6 +51,44 @@ class Style(NamedTuple):
         return self.shown(self.fill, self.fill_opacity)
 
 
+class Styles:
+    """The styles of elements; those that say the same in the same place share one.
+
+    `is_server` tells whether the file has a gradient or pattern of a name.
+    """
+
+    def __init__(self, is_server: Callable[[str], bool]) -> None:
+        self._is_server = is_server
+        # With each style what was noted; its parent and declarations are kept, so that no other has their id.
+        self._known: dict[tuple[object, ...], tuple[Style, list[str], Style, Declarations]] = {}
+
+    def inherited(self, parent: Style, said: Declarations) -> Style:
+        """The style of an element from its parent's and from what is declared for it.
+
+        Raises DrawingError for styles beyond the limits.
+        """
+        if not said.names:
+            return parent
+        key = id(parent), *said.paint_key()
+        found = self._known.get(key)
+        if found is None:
+            if len(self._known) >= _KNOWN_MAX:
+                self._known.clear()
+            note, notes = said.note, list[str]()
+            said.note = notes.append
+            found = self._known[key] = inherited(parent, said, self._is_server), notes, parent, said
+            said.note = note
+        style, notes, *_ = found
+        said.custom = style.custom
+        for name in notes:
+            said.note(name)
+        return style
+
+
+_KNOWN_MAX: Final = 4096
+"""Most styles that are kept; a count."""
+
+
 def inherited(parent: Style, said: Declarations, is_server: Callable[[str], bool]) -> Style:
     """The style of an element from its parent's and from what is declared for it.
 
