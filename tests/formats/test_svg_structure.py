@@ -267,6 +267,16 @@ def test_lengths_are_read_in_every_unit(unit: str, number: float, upper: bool) -
     assert shape.paths.bounds[2] == pytest.approx(pixels * 25.4 / 96, rel=1e-9)
 
 
+def test_what_only_a_browser_has_is_said() -> None:
+    """Style sheets of other files, and shares of a page that has no size."""
+    head = '<svg xmlns="http://www.w3.org/2000/svg">'
+    text = f'<?xml-stylesheet href="a.css" type="text/css"?>{head}<rect width="50%" height="9" stroke="red"/></svg>'
+    drawing = svg_drawing(text.encode(), "t.svg")
+    assert drawing.ignored == {"percentage of a page without a size": 1, "style sheet of another file": 1}
+    messages = [finding.message for finding in judge(drawing, "t.svg").findings]
+    assert "1 style sheet of another file: other files are not opened" in messages
+
+
 def test_paint_of_a_clone_is_that_of_the_clone() -> None:
     """Inherited, and as context-stroke, also where the original stands in no paint."""
     drawing = svg(

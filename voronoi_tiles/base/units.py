@@ -41,6 +41,9 @@ MILLIMETRES: Final[dict[str, Fraction]] = {
 }
 """Millimetres in each unit of length, exactly."""
 
+RELATIVE: Final = ("em", "rem", "ex", "ch", "rex", "rch", "cap", "ic", "lh", "rlh", "vw", "vh", "vmin", "vmax")
+"""CSS's units of length that depend on the font or on the window."""
+
 UNIT_MM: Final[dict[Units, float]] = {unit: float(MILLIMETRES[unit]) for unit in get_args(Units)}
 """Millimetres in each unit that designs and options take."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from voronoi_tiles.base.units import RELATIVE
 from voronoi_tiles.formats.shapes import ReadDrawing
 
 
@@ -11,6 +12,8 @@ def unit_caveat(drawing: ReadDrawing) -> str:
         return ""
     if drawing.format == "dxf":
         return drawing.unit_guess
+    if drawing.unit in RELATIVE:
+        return f"the page's size is in {drawing.unit}, which every program takes for another length"
     size = "the page has no size" if drawing.width is None else "the page's size has no unit"
     return f"{size}; 96 user units to the inch were taken, as CSS says, and other programs take 72 or 90"
 

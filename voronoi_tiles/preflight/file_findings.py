@@ -107,6 +107,17 @@ def _left_out(drawing: ReadDrawing) -> Iterator[Finding]:
             message, remedy = f"{count:,} {name}: images are not cut", "Trace them, or remove them."
         elif "another file" in name:
             message, remedy = f"{count:,} {name}: other files are not opened", "Embed them as paths."
+        elif name.startswith("paint "):
+            message = f"{count:,} {name}: not understood; it counts as paint, whatever its colour"
+            remedy = 'Write it as "#rrggbb", or as none.'
+        elif name == "invisible object":
+            message = f"{count:,} {name}{'s' * (count > 1)}: an opacity of 0 hides what many drivers cut; left out here"
+            remedy = "Remove it, or make it visible."
+        elif name == "clip of a nested svg":
+            message = f"{count:,} {name}: objects reach over the edge of a nested drawing, and are not cut off there"
+            remedy = "Cut them off in the drawing, or ungroup it."
+        elif name == "style rule" or name.endswith("'"):
+            message, remedy = f"{count:,} {name}: not read", "Correct it, or save the file as plain SVG."
         else:
             message, remedy = f"{count:,} {name}: not read", "Convert it to paths, or remove it if it is not needed."
         yield Finding("unsupported", "warning", message, remedy, value=float(count))

@@ -11,7 +11,7 @@ from tinycss2.ast import Node as Token
 
 from voronoi_tiles.base.text import NUMBER
 from voronoi_tiles.base.tolerance import COORDINATE_MAX
-from voronoi_tiles.base.units import MILLIMETRES
+from voronoi_tiles.base.units import MILLIMETRES, RELATIVE
 from voronoi_tiles.formats.shapes import DrawingError
 from voronoi_tiles.formats.svg.css_text import check_nesting, split
 
@@ -21,9 +21,6 @@ PIXEL: Final = float(MILLIMETRES["px"])
 _ABSOLUTE: Final = {"": 1.0} | {
     unit: float(MILLIMETRES[unit] / MILLIMETRES["px"]) for unit in ("px", "mm", "cm", "in", "pt", "pc", "q")
 }
-RELATIVE: Final = ("em", "rem", "ex", "ch", "rex", "rch", "cap", "ic", "lh", "rlh", "vw", "vh", "vmin", "vmax")
-"""Units that depend on the font or on the window."""
-
 _LENGTH: Final = re.compile(rf"({NUMBER})\s*([a-z]*|%)", re.IGNORECASE)
 _MATH: Final = frozenset({"calc", "min", "max", "clamp"})
 _IS_MATH: Final = re.compile(r"\s*(?:calc|min|max|clamp)\(", re.IGNORECASE)

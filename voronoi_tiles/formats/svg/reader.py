@@ -18,6 +18,20 @@ from voronoi_tiles.formats.shapes import DEPTH_MAX, VISITS_MAX, Dots, DrawingErr
 from voronoi_tiles.formats.svg.basic_shapes import DRAWN, diagonal, draw_shape
 from voronoi_tiles.formats.svg.cascade import Cascade, Declarations
 from voronoi_tiles.formats.svg.conditions import applies, first_that_applies
+from voronoi_tiles.formats.svg.elements import (
+    ANIMATIONS,
+    GROUPS,
+    INKSCAPE,
+    MARKED,
+    SERVERS,
+    SILENT,
+    SIZED,
+    SVG,
+    XLINK,
+    is_svg,
+    source_of,
+    tag_of,
+)
 from voronoi_tiles.formats.svg.lengths import Units, length
 from voronoi_tiles.formats.svg.placing import placed
 from voronoi_tiles.formats.svg.properties import EFFECTS, MARKERS, opacity
@@ -25,26 +39,11 @@ from voronoi_tiles.formats.svg.style import Style, Styles
 from voronoi_tiles.formats.svg.viewport import Clip, Page, read_page, view_box, viewport
 from voronoi_tiles.formats.svg.xml_tree import Node, parse_tree
 
-SVG: Final = "http://www.w3.org/2000/svg "
-XLINK: Final = "http://www.w3.org/1999/xlink "
-INKSCAPE: Final = "http://www.inkscape.org/namespaces/inkscape "
-
-_GROUPS: Final = frozenset({"g", "a", "switch"})
-_VIEWPORTS: Final = frozenset({"svg", "symbol"})
-# What SVG itself does not draw where it stands.
-_NOT_HERE: Final = """
-    defs symbol clipPath mask marker pattern linearGradient radialGradient filter metadata title desc style view
-    cursor color-profile font font-face solidcolor meshgradient hatch
-"""
-_SILENT: Final = frozenset(_NOT_HERE.split())
-_SERVERS: Final = frozenset({"pattern", "linearGradient", "radialGradient", "solidcolor", "meshgradient", "hatch"})
-_ANIMATIONS: Final = frozenset({"animate", "animateMotion", "animateTransform", "set"})
-# What means that there is no effect.
 _WITHOUT: Final = frozenset({"none", "normal", "auto", "1", "100%"})
+"""The values of effects that mean none."""
+
 _FLAT: Final = 1e-7
 """An object is nothing but a line where a transform makes it so much flatter: what rounding leaves of a scale of 0."""
-
-_MARKED: Final = frozenset({"path", "line", "polyline", "polygon"})
 
 
 def svg_drawing(data: bytes, file: str, element: str | None = None) -> ReadDrawing:
@@ -54,29 +53,16 @@ def svg_drawing(data: bytes, file: str, element: str | None = None) -> ReadDrawi
     Curves keep their kind; arcs of ellipses, and of circles under a transform that makes ellipses of them, become
     cubics within CURVE_ACCURACY. Raises DrawingError for what is broken, hostile or beyond the limits.
     """
-    root = parse_tree(data, file, frozenset({f"{SVG}style", "style"}))
-    tag = _tag(root)
+    root, sheets = parse_tree(data, file, frozenset({f"{SVG}style", "style"}))
+    tag = tag_of(root)
     if tag != "svg":
         raise DrawingError(f"no SVG drawing: its root is <{root.tag.rpartition(' ')[2][:40]}>", file=file)
-    return _SvgWalk(root, file, element).drawing()
-
-
-def _tag(node: Node) -> str:
-    """The name of an SVG element, "" for those of other namespaces; files without a namespace are taken as SVG."""
-    if node.tag.startswith(SVG):
-        return node.tag[len(SVG) :]
-    return "" if " " in node.tag else node.tag
+    return _SvgWalk(root, file, element, Counter({"style sheet of another file": sheets})).drawing()
 
 
 def _at(error: DrawingError, node: Node, file: str) -> DrawingError:
     """The same error with its file and line."""
     return DrawingError(error.message, file=file, key=error.key, line=node.line, remedy=error.remedy)
-
-
-def _source(node: Node, tag: str) -> str:
-    """What messages call an object."""
-    name = node.attributes.get("id")
-    return f"{tag} {name[:80]!r}, line {node.line}" if name else f"{tag}, line {node.line}"
 
 
 class _SvgVisit(NamedTuple):
@@ -98,7 +84,7 @@ class _SvgVisit(NamedTuple):
 class _SvgWalk:
     """Draws a tree, with its own stack: the depth of a file is no depth of calls."""
 
-    def __init__(self, root: Node, file: str, element: str | None) -> None:
+    def __init__(self, root: Node, file: str, element: str | None, ignored: Counter[str]) -> None:
         self._root = root
         self._element = element
         self._file = file
@@ -106,7 +92,7 @@ class _SvgWalk:
         self._cascade = Cascade(root)
         self._styles = Styles(self._is_server)
         self._targets: dict[str, Node] = {}
-        self._ignored: Counter[str] = Counter()
+        self._ignored = ignored
         self._drawn: list[_SvgVisit] = []
         self._clones = 0
         self._stack: list[_SvgVisit] = []
@@ -180,7 +166,7 @@ class _SvgWalk:
         shapes, dots = [], []
         for visit, (paths, places) in zip(self._drawn, drawn, strict=True):
             node, style = visit.node, visit.style
-            source = _source(node, _tag(node))
+            source = source_of(node, tag_of(node))
             shown = (style.stroke_shown, style.fill_shown)
             stroke, fill = (None if paint is None else paint.rgb for paint in shown)
             if len(places):
@@ -213,7 +199,7 @@ class _SvgWalk:
             node = todo.pop()
             if "id" in node.attributes:
                 self._targets.setdefault(node.attributes["id"], node)
-            if _tag(node) == "style":
+            if tag_of(node) == "style":
                 try:
                     self._cascade.add_sheet(node)
                 except DrawingError as error:
@@ -222,7 +208,7 @@ class _SvgWalk:
 
     def _is_server(self, name: str) -> bool:
         """Whether the file has a gradient or a pattern of this name."""
-        return name in self._targets and _tag(self._targets[name]) in _SERVERS
+        return name in self._targets and tag_of(self._targets[name]) in SERVERS
 
     def _push(self, visit: _SvgVisit, nodes: list[Node]) -> None:
         """Have elements drawn next, in their order, as children of one."""
@@ -233,17 +219,17 @@ class _SvgWalk:
         if visit.depth > DEPTH_MAX:
             raise DrawingError(f"clones and groups nested more than {DEPTH_MAX:,} deep", remedy="Ungroup the drawing.")
         node = visit.node
-        tag = _tag(node)
+        tag = tag_of(node)
         if not visit.chosen and node.attributes.get("id") == self._element:
             visit = visit._replace(chosen=True)
         is_viewport = tag == "svg" or (tag == "symbol" and visit.size is not None)
-        if not tag or (tag in _SILENT and not is_viewport) or not applies(node):
+        if not tag or (tag in SILENT and not is_viewport) or not applies(node):
             return
         said = self._cascade.declared(node)
         said.note = partial(self._leave_out, visit.chosen)
         if _is("none", said, "display"):
             return
-        if tag not in DRAWN and tag not in _GROUPS and tag != "use" and not is_viewport:
+        if tag not in DRAWN and tag not in GROUPS and tag != "use" and not is_viewport:
             said.note(tag[:40])
             return
         style = self._styles.inherited(visit.style, said)
@@ -260,18 +246,18 @@ class _SvgWalk:
         else:
             if node.attributes.get(f"{INKSCAPE}groupmode") == "layer":
                 visit = visit._replace(layer=node.attributes.get(f"{INKSCAPE}label", node.attributes.get("id", "")))
-            self._push(visit, first_that_applies(node, _is_svg) if tag == "switch" else node.children)
+            self._push(visit, first_that_applies(node, is_svg) if tag == "switch" else node.children)
 
     def _note_effects(self, visit: _SvgVisit, said: Declarations) -> None:
         """Count the effects of an element, which are not followed."""
         for effect in EFFECTS:
             if effect in said.names and (said.own(effect) or "none").lower().split()[0] not in _WITHOUT:
                 said.note(effect)
-        tag = _tag(visit.node)
+        tag = tag_of(visit.node)
         if tag in DRAWN or tag == "use":
             for child in visit.node.children:
-                if _tag(child) in _ANIMATIONS:
-                    said.note(_tag(child))
+                if tag_of(child) in ANIMATIONS:
+                    said.note(tag_of(child))
 
     def _draw(self, visit: _SvgVisit, said: Declarations, tag: str) -> None:
         """Draw a shape; one that nobody sees, or that a transform flattens to nothing, is left out."""
@@ -284,6 +270,8 @@ class _SvgWalk:
                 said.note("invisible object")
             return
         attributes = said.geometry()
+        if 0.0 in visit.view and any("%" in value for name, value in attributes.items() if name in SIZED):
+            said.note("percentage of a page without a size")
 
         def bounds() -> tuple[float, float, float, float] | None:
             pen = Pen()
@@ -298,7 +286,7 @@ class _SvgWalk:
         if stroke is not None and style.dashed:
             said.note("stroke-dasharray")
         for name, marked in zip(MARKERS, style.markers, strict=True):
-            if marked and tag in _MARKED:
+            if marked and tag in MARKED:
                 said.note(name)
         self._pen.begin(to_page)
         draw_shape(self._pen, tag, attributes, visit.view, style.units)
@@ -351,29 +339,6 @@ class _SvgWalk:
             to_page = to_page @ viewport(box, view, node.attributes.get("preserveAspectRatio", ""))
             view = box[2:]
         self._push(visit._replace(to_page=to_page, clips=clips, view=view), node.children)
-
-
-def _tag(node: Node) -> str:
-    """The name of an SVG element, "" for those of other namespaces; files without a namespace are taken as SVG."""
-    if node.tag.startswith(SVG):
-        return node.tag[len(SVG) :]
-    return "" if " " in node.tag else node.tag
-
-
-def _is_svg(node: Node) -> bool:
-    """Whether it is an element of SVG."""
-    return _tag(node) != ""
-
-
-def _at(error: DrawingError, node: Node, file: str) -> DrawingError:
-    """The same error with its file and line."""
-    return DrawingError(error.message, file=file, key=error.key, line=node.line, remedy=error.remedy)
-
-
-def _source(node: Node, tag: str) -> str:
-    """What messages call an object."""
-    name = node.attributes.get("id")
-    return f"{tag} {name[:80]!r}, line {node.line}" if name else f"{tag}, line {node.line}"
 
 
 def _is(word: str, said: Declarations, name: str) -> bool:

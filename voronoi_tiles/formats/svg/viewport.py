@@ -10,9 +10,10 @@ from typing import NamedTuple
 from voronoi_tiles.base.maps import IDENTITY_MAP, Affine, from_matrix
 from voronoi_tiles.base.text import NUMBER
 from voronoi_tiles.base.tolerance import COORDINATE_MAX, NUMBER_MIN
+from voronoi_tiles.base.units import RELATIVE
 from voronoi_tiles.formats.shapes import CURVE_ACCURACY, DrawingError
 from voronoi_tiles.formats.svg.cascade import Note
-from voronoi_tiles.formats.svg.lengths import PIXEL, RELATIVE, Units, length, parse_measure
+from voronoi_tiles.formats.svg.lengths import PIXEL, Units, length, parse_measure
 from voronoi_tiles.formats.svg.transforms import numbers
 from voronoi_tiles.paths.paths import Paths
 

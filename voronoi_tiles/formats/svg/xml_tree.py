@@ -30,8 +30,10 @@ class Node:
         self.text = ""
 
 
-def parse_tree(data: bytes, file: str, keeps_text: frozenset[str]) -> Node:
-    """The root of an XML file, plain or compressed by gzip; text is kept for the tags in `keeps_text` alone.
+def parse_tree(data: bytes, file: str, keeps_text: frozenset[str]) -> tuple[Node, int]:
+    """The root of an XML file, plain or compressed by gzip, and how many style sheets of other files it asks for.
+
+    Text is kept for the tags in `keeps_text` alone.
 
     Raises DrawingError for what is no XML, for files that declare entities, and beyond the limits.
     """
@@ -54,7 +56,7 @@ def parse_tree(data: bytes, file: str, keeps_text: frozenset[str]) -> Node:
             raise
         raise DrawingError(f"unknown encoding: {error}", file=file, remedy="Save it as UTF-8.") from error
     assert reader.root is not None  # expat reports a file without an element itself
-    return reader.root
+    return reader.root, reader.sheets
 
 
 def _inflated(data: bytes, file: str) -> bytes:
@@ -78,6 +80,7 @@ class _Reader:
 
     def __init__(self, file: str, keeps_text: frozenset[str]) -> None:
         self.root: Node | None = None
+        self.sheets = 0
         self._file = file
         self._keeps_text = keeps_text
         self._open: list[Node] = []
@@ -88,6 +91,7 @@ class _Reader:
         self.parser.StartElementHandler = self._start
         self.parser.EndElementHandler = self._end
         self.parser.CharacterDataHandler = self._characters
+        self.parser.ProcessingInstructionHandler = self._instruction
         self.parser.EntityDeclHandler = self._refuse_entity
         self.parser.UnparsedEntityDeclHandler = self._refuse_entity
         self.parser.ExternalEntityRefHandler = self._refuse_reference
@@ -120,6 +124,9 @@ class _Reader:
     def _characters(self, text: str) -> None:
         if self._open[-1].tag in self._keeps_text:
             self._text.append(text)
+
+    def _instruction(self, target: str, _data: str) -> None:
+        self.sheets += target == "xml-stylesheet"
 
     def _refuse_entity(self, *_details: object) -> Never:
         raise DrawingError(
