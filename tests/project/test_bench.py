@@ -7,6 +7,7 @@ import shutil
 import sys
 from dataclasses import replace
 from pathlib import Path
+from random import Random
 from typing import NamedTuple
 
 import mpmath
@@ -19,6 +20,8 @@ sys.path.append(str(Path(__file__).parents[2] / "bench"))
 import accuracy
 import against
 import cgal
+import chromium
+import drawings
 import engine
 import exact
 import peer
@@ -26,6 +29,7 @@ import report
 
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.designs.site import NodedSite
+from voronoi_tiles.formats.reading import read_drawing
 from voronoi_tiles.groups.wallpaper import GROUPS
 from voronoi_tiles.vector.outline import Outline
 
@@ -269,7 +273,45 @@ def test_tables_go_between_their_marks(
 
 
 def test_report_has_all_marks() -> None:
-    """Every script of `make bench` has its place in the report."""
+    """Every script has its place in the report."""
     text = report.REPORT.read_text(encoding="utf-8")
-    for name in ("engine", "accuracy", "raster", "sheets", "against"):
+    for name in ("engine", "accuracy", "raster", "sheets", "against", "chromium"):
         assert text.count(f"<!-- {name} -->") == text.count(f"<!-- end of {name} -->") == 1
+
+
+def test_the_comparison_with_chromium_sees_what_differs() -> None:
+    """Curves that lie elsewhere or go on, and other colours; a dot between two of Chromium's points is none."""
+    line = np.linspace(0.0, 10.0, 2000) + 0j
+    points = np.column_stack((np.linspace(0.0, 10.0, 250), np.zeros(250)))
+    assert chromium.apart([line, np.array([3.0, 3.01]) + 1j], points) < 1e-12
+    assert chromium.apart([line + 0.02j], points) > chromium.NEAR
+    assert chromium.apart([line, line + 1j], points) == float("inf")
+    assert chromium.alike("#ff0000", [254, 0, 1])
+    assert chromium.alike(None, None)
+    assert not chromium.alike("#ff0000", [253, 0, 0])
+    assert not chromium.alike(None, [0, 0, 0])
+
+
+def test_drawings_made_at_random_are_read(tmp_path: Path) -> None:
+    """None is refused, and most draw something."""
+    generator = Random(3)  # noqa: S311 - random drawings, not secrets
+    shapes = 0
+    for _ in range(20):
+        file = tmp_path / "made.svg"
+        file.write_text(drawings.any_drawing(generator), encoding="utf-8")
+        shapes += len(read_drawing(file).shapes)
+    assert shapes > 60
+
+
+def test_without_chromium_the_comparison_says_so(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """It names what is missing, and fails where that is required."""
+    monkeypatch.setattr(shutil, "which", lambda _name: None)
+    monkeypatch.setattr(sys, "argv", ["chromium.py"])
+    for required, code in (("0", False), ("1", True)):
+        monkeypatch.setenv("VORONOI_TILES_REQUIRE_CHROMIUM", required)
+        with pytest.raises(SystemExit) as caught:
+            chromium.main()
+        assert caught.value.code == code
+        assert capsys.readouterr().err.startswith("chromium, npm")

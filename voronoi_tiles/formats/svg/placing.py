@@ -34,10 +34,10 @@ def placed(said: Declarations, view: tuple[float, float], units: Units, bounds: 
     if said.names.isdisjoint(MOVING):
         return IDENTITY_MAP
     if said.is_attribute("transform") and said.names.isdisjoint(_OTHERS):
-        text = said.attribute("transform")
-        found = parse_transform(text)
+        alone = said.attribute("transform")
+        found = parse_transform(alone)
         if found is None:
-            said.note(called("transform", text))
+            said.note(called("transform", alone))
         return found or IDENTITY_MAP
     text, origin, _ = said.found("transform")
     box = Box(0j, *view, units)

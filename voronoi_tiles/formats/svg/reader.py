@@ -226,13 +226,16 @@ class _SvgWalk:
         if not tag or (tag in SILENT and not is_viewport) or not applies(node):
             return
         said = self._cascade.declared(node)
-        said.note = partial(self._leave_out, visit.chosen)
+        note = partial(self._leave_out, visit.chosen)
+        is_read = tag in DRAWN or tag in GROUPS or tag == "use" or is_viewport
+        if is_read:
+            said.note = note
+        style = self._styles.inherited(visit.style, said)  # with the variables that `display` may need
         if _is("none", said, "display"):
             return
-        if tag not in DRAWN and tag not in GROUPS and tag != "use" and not is_viewport:
-            said.note(tag[:40])
+        if not is_read:
+            note(tag[:40])
             return
-        style = self._styles.inherited(visit.style, said)
         visit = visit._replace(style=style, faded=visit.faded or _is_faded(said))
         self._note_effects(visit, said)
         if tag in DRAWN:
