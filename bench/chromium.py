@@ -35,7 +35,7 @@ from drawings import any_colour, any_drawing
 from report import machine, published, table
 
 from voronoi_tiles.formats.reading import DrawingError, read_drawing
-from voronoi_tiles.formats.svg.viewport import PIXEL
+from voronoi_tiles.formats.svg.lengths import PIXEL
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
 
 PACKAGES = (

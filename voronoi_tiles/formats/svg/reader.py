@@ -199,7 +199,7 @@ class _SvgWalk:
             node = todo.pop()
             if "id" in node.attributes:
                 self._targets.setdefault(node.attributes["id"], node)
-            if tag_of(node) == "style":
+            if tag_of(node) == "style" and node.attributes.get("type", "text/css").strip().lower() in {"", "text/css"}:
                 try:
                     self._cascade.add_sheet(node)
                 except DrawingError as error:

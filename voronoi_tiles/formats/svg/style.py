@@ -76,7 +76,7 @@ class Styles:
                 self._known.clear()
             note, notes = said.note, list[str]()
             said.note = notes.append
-            found = self._known[key] = inherited(parent, said, self._is_server), notes, parent, said
+            found = self._known[key] = _computed(parent, said, self._is_server), notes, parent, said
             said.note = note
         style, notes, *_ = found
         said.custom = style.custom
@@ -89,12 +89,8 @@ _KNOWN_MAX: Final = 4096
 """Most styles that are kept; a count."""
 
 
-def inherited(parent: Style, said: Declarations, is_server: Callable[[str], bool]) -> Style:
-    """The style of an element from its parent's and from what is declared for it.
-
-    `is_server` tells whether the file has a gradient or pattern of a name. Raises DrawingError for styles beyond the
-    limits.
-    """
+def _computed(parent: Style, said: Declarations, is_server: Callable[[str], bool]) -> Style:
+    """The style of an element, see Styles."""
     custom = said.inherit_custom(parent.custom)
     names = said.names & INHERITED
     if not names:

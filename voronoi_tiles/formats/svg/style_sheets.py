@@ -47,7 +47,6 @@ NOTHING: Final = Declared({}, {})
 
 class _Rule(NamedTuple):
     selector: Any
-    key: str  # what an element has at least: "#id", ".class", "tag" or ""
     simple: bool  # whether the element's name, classes and id decide
     layer: tuple[int, ...]
     declared: Declared
@@ -185,7 +184,7 @@ class StyleSheets:
             key, simple = _key(selector.parsed_tree)
             # Rules are found by one of their names, so that many rules and many objects are no product.
             self._keyed.setdefault(key, []).append(len(self._rules))
-            self._rules.append(_Rule(selector, key, simple, self._layer(layer), declared))
+            self._rules.append(_Rule(selector, simple, self._layer(layer), declared))
 
     def _is_shown(self, prelude: list[Token]) -> bool:
         """Whether a list of media queries holds for a light screen; those with other conditions count as unread."""
@@ -263,7 +262,7 @@ def _answer(query: str) -> bool | None:
 
 
 def _key(tree: Any) -> tuple[str, bool]:
-    """What an element has at least that a selector means, and whether such names are all that it asks for."""
+    """What an element has at least: "#id", ".class", "tag" or "", and whether a selector asks for such names alone."""
     compound = tree.right if isinstance(tree, parser.CombinedSelector) else tree
     key, simple = "", tree is compound
     for part in compound.simple_selectors:
