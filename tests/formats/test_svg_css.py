@@ -249,7 +249,6 @@ SIMPLE = st.text("abc-:; \t10#,.%\nfillstroke", max_size=40)
 @given(SIMPLE)
 def test_simple_styles_are_split_as_css_splits_them(text: str) -> None:
     """Styles without brackets and quotes are not tokenised: the declarations are those of the tokeniser."""
-    style_attribute.cache_clear()
     whole = style_attribute(f"{text};fill:none;{text}")
     tokens, _ = read_declarations(f"{text};fill:none;{text}", Origin.STYLE)
 

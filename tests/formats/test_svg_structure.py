@@ -153,6 +153,13 @@ def test_animations_are_counted() -> None:
     assert drawing.ignored == {"animate": 1, "set": 1}
 
 
+def test_an_element_without_a_box_hands_on_its_children() -> None:
+    """display: contents takes a group's transform away, and a shape altogether."""
+    group = f'<g style="display: contents" transform="translate(9)">{RECT.format("")}</g>'
+    assert extents(svg(group)) == [pytest.approx((0, 0, 20, 10))]
+    assert not svg(RECT.format('display="contents"')).shapes
+
+
 NESTED = {
     '<svg x="10" y="5" width="40" height="40" viewBox="0 0 20 20">{}</svg>': (10, 5, 50, 25),
     '<svg x="10%" y="5">{}</svg>': (10, 5, 30, 15),

@@ -63,9 +63,17 @@ class Cascade:
         )
 
 
-@lru_cache(maxsize=1024)
 def style_attribute(style: str) -> Declared:
-    """What a style attribute declares; its parts alone where there is nothing that could hide a semicolon."""
+    """What a style attribute declares."""
+    return _known_style(style) if len(style) <= _SHORT else _read_style(style)
+
+
+_SHORT: Final = 1_000
+"""Longer style attributes are not kept; characters."""
+
+
+def _read_style(style: str) -> Declared:
+    """What a style attribute declares; it is split at its semicolons where there is nothing that could hide one."""
     if _SPECIAL.search(style):
         return read_declarations(style, Origin.STYLE)[0]
     declared = Declared({}, {})
@@ -78,6 +86,9 @@ def style_attribute(style: str) -> Declared:
                 lower = declared.normal.get(each, ())
                 declared.normal[each] = shortened(each, (*lower, text), Origin.STYLE) if lower else (text,)
     return declared
+
+
+_known_style = lru_cache(maxsize=1024)(_read_style)
 
 
 class Declarations:

@@ -45,15 +45,19 @@ _SPACES: Final = frozenset(
 _HUES: Final = re.compile(r"(shorter|longer|increasing|decreasing) hue")
 
 
-@lru_cache(maxsize=4096)
 def parse_colour(text: str, current: Colour = BLACK, dark: bool = False) -> Colour | None:
     """The colour that a text stands for; None where it is none that is known here.
 
     `current` is what currentColor stands for, `dark` chooses the second of light-dark(). A colour beyond what screens
     show is clipped channel by channel, as browsers do.
     """
-    word = text.strip().lower()
-    if _HEX.fullmatch(word) or len(word) > LENGTH_MAX:
+    return _parsed(text.strip().lower(), current, dark) if len(text) <= LENGTH_MAX else None
+
+
+@lru_cache(maxsize=4096)
+def _parsed(word: str, current: Colour, dark: bool) -> Colour | None:
+    """The colour of a text in small letters."""
+    if _HEX.fullmatch(word):
         return _hexadecimal(word[1:])
     match function_of(word):
         case "light-dark":

@@ -231,7 +231,8 @@ class _SvgWalk:
         if is_read:
             said.note = note
         style = self._styles.inherited(visit.style, said)  # with the variables that `display` may need
-        if _is("none", said, "display"):
+        unboxed = _is("contents", said, "display")  # as if its children stood in its place
+        if _is("none", said, "display") or (unboxed and tag in DRAWN):
             return
         if not is_read:
             note(tag[:40])
@@ -241,7 +242,8 @@ class _SvgWalk:
         if tag in DRAWN:
             self._draw(visit, said, tag)
             return
-        visit = visit._replace(to_page=visit.to_page @ placed(said, visit.view, style.units, None))
+        if not unboxed:
+            visit = visit._replace(to_page=visit.to_page @ placed(said, visit.view, style.units, None))
         if tag == "use":
             self._use(visit, said)
         elif is_viewport:
