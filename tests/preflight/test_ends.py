@@ -67,7 +67,7 @@ def test_a_line_that_crosses_far_from_its_end_crosses() -> None:
 
 
 @settings(max_examples=15, deadline=None)
-@given(st.floats(0.01, 0.45), st.floats(0, 6.3), st.floats(0, 5), st.floats(-5, 5), st.booleans())
+@given(st.floats(0.016, 0.45), st.floats(0, 6.3), st.floats(0, 5), st.floats(-5, 5), st.booleans())
 def test_lines_side_by_side_have_no_gaps(apart: float, turn: float, begin: float, end: float, backwards: bool) -> None:
     """Two lines beside each other: their ends are loose, and how narrow it is between them is said."""
     other = [10 + begin + (10 + apart) * 1j, 90 + end + (10 + apart) * 1j]

@@ -226,7 +226,8 @@ def same_part(distance: Floats, length: Floats, tolerance: float) -> Floats:
     whole = np.minimum(bands[:, -1], tolerance)
 
     def within(band: Floats) -> Floats:
-        return (np.count_nonzero(bands <= band[:, None], axis=1) - 1) / (count - 1) * length
+        """How much of each run lies in a band of this width."""
+        return np.asarray((np.count_nonzero(bands <= band[:, None], axis=1) - 1) / (count - 1) * length)
 
     all_of_it = within(whole)
     parts = []

@@ -185,16 +185,15 @@ def overlaps(chords: Chords, paths: Paths, contacts: Contacts, tolerance: float)
     part[order] |= np.isin(pair[group], pair[long[judged.covered]])
     middle, _ = chords.along(stretch.one, (stretch.low + stretch.high) / 2)
     place = np.where(judged.twice, middle, judged.place)
-    return Alongs(
-        *(
-            [
-                Meeting(complex(place[k]), (int(stretch.one[k]), int(stretch.two[k])), float(stretch.length[k]))
-                for k in np.flatnonzero(said & which)
-            ]
-            for which in (judged.twice, judged.crosses, judged.touches)
-        ),
-        part,
-    )
+
+    def meetings(which: Bools) -> list[Meeting]:
+        """Those of the runs that are said, with their places."""
+        return [
+            Meeting(complex(place[k]), (int(stretch.one[k]), int(stretch.two[k])), float(stretch.length[k]))
+            for k in np.flatnonzero(said & which)
+        ]
+
+    return Alongs(meetings(judged.twice), meetings(judged.crosses), meetings(judged.touches), part)
 
 
 def _round_rings(chords: Chords, one: Ints, two: Ints, first: Floats, last: Floats, slack: float) -> Ints:

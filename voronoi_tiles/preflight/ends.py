@@ -40,7 +40,7 @@ class PathEnds(NamedTuple):
     met: Complexes
 
 
-class _Facing(NamedTuple):
+class _NearEnds(NamedTuple):
     """Ends and chords that are near to them: how far, and the points of the chords."""
 
     end: Ints
@@ -48,9 +48,9 @@ class _Facing(NamedTuple):
     distance: Floats
     foot: Complexes
 
-    def take(self, which: Ints | Bools) -> _Facing:
+    def take(self, which: Ints | Bools) -> _NearEnds:
         """Some of the pairs."""
-        return _Facing._make(column[which] for column in self)
+        return _NearEnds._make(column[which] for column in self)
 
 
 def find_ends(chords: Chords, contacts: Contacts, tolerance: float, gap: float) -> PathEnds:
@@ -80,7 +80,7 @@ def find_ends(chords: Chords, contacts: Contacts, tolerance: float, gap: float) 
     return PathEnds(point, path, nearest, near, which, nearest > tolerance, past, met)
 
 
-def _facing(chords: Chords, point: Complexes, path: Ints, at: Floats, reach: float, gap: float) -> _Facing:
+def _facing(chords: Chords, point: Complexes, path: Ints, at: Floats, reach: float, gap: float) -> _NearEnds:
     """The chords within reach of points on paths; of their own path only where it comes back."""
     found = []
     margin = complex(reach, reach)
@@ -96,14 +96,14 @@ def _facing(chords: Chords, point: Complexes, path: Ints, at: Floats, reach: flo
         along = np.abs(chords.before[chord] + share * chords.lengths[chord] - at[end])
         far = np.minimum(3 * gap, chords.total[path[end]] / 2)
         usable = (distance <= reach) & ((chords.path[chord] != path[end]) | (along > far))
-        found.append(_Facing(end, chord, distance, foot).take(usable))
+        found.append(_NearEnds(end, chord, distance, foot).take(usable))
     if not found:
         none = np.zeros(0, np.intp)
-        return _Facing(none, none, np.zeros(0), np.zeros(0, np.complex128))
-    return _Facing(*(np.concatenate(column) for column in zip(*found, strict=True)))
+        return _NearEnds(none, none, np.zeros(0), np.zeros(0, np.complex128))
+    return _NearEnds(*(np.concatenate(column) for column in zip(*found, strict=True)))
 
 
-def _beside(chords: Chords, facing: _Facing, path: Ints, at: Floats, tolerance: float, gap: float) -> Bools:
+def _beside(chords: Chords, facing: _NearEnds, path: Ints, at: Floats, tolerance: float, gap: float) -> Bools:
     """Whether the paths of ends run beside those that they face: no further away further along."""
     result = facing.distance > tolerance
     some = np.flatnonzero(result)

@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Ints
-from voronoi_tiles.paths.paths import LINE, Paths
+from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.preflight.chords import chords_of, counts_of
 from voronoi_tiles.preflight.contacts import AROUND, Meeting, crossings, find_contacts, overlaps
 from voronoi_tiles.preflight.cut_lines import JudgedLines
@@ -213,8 +213,7 @@ def _necks(lines: JudgedLines, limits: Limits, slivers: list[Sliver]) -> Iterato
     slim = {path: sliver.width for sliver in slivers if sliver.material for path in sliver.paths}
     accuracy = max(NECK_ACCURACY * limits.neck, limits.tolerance / 4)
     chords = chords_of(lines.paths, counts_of(lines.paths, accuracy), limits.tolerance)
-    blur = limits.tolerance / 2 + np.where(lines.paths.kind == LINE, 0.0, accuracy)[chords.piece]
-    for neck in find_necks(chords, blur, limits.neck):
+    for neck in find_necks(chords, 2 * accuracy + limits.tolerance, limits.neck):
         common = neck.place, neck.width, neck.paths, None, True
         if neck.material:
             if all(path in slim and neck.width > slim[path] / 2 for path in neck.paths):
@@ -282,7 +281,7 @@ def _in_a_row(paths: Paths, which: Bools) -> Ints:
         last = int(np.searchsorted(owner, owner[head], "right")) - 1
         if some[last] == paths.offsets[owner[head] + 1] - 1 and row[last] != row[head]:
             counts[[row[head], row[last]]] = counts[row[head]] + counts[row[last]]
-    return counts[row]
+    return np.asarray(counts[row])
 
 
 def _corners(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:

@@ -51,10 +51,8 @@ class _Facing(NamedTuple):
         return _Facing(self.one[which], self.two[which], self.near.take(which))
 
 
-def find_necks(chords: Chords, blur: Floats, limit: float) -> list[Neck]:
-    """Where lines face each other across less than `limit`, and more than both are blurred by, each narrow place once.
-
-    `blur` (float64, as many as chords) is how far each may lie from its curve, and half of what counts as touching.
+def find_necks(chords: Chords, touching: float, limit: float) -> list[Neck]:
+    """Where lines face each other across less than `limit` and more than `touching`, each narrow place once.
 
     A place is narrow where the distance between two lines is at its least, or stays the same: no line that leaves
     either point comes nearer to the other one. So a corner, however sharp, is none. Between lines there is material
@@ -66,7 +64,7 @@ def find_necks(chords: Chords, blur: Floats, limit: float) -> list[Neck]:
     count = 0
     for one, two in pairs(chords, limit, _REMEDY):
         near = nearest(chords, one, two)
-        some = _Facing(one, two, near).take((near.distance < limit) & (near.distance > blur[one] + blur[two]))
+        some = _Facing(one, two, near).take((near.distance < limit) & (near.distance > touching))
         some = some.take(joints.is_least(some.one, some.near.share_one, some.near.one, some.near.two))
         some = some.take(joints.is_least(some.two, some.near.share_two, some.near.two, some.near.one))
         some = some.take(_overlap_at_ends(chords, joints, some, limit))
@@ -161,7 +159,8 @@ class _Joints:
         along = dot(ways, np.repeat(towards / np.abs(towards), counts))
         first = np.cumsum(counts) - counts
         # A loose end is no neck, but an end that should have met something; unless it lies beside the other line.
-        return ~np.logical_or.reduceat(along > _APPROACH, first) & ((counts > 1) | (np.abs(along[first]) < _ASIDE))
+        meant = (counts > 1) | (np.abs(along[first]) < _ASIDE)
+        return np.asarray(~np.logical_or.reduceat(along > _APPROACH, first) & meant, np.bool_)
 
 
 def _overlap_at_ends(chords: Chords, joints: _Joints, some: _Facing, limit: float) -> Bools:
