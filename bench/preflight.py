@@ -54,7 +54,7 @@ def sheets(old: Checkout, folder: Path) -> dict[str, Path]:
     design = folder / "tiles.toml"
     design.write_text(design_text(TILES), encoding="utf-8")
     hook = old.source / "examples" / "p4-hook.toml"
-    found = {}
+    found: dict[str, Path] = {}
     for name, made, size, more in (
         ("600 x 300 mm, kerf 0.1, gap 0.3", design, "600x300mm", ("--kerf", "0.1mm", "--gap", "0.3mm")),
         ("600 x 300 mm, kerf 0.15", design, "600x300mm", ("--kerf", "0.15mm")),
