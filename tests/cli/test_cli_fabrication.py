@@ -76,6 +76,22 @@ def check_refused(result: Result, folder: Path, before: set[Path], message: str,
     assert set(folder.rglob("*")) == before
 
 
+def test_what_files_of_colours_have_in_common_is_said_once(here: Path, call: Call) -> None:
+    """The sheet that was found; and of each colour how many sheets it takes, before the first of them."""
+    options = ["--pieces", "20", "--colours", "2", "--pack", "--stock", "70x50mm"]
+    result = call("export", "squares.toml", "-o", "k.svg", *options)
+    assert result.exit_code == 0, result.stderr
+    lines = result.stderr.splitlines()
+    assert sum(line.startswith("sheet ") for line in lines) == 1
+    assert [line.split(",")[0] for line in lines if line.startswith("colour ")] == [
+        "colour 1: 10 pieces on 2 sheets",
+        "colour 2: 10 pieces on 2 sheets",
+    ]
+    assert [path.name for path in sorted(here.glob("k-*.svg"))] == [
+        f"k-colour{colour}-{sheet}.svg" for colour in (1, 2) for sheet in (1, 2)
+    ]
+
+
 @pytest.mark.parametrize("form", ["svg", "dxf", "pdf", "lbrn2"])
 def test_every_format_the_same_bytes_twice(here: Path, call: Call, form: str, voronoi_tiles: CommandLine) -> None:
     """In two processes; the suffix says what it is."""

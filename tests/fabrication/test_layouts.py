@@ -391,7 +391,7 @@ def test_the_width_of_a_frame_can_be_chosen(name: str, frame: float | str) -> No
     job = Job(sheet=(width, height), frame=frame)
     assert job == Job(sheet=(width, height), frame=frame, fit="frame")
     product = tiling(name).make(job)
-    wanted = 10.0 if frame == "1cm" else frame
+    wanted = 10.0 if isinstance(frame, str) else frame
     lines = Paths.concatenate([layer.paths for layer in product.drawing.layers])
     x0, y0, x1, y1 = lines.take(np.arange(len(lines) - 1)).bounds  # the border comes last
     assert min(x0, y0, width - x1, height - y1) >= wanted - 1e-9

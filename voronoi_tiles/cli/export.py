@@ -69,9 +69,12 @@ def export(
         except Exception as error:  # noqa: BLE001 - whatever one design does, the others are still to be written
             worst = max(worst, report_error(design, error))
         else:
+            said: set[str] = set()  # the files of colours have much to say in common
             for path, product in () if quiet or target == "-" else written:
                 for note in () if product is None else product.notes:
-                    say(as_options(note))
+                    if note not in said:
+                        say(as_options(note))
+                    said.add(note)
                 say_written(path, None if product is None else as_options(product.summary()))
     if worst:
         raise click.exceptions.Exit(worst)
