@@ -34,11 +34,15 @@ _BAND = 1 << 21
 
 @dataclass(frozen=True, eq=False)
 class Overlay:
-    """Lines to draw on top: `segments` complex128 (n, 2), Cartesian; `width` in pixels; red, green, blue."""
+    """Lines to draw on top: `segments` complex128 (n, 2), Cartesian; `width` in pixels; red, green, blue.
+
+    `opacity` is the share of the colour where a line covers a pixel, 1 where nothing shows through.
+    """
 
     segments: Complexes
     width: float
     colour: tuple[int, int, int]
+    opacity: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -74,13 +78,15 @@ class Picture:
         overlays: Sequence[Overlay] = (),
         style: PictureStyle | None = None,
         colouring: PeriodicColouring | None = None,
+        nobody: tuple[int, int, int] | None = None,
     ) -> None:
         """Prepare a picture; without a `colouring` no neighbours are alike.
 
+        `nobody` is the colour of what is as far from two copies as distances are known: regions, where copies touch.
         Raises ValueError where the region or the picture is empty.
         """
         self.pattern, self.renderer, self.overlays = pattern, renderer, tuple(overlays)
-        self.width, self.height = width, height
+        self.width, self.height, self._nobody = width, height, nobody
         self.style = style or PictureStyle.of_size(width, height)
         self.fine = self.style.supersampling
         self.grid = rectangle_frame(region, width, height)
@@ -112,6 +118,9 @@ class Picture:
         flat = colours[index]
         alike = self.colouring is not self.distinct
         apart = palette(self.distinct.count)[self.distinct.of(image.copies)[image.first]] if alike else flat
+        if self._nobody is not None:
+            unowned = image.d2 - image.d1 <= 2 * image.error(image.d2)
+            flat[unowned] = apart[unowned] = self._nobody
         ink = _borders(apart, grow)
         inner = (slice(halo, -halo), slice(halo, -halo))
         cover = np.maximum(ink.astype(np.float32), self._sites(image))[inner]
@@ -120,7 +129,7 @@ class Picture:
         pixels = _mean(pixels, fine)
         shown = self.grid.window(0, top, self.width, rows)
         for overlay in self.overlays:
-            strength = coverage(overlay.segments, overlay.width, shown)[..., None]
+            strength = overlay.opacity * coverage(overlay.segments, overlay.width, shown)[..., None]
             pixels += strength * (np.array(overlay.colour, np.float32) - pixels)
         return np.rint(pixels).astype(np.uint8)
 

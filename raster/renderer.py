@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voronoi_tiles.base.arrays import Ints
-from voronoi_tiles.base.errors import ArgumentError, RenderError
+from voronoi_tiles.base.errors import ArgumentError, RenderError, TouchingCopiesError
 from voronoi_tiles.raster import cpu, hoff
 from voronoi_tiles.raster.block_lists import BlockLists, find_candidates
 from voronoi_tiles.raster.frame import BLOCK, WINDOW, Frame
@@ -33,7 +33,8 @@ _SPOT_WORK = 10_000_000
 class Provenance:
     """Who made an image: renderer ("gl" or "cpu"), device, precision, method, and why it was not OpenGL ("" if it was).
 
-    `spots` is how many samples of OpenGL's image were compared with float64.
+    `spots` is how many samples of OpenGL's image were compared with float64; `touching` says which copies touch in a
+    picture that was drawn although they do.
     """
 
     renderer: str
@@ -42,6 +43,7 @@ class Provenance:
     method: str
     fallback: str = ""
     spots: int = 0
+    touching: TouchingCopiesError | None = None
 
     def __str__(self) -> str:
         return f"{self.method} on {self.renderer} ({self.device}), {self.precision}"

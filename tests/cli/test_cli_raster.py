@@ -194,6 +194,22 @@ def test_wrong_usage(
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bird.toml", "touching.toml"]
 
 
+def test_touching_copies_are_drawn(voronoi_tiles: CommandLine, tmp_path: Path) -> None:
+    """The picture is there, with the place marked; the message says where, and the exit code 1 that it is no tiling."""
+    (tmp_path / "bird.toml").write_text(TOUCHING)
+    call = ["render", "bird.toml", "-o", "x.png", "--size", "60", "--overlay", "outline", "--renderer", "cpu"]
+    result = voronoi_tiles(*call, cwd=tmp_path)
+    assert (result.returncode, result.stdout) == (1, "")
+    wrote, message = result.stderr.splitlines()
+    assert wrote.startswith("wrote x.png: exact on cpu")
+    assert message.startswith('Error: bird.toml: site "bird" touches its own copy under -y,x at (-3, 5).')
+    assert decoded((tmp_path / "x.png").read_bytes()).shape == (60, 60, 3)
+    piped = voronoi_tiles(
+        "render", "-", "-o", "y.png", "-q", "--size", "60", "--renderer", "cpu", cwd=tmp_path, stdin=TOUCHING
+    )
+    assert complaint(piped, code=1).startswith('Error: standard input: site "bird" touches')
+
+
 def test_opengl_can_be_insisted_on(voronoi_tiles: CommandLine, design: Path, tmp_path: Path) -> None:
     """A device that is not there: auto takes the processor and says why, gl is exit code 1."""
     picture = tmp_path / "x.png"

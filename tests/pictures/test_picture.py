@@ -348,15 +348,6 @@ def test_impossible_pictures_are_refused(options: dict[str, Any], tmp_path: Path
     assert list(tmp_path.iterdir()) == []
 
 
-def test_touching_copies_are_refused(tmp_path: Path) -> None:
-    """As everywhere else: there are no such tiles."""
-    site = {"strokes": [{"segment": [[-5, 3], [25, 11]]}]}
-    design = vt.Design.from_dict({"schema": 1, "group": "pm", "cell": {"a": 60.0, "b": 50.0}, "site": [site]})
-    with pytest.raises(vt.TouchingCopiesError):
-        render(design, tmp_path / "x.png", renderer="cpu")
-    assert list(tmp_path.iterdir()) == []
-
-
 def test_an_unknown_overlay(tmp_path: Path) -> None:
     """Is named."""
     with pytest.raises(ValueError, match="tea"):

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 PROGRAM = "voronoi-tiles"
 
+EXIT_FAILED = 1  # the result failed a check
 EXIT_USAGE = 2
 EXIT_BUG = 70  # EX_SOFTWARE of sysexits.h
 EXIT_INTERRUPTED = 130  # as shells report SIGINT

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from voronoi_tiles.cli.common import PATH, load, refuse_output, reporting, say, say_written
+from voronoi_tiles.cli.common import EXIT_FAILED, PATH, load, refuse_output, report_error, reporting, say, say_written
 from voronoi_tiles.cli.options import with_method, with_renderer, with_scale
 from voronoi_tiles.fabrication.job import Job
 
@@ -70,9 +70,9 @@ def _read_region(
 @click.option(
     "--overlay",
     multiple=True,
-    type=click.Choice(("symmetry", "cell", "outline", "art")),
+    type=click.Choice(("symmetry", "cell", "outline", "art", "grid")),
     help="Draw on top: mirrors, glides and rotation centres; the cell; the exact outlines; the sites' art in the place "
-    "of their strokes. May be repeated.",
+    "of their strokes; a grid of coordinates. May be repeated.",
 )
 @click.option(
     "--colours",
@@ -96,7 +96,11 @@ def render(
     device: int | None,
     quiet: bool,
 ) -> None:
-    """Write a picture (PNG) of the tessellation: coloured tiles, their borders, and the strokes that made them."""
+    """Write a picture (PNG) of the tessellation: coloured tiles, their borders, and the strokes that made them.
+
+    Where copies touch or cross there are no tiles: the picture shows the two copies and the place, a message says it,
+    and the exit code is 1.
+    """
     from voronoi_tiles.pictures.rendering import DEFAULT_SIZE
     from voronoi_tiles.pictures.rendering import render as render_picture
 
@@ -117,6 +121,9 @@ def render(
         )
     if not quiet:
         say_written(output, provenance)
+    if provenance.touching is not None:
+        report_error(design, provenance.touching)
+        raise click.exceptions.Exit(EXIT_FAILED)
 
 
 @contextmanager

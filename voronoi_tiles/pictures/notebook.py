@@ -20,7 +20,7 @@ Region = tuple[float, float, float, float]
 _SIZE = 300
 """The longer side of what is shown; pixels."""
 
-_TILE, _PAPER, _INK, _SITE, _COPY = "#f3ead8", "#ffffff", "#000000", "#b03020", "#c8c8c8"
+_TILE, _PAPER, _INK, _SITE, _COPY, _CLASH = "#f3ead8", "#ffffff", "#000000", "#b03020", "#c8c8c8", "#e6008c"
 
 
 class _Canvas:
@@ -74,18 +74,25 @@ def tiling_picture(tiles: Sequence[tuple[Outline, Complexes]], copies: Iterable[
 
 
 def design_picture(design: Design) -> str:
-    """Draw the cell, the sites, and the copies of them about it."""
+    """Draw the cell, the sites, and the copies of them about it; where copies touch, one that does and a ring."""
+    from voronoi_tiles.pictures.clash import find_clash, rings_about, touching_pair
     from voronoi_tiles.pictures.rendering import on_all_copies
     from voronoi_tiles.raster.scene import Pattern
 
     a, b = design.lattice.a, design.lattice.b
     corners = np.array([0, a, a + b, b, 0])
     own = [site.ends for site in design.noded]
-    shown = np.concatenate([corners, *(segments.ravel() for segments in own)])
-    region = (shown.real.min(), shown.imag.min(), shown.real.max(), shown.imag.max())
-    canvas = _Canvas((float(region[0]), float(region[1]), float(region[2]), float(region[3])))
+    clash = find_clash(design)
+    touching = np.zeros((0, 2), complex) if clash is None else touching_pair(clash, design)[1]
+    shown = np.concatenate([corners, touching.ravel(), *(segments.ravel() for segments in own)])
+    low, high = complex(shown.real.min(), shown.imag.min()), complex(shown.real.max(), shown.imag.max())
+    region = (low.real, low.imag, high.real, high.imag)
+    canvas = _Canvas(region)
     pattern = Pattern(design.noded, design.group, design.lattice)
     canvas.segments(on_all_copies(own, pattern, region), _COPY, 2)
     canvas.segments(np.stack((corners[:-1], corners[1:]), axis=1), _INK, 1)
+    canvas.segments(touching, _CLASH, 3)
     canvas.segments(np.concatenate(own), _SITE, 3)
+    if clash is not None:
+        canvas.segments(rings_about(np.array([clash.place]), abs(high - low) / 30), _CLASH, 3)
     return canvas.text()

@@ -9,6 +9,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 from voronoi_tiles.base.arguments import path_name
+from voronoi_tiles.base.errors import TouchingCopiesError
 from voronoi_tiles.base.files import refuse_overwriting, require_suffix, write_whole
 from voronoi_tiles.formats.png import PngStream
 from voronoi_tiles.raster.picture import Pixels
@@ -32,7 +33,13 @@ class Rendering:
 
     def __repr__(self) -> str:
         rows, columns, _ = self.pixels.shape
-        return f"<Rendering {columns} x {rows}: {self.provenance}>"
+        touching = "; copies touch" if self.touching else ""
+        return f"<Rendering {columns} x {rows}: {self.provenance}{touching}>"
+
+    @property
+    def touching(self) -> TouchingCopiesError | None:
+        """What keeps the design from being tiled, which the picture marks; None where nothing does."""
+        return None if self.provenance is None else self.provenance.touching
 
     @cached_property
     def png(self) -> bytes:

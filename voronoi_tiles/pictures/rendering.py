@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from voronoi_tiles.base.arguments import instance, path_name
 from voronoi_tiles.base.arrays import Complexes
-from voronoi_tiles.base.errors import ArgumentError, DesignError, ProofError
+from voronoi_tiles.base.errors import ArgumentError, DesignError, ProofError, TouchingCopiesError
 from voronoi_tiles.base.files import refuse_overwriting, require_suffix, writing
 from voronoi_tiles.base.text import printable
 from voronoi_tiles.base.tolerance import COORDINATE_MAX, EPSILON, NUMBER_MIN
@@ -25,6 +25,8 @@ from voronoi_tiles.designs.design import Design
 from voronoi_tiles.formats.png import PngStream
 from voronoi_tiles.groups.symmetry_elements import placed, symmetry_elements
 from voronoi_tiles.pictures import difference as diff
+from voronoi_tiles.pictures.clash import clash_marks
+from voronoi_tiles.pictures.coordinate_grid import coordinate_grid
 from voronoi_tiles.pictures.rendered import Rendering
 from voronoi_tiles.pictures.wood_colouring import wood_colouring
 from voronoi_tiles.raster.line_coverage import dashed
@@ -34,9 +36,9 @@ from voronoi_tiles.raster.scene import Pattern
 from voronoi_tiles.vector.outline import Outline
 from voronoi_tiles.vector.proof import proved_tiles
 
-OVERLAYS = ("symmetry", "cell", "outline", "art")
+OVERLAYS = ("symmetry", "cell", "outline", "art", "grid")
 """What can be drawn on top: mirrors, glides and rotation centres; the cell; the exact outlines; the sites' art, in the
-place of their strokes."""
+place of their strokes; a grid of coordinates."""
 
 DEFAULT_SIZE = 1600
 """The longer side of a picture; pixels."""
@@ -87,6 +89,9 @@ def render(
 ) -> Rendering | Provenance:
     """Render the coloured tessellation of a design: into memory, or as a PNG file, whole or not at all.
 
+    Where copies touch or cross there are no tiles, and the picture shows why: the two copies and the place are marked,
+    and `touching` of the result is the TouchingCopiesError that tessellate() raises, else None.
+
     Without a path the result holds the pixels and knows its PNG; a file of any size is written in bands, and the
     result says who rendered it. The options, all keywords:
 
@@ -94,7 +99,7 @@ def render(
     - `region`: the rectangle x0, y0, x1, y1 in the design's units, grown where `size` has another shape; default two
       cells each way;
     - `overlay`: what is drawn on top, of "symmetry" (mirrors, glides and rotation centres), "cell", "outline" (the
-      exact ones) and "art" (in the place of the strokes);
+      exact ones, where there are any), "art" (in the place of the strokes) and "grid" (coordinates, with numbers);
     - `colours`: those that tiles get when they are cut, as `Job` takes them: a number, "fewest", "site", "handedness",
       "orientation";
     - `method`: "exact", or "hoff" for cones and tents with a depth test; `renderer`: "auto", "gl" or "cpu"; `device`:
@@ -102,8 +107,7 @@ def render(
     - `notice` is called with one line when OpenGL is given up, `progress` with how many rows, of how many, are done.
 
     Raises ArgumentError for a size, a region or a word that cannot be, DesignError for art that is not there,
-    TouchingCopiesError where copies touch, RenderError where OpenGL fails and is insisted on, OutputError, and with the
-    overlay "outline" ProofError.
+    RenderError where OpenGL fails and is insisted on, OutputError, and with the overlay "outline" ProofError.
 
     >>> import voronoi_tiles as vt
     >>> picture = vt.render(vt.starter("p4"), size=(120, 80), renderer="cpu")
@@ -144,8 +148,9 @@ def paint(
             raise ArgumentError(f"`overlay` {shown(word)} is unknown", remedy=f"Use {', '.join(OVERLAYS)}.")
     pattern = Pattern(design.noded, design.group, design.lattice)
     region, width, height = _fit(default_region(pattern) if region is None else region, size)
+    touching: TouchingCopiesError | None = None
     if outlines is None:
-        outlines = _outlines(design, needed="outline" in overlay)
+        outlines, touching = _outlines(design, needed="outline" in overlay)
     style = PictureStyle.of_size(width, height)
     if "art" in overlay:
         style = replace(style, site=0.0)
@@ -155,15 +160,22 @@ def paint(
         width,
         height,
         renderer=Renderer(renderer, device=device, method=method, notice=notice),
-        overlays=_dots(pattern, region, style) + _overlays(design, outlines, pattern, region, width, overlay),
+        overlays=[
+            *_dots(pattern, region, style),
+            *_overlays(design, outlines, pattern, region, width, overlay),
+            *(clash_marks(touching, design, region, width, height) if touching else []),
+        ],
         style=style,
         colouring=None if colours == "none" else wood_colouring(design, pattern, colours),
+        nobody=_PAPER if touching else None,
     )
     text = {
         "Software": f"voronoi-tiles {__version__}",
         "Title": printable(f"{design.name} ({design.group.name})"),
         "Source": design.source,
     }
+    if touching is not None:
+        text["Warning"] = printable(str(touching))
     per_metre = min(max(width / ((region[2] - region[0]) * design.unit_mm / 1000), 1.0), 2.0**31 - 1)
     if path is None:
         if width * height > PIXELS_MAX:
@@ -172,12 +184,13 @@ def paint(
                 remedy=f"Give a `path` to write it to; in memory {PIXELS_MAX:,} are the most.",
             )
         bands = list(_told(picture, progress))
-        return Rendering(np.concatenate(bands), text, per_metre, _trailer(picture), picture.provenance, design.files)
+        trailer, by = _trailer(picture), replace(picture.provenance, touching=touching)
+        return Rendering(np.concatenate(bands), text, per_metre, trailer, by, design.files)
     with writing(path) as file, PngStream(file, width, height, pixels_per_metre=per_metre, text=text) as png:
         for band in _told(picture, progress):
             png.write(band)
         png.trailer.update(_trailer(picture))
-    return picture.provenance
+    return replace(picture.provenance, touching=touching)
 
 
 def _told(picture: Picture, progress: Callable[[int, int], None] | None) -> Iterator[Pixels]:
@@ -286,24 +299,30 @@ def _overlays(
         found += [Overlay(elements.mirrors, 1.4 * line, _MIRROR), Overlay(glides, 1.4 * line, _GLIDE)]
         symbols = _symbols(elements.centres, elements.orders, 7 * line * pixel)
         found += [Overlay(symbols, 5.0 * line, _PAPER), Overlay(symbols, 2.4 * line, _CENTRE)]
-    if "outline" in wanted:
-        assert outlines is not None
+    if "outline" in wanted and outlines is not None:
         segments = outline_segments(outlines, pattern, region, accuracy=pixel / 10)
         found.append(Overlay(segments, line, _OUTLINE))
     if "art" in wanted:
         found.append(Overlay(_art_segments(design, pattern, region, accuracy=pixel / 10), 1.5 * line, INK))
+    if "grid" in wanted:
+        found += coordinate_grid(region, width, round((region[3] - region[1]) / pixel), design.units)
     return found
 
 
-def _outlines(design: Design, *, needed: bool) -> list[Outline] | None:
-    """Compute the tiles: a picture is drawn of what can be tiled, even if the outlines fail their proof."""
+def _outlines(design: Design, *, needed: bool) -> tuple[list[Outline] | None, TouchingCopiesError | None]:
+    """The tiles, None where they fail their proof or copies touch, and the error that says where these do.
+
+    A picture is drawn all the same. Raises ProofError where the outlines are `needed`.
+    """
     try:
         tiles, _ = proved_tiles(design.noded, design.group, design.lattice)
     except ProofError:
         if needed:
             raise
-        return None
-    return [tile.outline for tile in tiles]
+        return None, None
+    except TouchingCopiesError as error:
+        return None, error.with_file(design.file or None)
+    return [tile.outline for tile in tiles], None
 
 
 def _symbols(centres: Complexes, orders: NDArray[np.intp], radius: float) -> Complexes:
