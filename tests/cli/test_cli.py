@@ -506,6 +506,7 @@ def test_a_reader_that_goes_away_ends_us_silently(command: str) -> None:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+@pytest.mark.usefixtures("heard_signals")
 def test_an_interruption(command: str, tmp_path: Path) -> None:
     """Ctrl-C gives one word and the exit code that shells expect."""
     fifo = tmp_path / "design.toml"
@@ -518,6 +519,22 @@ def test_an_interruption(command: str, tmp_path: Path) -> None:
     assert process.returncode == 130
     assert message.split() == ["Interrupted."]
     assert [path.name for path in tmp_path.iterdir()] == ["design.toml"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+@pytest.mark.parametrize("ignored", [signal.SIGINT, signal.SIGHUP])
+def test_what_is_started_to_ignore_a_signal_does(ignored: signal.Signals, command: str, tmp_path: Path) -> None:
+    """Under nohup, or in the background of a script, a command goes on where it would be ended else."""
+    fifo = tmp_path / "design.toml"
+    os.mkfifo(fifo)
+    call = [f'trap \'\' {ignored.value}; exec "$0" "$@"', command, "info", fifo]
+    process = subprocess.Popen(["/bin/sh", "-c", *call], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    with fifo.open("w") as design:
+        process.send_signal(ignored)
+        design.write(SEGMENT)
+    printed, message = process.communicate(timeout=60)
+    assert (process.returncode, message) == (0, "")
+    assert "bird" in printed
 
 
 def test_a_bug_is_one_message_too(tmp_path: Path) -> None:

@@ -226,6 +226,7 @@ def test_opengl_can_be_insisted_on(voronoi_tiles: CommandLine, design: Path, tmp
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+@pytest.mark.usefixtures("heard_signals")
 @pytest.mark.parametrize(("signal_number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
 def test_an_interrupted_picture_leaves_nothing_behind(
     signal_number: signal.Signals, code: int, command: str, design: Path, tmp_path: Path

@@ -47,6 +47,7 @@ NOT_RUN = {
     "python3 -m venv .venv": "the tests run in an environment already",
     ". .venv/bin/activate": "the tests run in an environment already",
     ".ci/run": "runs these tests",
+    "voronoi-tiles watch bird.toml": "runs until it is interrupted; test_watch.py does",
 }
 """Commands of the pages that no test runs, each with the reason. Those of make are checked by their targets."""
 

@@ -31,6 +31,7 @@ COMMANDS: Final = (
     "render",
     "report",
     "template",
+    "watch",
 )
 """The commands, each of the module of its name, which is imported when the command is asked for."""
 
@@ -59,9 +60,10 @@ def run() -> Never:
     if hasattr(signal, "SIGPIPE"):
         # A reader that has seen enough ends us silently, as it ends other commands in a pipe.
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)
-    # To be ended is no reason to leave half a file behind: what is begun is removed, as it is after Ctrl-C.
+    # To be ended is no reason to leave half a file behind: what is begun is removed, as it is after Ctrl-C. Signals
+    # that we were started to ignore, as nohup does, stay ignored.
     for name in ("SIGTERM", "SIGHUP"):
-        if hasattr(signal, name):
+        if hasattr(signal, name) and signal.getsignal(getattr(signal, name)) is not signal.SIG_IGN:
             signal.signal(getattr(signal, name), lambda number, _: sys.exit(EXIT_SIGNAL + number))
     if sys.stdout is None:
         sys.stdout = _ClosedStdout()

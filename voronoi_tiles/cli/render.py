@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from voronoi_tiles.cli.common import EXIT_FAILED, PATH, load, refuse_output, report_error, reporting, say, say_written
-from voronoi_tiles.cli.options import with_method, with_renderer, with_scale
+from voronoi_tiles.cli.options import Command, with_method, with_renderer, with_scale
 from voronoi_tiles.fabrication.job import Job
 
 if TYPE_CHECKING:
@@ -45,6 +45,34 @@ def _read_region(
     return x0, y0, x1, y1
 
 
+def with_picture(command: Command) -> Command:
+    """Add the options that say what a picture shows: `size`, `region`, `overlay` and `method`."""
+    for add in (
+        with_method,
+        click.option(
+            "--overlay",
+            multiple=True,
+            type=click.Choice(("symmetry", "cell", "outline", "art", "grid")),
+            help="Draw on top: mirrors, glides and rotation centres; the cell; the exact outlines; the sites' art in "
+            "the place of their strokes; a grid of coordinates. May be repeated.",
+        ),
+        click.option(
+            "--region",
+            metavar="X0,Y0,X1,Y1",
+            callback=_read_region,
+            help="The rectangle to show, in the design's units [default: two cells each way, which repeat seamlessly].",
+        ),
+        click.option(
+            "--size",
+            metavar="N|WxH",
+            callback=_read_size,
+            help="The longer side in pixels, or both: then the region grows to the picture's shape [default: 1600].",
+        ),
+    ):
+        command = add(command)
+    return command
+
+
 @click.command()
 @click.argument("design", type=PATH)
 @click.option(
@@ -55,25 +83,7 @@ def _read_region(
     type=PATH,
     help="The file to write (.png); - for standard output.",
 )
-@click.option(
-    "--size",
-    metavar="N|WxH",
-    callback=_read_size,
-    help="The longer side in pixels, or both: then the region grows to the picture's shape [default: 1600].",
-)
-@click.option(
-    "--region",
-    metavar="X0,Y0,X1,Y1",
-    callback=_read_region,
-    help="The rectangle to show, in the design's units [default: two cells each way, which repeat seamlessly].",
-)
-@click.option(
-    "--overlay",
-    multiple=True,
-    type=click.Choice(("symmetry", "cell", "outline", "art", "grid")),
-    help="Draw on top: mirrors, glides and rotation centres; the cell; the exact outlines; the sites' art in the place "
-    "of their strokes; a grid of coordinates. May be repeated.",
-)
+@with_picture
 @click.option(
     "--colours",
     "--colors",
@@ -81,7 +91,6 @@ def _read_region(
     help="The colours that export gives the tiles, a wood each [default: no neighbours are alike].",
 )
 @with_scale
-@with_method
 @with_renderer
 @click.option("-q", "--quiet", is_flag=True, help="Report only what fails.")
 def render(
