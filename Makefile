@@ -54,6 +54,13 @@ demo: $(INSTALLED)
 	$(VENV)/bin/voronoi-tiles coupon -o $(DEMO)/coupon.svg --thickness 3mm
 	@echo "The tiles are in $(abspath $(DEMO)): open the .svg files in a browser, Inkscape or your cutter's software."
 	@echo "The .png files beside them show how their copies fill the plane; sheet.svg and sheet.dxf are sheets of them."
+	@echo
+	@echo "A design of your own, in the p4 group, and its tile:"
+	@echo "    . $(abspath $(VENV))/bin/activate"
+	@echo "    voronoi-tiles new p4 -o bird.toml"
+	@echo "    voronoi-tiles export bird.toml -o bird.svg"
+	@echo "Change bird.toml while this runs, and look at bird.png:  voronoi-tiles watch bird.toml"
+	@echo "In a new shell begin with the first of these lines, or call $(abspath $(VENV))/bin/voronoi-tiles."
 
 test: $(INSTALLED_DEV)
 	$(VENV)/bin/python -m pytest -n auto --dist loadfile $(PYTEST)

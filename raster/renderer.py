@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from voronoi_tiles.base.arrays import Ints
 from voronoi_tiles.base.errors import ArgumentError, RenderError, TouchingCopiesError
+from voronoi_tiles.base.values import shown
 from voronoi_tiles.raster import cpu, hoff
 from voronoi_tiles.raster.block_lists import BlockLists, find_candidates
 from voronoi_tiles.raster.frame import BLOCK, WINDOW, Frame
@@ -100,8 +101,8 @@ class Renderer:
                 raise ArgumentError(f"`{name}` {value!r} is unknown", remedy=f"Use one of {', '.join(known)}.")
         if sides < 4 or sides % 4:
             raise ValueError(f"cones have 4, 8, 12, ... sides, not {sides}")
-        if device is not None and operator.index(device) < 0:
-            raise ArgumentError(f"`device` {device} is no number of a device", remedy="Count them from 0.")
+        if device is not None and not (hasattr(device, "__index__") and operator.index(device) >= 0):
+            raise ArgumentError(f"`device` {shown(device)} is no number of a device", remedy="Count them from 0.")
         self._choice, self._method, self._compute, self._sides = choice, method, compute, sides
         self._notice = notice or (lambda _: None)
         self._fallback = ""

@@ -251,6 +251,9 @@ WRONG: list[Callable[[], object]] = [
     lambda: vt.starter("p4").scaled(float("inf")),
     lambda: vt.Design.loads(vt.starter("p4").to_toml(), name="a\0b"),
     lambda: vt.Design.load(5),  # type: ignore[arg-type]
+    lambda: vt.render(vt.starter("p4"), device="first"),  # type: ignore[call-overload]
+    lambda: vt.render(vt.starter("p4"), notice=3),  # type: ignore[call-overload]
+    lambda: vt.render(vt.starter("p4"), progress="bar"),  # type: ignore[call-overload]
     lambda: vt.Design("p4", 60, vt.Site([vt.point(10**400)])),
     lambda: vt.Design("p4", 60, vt.Site([vt.segment(0, 1, rotate=np.float16("inf"))])),  # type: ignore[arg-type]
     lambda: vt.Design("p4", 60, vt.Site([vt.point(0)], tolerance=np.timedelta64(1, "s"))),  # type: ignore[arg-type]

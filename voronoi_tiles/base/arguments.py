@@ -32,6 +32,12 @@ def number(name: str, value: Any, remedy: str, *, least: float = -COORDINATE_MAX
     return float(value)
 
 
+def function(name: str, value: Any) -> None:
+    """Refuse an argument that has to be a function, or None. Raises ArgumentError."""
+    if value is not None and not callable(value):
+        raise ArgumentError(f"`{name}` {shown(value)} cannot be called", remedy="Give a function, or leave it out.")
+
+
 def path_name(name: str, value: Any) -> str:
     """The value of an argument that has to be a path, as a text. Raises ArgumentError for what is none, and bytes."""
     path = os.fspath(value) if isinstance(value, os.PathLike) else value

@@ -7,18 +7,17 @@ import math
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import Any, TypedDict, Unpack, overload
+from typing import TypedDict, Unpack, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from voronoi_tiles.base.arguments import instance, path_name
+from voronoi_tiles.base.arguments import function, instance, path_name
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.errors import ArgumentError, DesignError, ProofError, TouchingCopiesError
 from voronoi_tiles.base.files import refuse_overwriting, require_suffix, writing
 from voronoi_tiles.base.text import printable
-from voronoi_tiles.base.tolerance import COORDINATE_MAX, EPSILON, NUMBER_MIN
-from voronoi_tiles.base.values import is_number, shown
+from voronoi_tiles.base.values import shown
 from voronoi_tiles.base.version import __version__
 from voronoi_tiles.crosscheck import CheckReport
 from voronoi_tiles.designs.design import Design
@@ -27,6 +26,7 @@ from voronoi_tiles.groups.symmetry_elements import placed, symmetry_elements
 from voronoi_tiles.pictures import difference as diff
 from voronoi_tiles.pictures.clash import clash_marks
 from voronoi_tiles.pictures.coordinate_grid import coordinate_grid
+from voronoi_tiles.pictures.picture_region import fitted_region
 from voronoi_tiles.pictures.rendered import Rendering
 from voronoi_tiles.pictures.wood_colouring import wood_colouring
 from voronoi_tiles.raster.line_coverage import dashed
@@ -51,9 +51,6 @@ SEGMENTS_MAX = 20_000_000
 
 PIXELS_MAX = 2**28
 """Most pixels of a picture in memory, where they take 800 MB."""
-
-SIDE_MAX = 100_000
-"""The largest side of a picture; pixels. It has 300 MB a band, and takes hours."""
 
 _DOT = 3.0
 """How wide an isolated point is drawn; widths of strokes."""
@@ -136,6 +133,8 @@ def paint(
 ) -> Rendering | Provenance:
     """Render as `render` does; `outlines` are the design's, where they are known."""
     instance("design", design, Design)
+    for name, call in (("notice", notice), ("progress", progress)):
+        function(name, call)
     if path is not None:
         path = path_name("path", path)
         require_suffix(path, (".png",))
@@ -147,7 +146,7 @@ def paint(
         if word not in OVERLAYS:
             raise ArgumentError(f"`overlay` {shown(word)} is unknown", remedy=f"Use {', '.join(OVERLAYS)}.")
     pattern = Pattern(design.noded, design.group, design.lattice)
-    region, width, height = _fit(default_region(pattern) if region is None else region, size)
+    region, width, height = fitted_region(default_region(pattern) if region is None else region, size)
     touching: TouchingCopiesError | None = None
     if outlines is None:
         outlines, touching = _outlines(design, needed="outline" in overlay)
@@ -218,51 +217,6 @@ def difference(design: Design, outlines: Sequence[Outline], report: CheckReport)
     text = {"Software": f"voronoi-tiles {__version__}", "Report": json.dumps(report.document())}
     pixels = diff.difference_pixels(report, design.lattice, segments)
     return Rendering(pixels, text, provenance=report.provenance, files=design.files)
-
-
-def _fit(region: Region, size: int | tuple[int, int]) -> tuple[Region, int, int]:
-    """The region in the shape of the picture, and the picture's width and height."""
-    remedy = "Give x0,y0,x1,y1 with x0 < x1 and y0 < y1."
-    try:
-        x0, y0, x1, y1 = (float(side) for side in region)
-    except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(f"the `region` {shown(region)} is no rectangle", remedy=remedy) from None
-    finite = all(map(math.isfinite, (x0, y0, x1, y1)))
-    if not (finite and x1 > x0 and y1 > y0):
-        what = "is empty" if finite else "is not finite"
-        raise ArgumentError(f"the `region` {x0:g},{y0:g},{x1:g},{y1:g} {what}", remedy=remedy)
-    farthest = max(map(abs, (x0, y0, x1, y1)))
-    if farthest > COORDINATE_MAX:
-        raise ArgumentError(
-            f"the `region` reaches to {farthest:g}", remedy=f"Its coordinates must be within {COORDINATE_MAX:g}."
-        )
-    across, down = x1 - x0, y1 - y0
-    sides: tuple[Any, ...] = size if isinstance(size, tuple) else (size,)
-    whole = all(is_number(side) and isinstance(side, int | np.integer) and -(2**63) < side < 2**63 for side in sides)
-    if not (whole and len(sides) == (2 if isinstance(size, tuple) else 1)):
-        raise ArgumentError(f"a `size` of {shown(size)} pixels", remedy="Give whole numbers, one or two.")
-    if isinstance(size, tuple):
-        width, height = map(int, sides)
-    else:  # a strip is one pixel wide at least
-        width, height = (max(min(size, 1), round(size * side / max(across, down))) for side in (across, down))
-    if not (1 <= width <= SIDE_MAX and 1 <= height <= SIDE_MAX):
-        raise ArgumentError(
-            f"a picture of {width} x {height} pixels", remedy=f"Choose sides from 1 to {SIDE_MAX:,} pixels."
-        )
-    step = max(across / width, down / height)
-    if step < max(100 * EPSILON * farthest, NUMBER_MIN):
-        raise ArgumentError(
-            f"the pixels would be {step:.3g} wide, no more than the rounding of coordinates of {farthest:g}",
-            remedy="Show a larger region, or one nearer to the origin.",
-        )
-    middle = (x0 + x1) / 2, (y0 + y1) / 2
-    grown = (
-        middle[0] - step * width / 2,
-        middle[1] - step * height / 2,
-        middle[0] + step * width / 2,
-        middle[1] + step * height / 2,
-    )
-    return grown, width, height
 
 
 def _overlays(
