@@ -160,7 +160,8 @@ def test_files_of_others_are_not_written_over(voronoi_tiles: CommandLine, tmp_pa
     ("arguments", "message"),
     [
         (["-"], "Only a file can be watched"),
-        (["none.toml"], "no file none.toml"),
+        (["none.toml"], "no file 'none.toml'"),
+        ([""], "no file ''"),
         (["bird.toml", "-o", "-"], "cannot be written again and again"),
         (["bird.toml", "-o", "bird.gif"], "suffix .png or .svg"),
         (["bird.json", "-o", "bird.json"], "would be overwritten"),

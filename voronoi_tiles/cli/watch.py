@@ -61,8 +61,9 @@ def watch(
     from voronoi_tiles.base.watching import FileWatch
     from voronoi_tiles.pictures.rendering import DEFAULT_SIZE
 
+    _refuse_design(design)
     targets = outputs or _beside(design)
-    _refuse(design, targets)
+    _refuse_targets(design, targets)
     options: RenderOptions = {
         "size": DEFAULT_SIZE if size is None else size,
         "region": region,
@@ -113,17 +114,23 @@ def _is_ours(path: str) -> bool:
     return RECIPE_NAMESPACE.encode() in head and b"sodipodi:" not in head  # Inkscape keeps our recipe
 
 
-def _refuse(design: str, targets: Sequence[str]) -> None:
-    """Refuse what cannot be watched, or not be written again and again."""
+def _refuse_design(design: str) -> None:
+    """Refuse what cannot be watched."""
     from voronoi_tiles.base.files import STDOUT, is_special
-    from voronoi_tiles.tiling import FORMATS
 
     if design == STDOUT or is_special(design):
         raise click.UsageError("Only a file can be watched, which is read whenever it is saved.")
     if not os.path.isfile(design):  # noqa: PTH113 - a name that the system refuses is no file, and no error here
         raise click.UsageError(
-            f"There is no file {design} to watch. Make one to begin with: voronoi-tiles new p4 -o {design}."
+            f"There is no file {design!r} to watch. Make one to begin with: voronoi-tiles new p4 -o bird.toml."
         )
+
+
+def _refuse_targets(design: str, targets: Sequence[str]) -> None:
+    """Refuse what cannot be written again and again."""
+    from voronoi_tiles.base.files import STDOUT, is_special
+    from voronoi_tiles.tiling import FORMATS
+
     suffixes = (_PICTURE, *(f".{name}" for name in FORMATS))
     for target in targets:
         if target == STDOUT or is_special(target):
