@@ -14,6 +14,7 @@ from census import EVEN, POINTS, Census, census, censuses
 from claims import CLAIMS, WRONG, Claim, groups_of, outcome, table
 from random_sites import TOLERANCE
 from running import ROOT, Command, command_block, image_table, run_all
+from sentences import DRAWS, KERF, NOTICEABLE, TILES, Sentences
 
 from voronoi_tiles import Design
 from voronoi_tiles.groups.wallpaper import GROUPS
@@ -43,6 +44,11 @@ ALWAYS = {
 }
 """Pictures of what *always* leaves out: their designs and captions."""
 
+STROKES = {
+    "any-strokes": "A closed stroke with branches, and two that cross, whose tile lies within that of the other site.",
+}
+"""The picture of strokes that are no simple curves: its design and caption."""
+
 
 def picture(name: str) -> Command:
     """The command for the picture of a design that a sentence is tried at."""
@@ -58,7 +64,7 @@ def picture(name: str) -> Command:
 
 def commands() -> list[Command]:
     """The commands of all pictures."""
-    return [*figures.commands(), *(picture(name) for name in PGG | ALWAYS)]
+    return [*figures.commands(), *(picture(name) for name in PGG | ALWAYS | STROKES)]
 
 
 def pictures(captions: dict[str, str]) -> str:
@@ -102,10 +108,10 @@ def _measured(claim: Claim, found: dict[str, Census], even: dict[str, Census], o
     return "<br>".join(f"{', '.join(names)}: {because}" for because, names in groups.items())
 
 
-def page(rows: Sequence[Census], even: Census, agreed: Sequence[bool]) -> str:
+def page(rows: Sequence[Census], even: Census, agreed: Sequence[bool], others: Sentences) -> str:
     """Write the page from the measurements of the groups and the cross-checks of the designs.
 
-    `even` is the census of EVEN_GROUP in cells with a = b.
+    `even` is the census of EVEN_GROUP in cells with a = b, `others` are the sentences about no group.
     """
     found = groups_of(rows)
     evenly = {even.group: even}
@@ -143,6 +149,22 @@ def page(rows: Sequence[Census], even: Census, agreed: Sequence[bool]) -> str:
         uncurved=f"{sum(tile.curves == 0 for tile in lined):,}",
         pgg_pictures=pictures(PGG).strip(),
         always_pictures=pictures(ALWAYS).strip(),
+        other=others.table(),
+        points_table=others.points_table(),
+        cmm_shapes=f"{found['cmm'].shapes:,}",
+        pmm_shapes=f"{found['pmm'].shapes:,}",
+        steps_table=others.steps_table(),
+        curves=f"{len(others.steps):,}",
+        kerf=KERF,
+        tiles=TILES,
+        colours_table=others.colours_table(),
+        noticeable=NOTICEABLE,
+        draws=f"{DRAWS:,}",
+        pairs_a_tile=f"{others.colours.pairs:.1f}",
+        least=f"{others.colours.least:.0f}",
+        strokes_table=others.strokes_table(),
+        worst=f"{max(row.worst for row in others.strokes):.0e}",
+        strokes_pictures=pictures(STROKES).strip(),
     )
     return "<!-- Written by docs/generate/paper.py (make paper). -->\n\n" + text
 
@@ -159,7 +181,7 @@ def main() -> None:
         agreed = pool.map(agrees, sorted((ROOT / "examples" / "paper").glob("*.toml")))
     rows = list(censuses(GROUPS, options.sites))
     even = census(EVEN_GROUP, options.sites // 10, EVEN)
-    PAGE.write_text(page(rows, even, agreed), encoding="utf-8")
+    PAGE.write_text(page(rows, even, agreed, Sentences.measured()), encoding="utf-8")
     print(f"{PAGE.relative_to(ROOT)}: {time.monotonic() - began:.0f} s in all")
 
 

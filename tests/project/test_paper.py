@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import colorsys
 import re
 import sys
 from collections.abc import Sequence
@@ -12,8 +13,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+import shapely
 from helpers.outlines import CommandLine
-from shapely import Polygon
 from test_gallery import OTHER_PIXELS, anew
 
 import voronoi_tiles as vt
@@ -23,6 +24,7 @@ ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "docs" / "generate"))
 
 import census as measuring  # noqa: E402
+import curves_in_steps  # noqa: E402
 import paper  # noqa: E402 - a script of the documentation, in no package
 from census import Census, Measured, census  # noqa: E402
 from chambers import chamber_about, chamber_numbers  # noqa: E402
@@ -38,10 +40,34 @@ from claims import (  # noqa: E402
     table,
     verdicts,
 )
+from curves_in_steps import KERF, STEPS, Apart, hausdorff  # noqa: E402
 from random_sites import CELLS, random_design  # noqa: E402
 from running import Command  # noqa: E402
+from sentences import (  # noqa: E402
+    Alike,
+    Proved,
+    Sentences,
+    Tiled,
+    alike,
+    any_strokes,
+    compared_with_a_point,
+    difference,
+    from_hsv,
+    lab,
+)
 from shapes import Shape, congruent  # noqa: E402
 from straight_lines import endless_lines, mirror_lines, same_line  # noqa: E402
+
+OTHERS = Sentences(
+    points={
+        "pmm": [Tiled("a point", 660.0, 4, 0.0, 0.0), Tiled("a line", 660.0, 4, 0.0, 1e-12)],
+        "cmm": [Tiled("a point", 330.0, 4, 0.0, 0.0), Tiled("a line", 330.0, 6, 0.3, 6.2)],
+    },
+    steps=[Apart(0, "p1", (2 * KERF, KERF / 2)), Apart(1, "p2", (KERF / 2, KERF / 4))],
+    colours=Alike({"hue": 0.01, "all": 0.001}, 2.5, 30.0),
+    strokes=[Proved("ring", 2, 2, 189, 3e-16)],
+)
+"""Figures of the sentences about no group, as they might have been measured."""
 
 FREE = ("p1", "p2", "pg", "pgg", "p4", "p3", "p6")
 
@@ -151,7 +177,7 @@ def test_chambers() -> None:
         assert chamber.name == name
         if parts is not None:
             assert chamber.area == pytest.approx(lattice.det / parts, rel=1e-12)
-            polygon = Polygon(np.column_stack((chamber.corners.real, chamber.corners.imag)))
+            polygon = shapely.Polygon(np.column_stack((chamber.corners.real, chamber.corners.imag)))
             assert polygon.area == pytest.approx(chamber.area)
             assert chamber.beyond(np.array([point])) < 0
             far = chamber.corners[0] * 2 - point
@@ -286,7 +312,7 @@ def test_the_page_is_written_from_the_measurements() -> None:
     """Other measurements give another page, with other verdicts; a group that is not measured is an error."""
     rows = [census(group, 2) for group in GROUPS]
     even = census("cmm", 2, measuring.EVEN)
-    text = paper.page(rows, even, [True, True])
+    text = paper.page(rows, even, [True, True], OTHERS)
     assert "$" not in text
     assert "agree in all," in text
     assert "**wrong for pgg**" in text
@@ -296,15 +322,84 @@ def test_the_page_is_written_from_the_measurements() -> None:
     flat = next(row for row in rows if row.group == "p4")
     flat.tiles[0] = replace(flat.tiles[0], curves=0)
     uncurved = sum(tile.curves == 0 for row in rows if row.group in set(FREE) - {"pgg"} for tile in row.tiles)
-    assert f"{uncurved} of 12 have curves" in " ".join(paper.page(rows, even, [True]).split())
-    assert "**wrong for cmm**" in paper.page(rows, next(row for row in rows if row.group == "cmm"), [True])
+    assert f"{uncurved} of 12 have curves" in " ".join(paper.page(rows, even, [True], OTHERS).split())
+    assert "**wrong for cmm**" in paper.page(rows, next(row for row in rows if row.group == "cmm"), [True], OTHERS)
     pgg = next(row for row in rows if row.group == "pgg")
     pgg.tiles[:] = [replace(tile, endless=1) for tile in pgg.tiles]
-    other = paper.page(rows, even, [True, False])
+    other = paper.page(rows, even, [True, False], OTHERS)
     assert "**wrong for pgg**" not in other
     assert "agree in only 1," in other
     with pytest.raises(ValueError, match="pgg"):
-        paper.page([row for row in rows if row.group != "pgg"], even, [True])
+        paper.page([row for row in rows if row.group != "pgg"], even, [True], OTHERS)
+
+
+def test_sentences_about_no_group_are_judged() -> None:
+    """Each verdict is the other one where what is measured is otherwise."""
+    text = OTHERS.table()
+    assert "**wrong for cmm**; for pmm it holds" in text
+    assert "**wrong for 12 segments**; for 24 segments it holds" in text
+    assert "**wrong** in a picture of 100 tiles" in text
+    points = {"pmm": OTHERS.points["cmm"], "cmm": OTHERS.points["pmm"]}
+    steps = [replace(row, distance=row.distance[::-1]) for row in OTHERS.steps]
+    text = replace(OTHERS, points=points, steps=steps, colours=replace(OTHERS.colours, shares={"one": 1e-5})).table()
+    assert "**wrong for pmm**; for cmm it holds" in text
+    assert "**wrong for 24 segments**; for 12 segments it holds" in text
+    assert "| Pseudo-random colours in HSV keep neighbours apart. | holds |" in text
+    moved = [replace(row, curved=0.0) for row in points["pmm"]]
+    assert not replace(OTHERS, points={"cmm": moved}).like_a_point("cmm")
+    assert OTHERS.colours.spoilt(0.01) == pytest.approx(1 - 0.99**250)
+
+
+def test_sites_beside_a_point() -> None:
+    """In pmm all tiles are the rectangle of the mirrors; in cmm half of it, with curves but for the point's."""
+    for group, area in (("pmm", 660.0), ("cmm", 330.0)):
+        found = compared_with_a_point(group)
+        assert [row.area for row in found] == pytest.approx([area] * 5, rel=1e-12)
+        assert [row.curved > 0 for row in found] == [group == "cmm" and row.name != "a point" for row in found]
+        assert all((row.apart > 1) == (row.curved > 0) for row in found)
+
+
+def test_how_far_outlines_are_apart() -> None:
+    """As shapely's own measure says, to what chords and spacing leave open; nothing for the same outline."""
+    one, other = (random_tiling("p4", seed).tiles[0].outline for seed in (3, 6))
+    rings = [outline.to_shapely(accuracy=1e-2).boundary for outline in (one, other)]
+    far = shapely.hausdorff_distance(*(shapely.segmentize(ring, 0.5) for ring in rings))
+    assert hausdorff(one, other) == pytest.approx(far, abs=0.3)
+    assert hausdorff(one, one) < 1e-9
+    rectangles = [tiling_of("p1", [{"point": [x, 4]}], a=30, b=20, angle=90).tiles[0].outline for x in (3, 5.5)]
+    assert hausdorff(*rectangles) == pytest.approx(2.5, abs=1e-9)
+
+
+def test_colours_and_their_differences() -> None:
+    """HSV as the standard library has it; CIELAB of the primaries as tables do (B. Lindbloom)."""
+    hsv = np.random.default_rng(1).random((50, 3))
+    expected = [colorsys.hsv_to_rgb(*row) for row in hsv.tolist()]
+    assert from_hsv(hsv) == pytest.approx(np.array(expected), abs=1e-12)
+    tables = {
+        (1, 0, 0): (53.2408, 80.0925, 67.2032),
+        (0, 1, 0): (87.7347, -86.1827, 83.1793),
+        (0, 0, 1): (32.2970, 79.1875, -107.8602),
+        (1, 1, 1): (100, 0, 0),
+        (0, 0, 0): (0, 0, 0),
+    }
+    assert lab(np.array(list(tables), float)) == pytest.approx(np.array(list(tables.values())), abs=2e-3)
+    assert difference(np.ones((1, 3)), np.zeros((1, 3))) == pytest.approx(100)
+
+
+@pytest.mark.slow
+def test_the_page_has_what_is_measured() -> None:
+    """The tables of the sentences about no group, made anew; of the random curves the worst ones."""
+    text = (ROOT / "docs/paper.md").read_text(encoding="utf-8")
+    points = {group: compared_with_a_point(group) for group in ("pmm", "cmm")}
+    found = Sentences(points, OTHERS.steps, alike(), any_strokes())
+    for part in (found.points_table(), found.colours_table(), found.strokes_table(), found.table()):
+        assert part in text
+    worst = re.findall(r"^\| (12|24) \| [\d.]+ \| [\d.]+ \| ([\d.]+) \(curve (\d+), (\w+)\) \|", text, re.MULTILINE)
+    assert [int(steps) for steps, *_ in worst] == list(STEPS)
+    for k, (_, distance, number, group) in enumerate(worst):
+        row = curves_in_steps.measure(int(number))
+        assert row.group == group
+        assert f"{row.distance[k]:.3f}" == distance
 
 
 def case(command: Command) -> Any:
