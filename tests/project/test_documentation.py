@@ -65,14 +65,6 @@ RUN_BY_MAKE = {
 LONG = {"README.md", "laser.md", "start.md"}
 """Pages with so many commands that they take a quarter of a minute and more; the others are quickly run."""
 
-FIXTURES = {
-    "README.md": {
-        "leaf.svg": '<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="30mm" viewBox="0 0 40 30">'
-        '<path d="M 4 24 C 4 8 16 4 34 6 C 34 20 22 28 4 24 Z"/></svg>',
-    },
-}
-"""Files that stand for the reader's own."""
-
 _BLOCK = re.compile(
     r"^(?P<comments>(?:<!--[^\n]*-->\n\n?)*)```(?P<language>[\w{}-]*)[^\n]*\n(?P<body>.*?)^```$",
     re.MULTILINE | re.DOTALL,

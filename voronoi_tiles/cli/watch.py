@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING
 import click
 
 from voronoi_tiles.base.errors import DesignError, TouchingCopiesError
-from voronoi_tiles.cli.common import PATH, as_options, report_error, say
-from voronoi_tiles.cli.options import with_job, with_renderer
+from voronoi_tiles.cli.common import PATH, as_options, load, report_error, say
+from voronoi_tiles.cli.options import with_job, with_renderer, with_scale
 from voronoi_tiles.cli.render import with_picture
 
 if TYPE_CHECKING:
@@ -40,6 +40,7 @@ _HEAD = 2**16
     "DESIGN.png and DESIGN.svg, beside it, unless there are others of this name].",
 )
 @with_picture
+@with_scale
 @with_renderer
 @with_job
 def watch(
@@ -68,6 +69,7 @@ def watch(
         "size": DEFAULT_SIZE if size is None else size,
         "region": region,
         "overlay": overlay,
+        "colours": "none" if job is None or job.split is None else job.scheme,
         "method": method,
         "renderer": renderer,
         "device": device,
@@ -168,11 +170,10 @@ def _write(design: str, targets: Sequence[str], options: RenderOptions, job: Job
 
 def _written(design: str, targets: Sequence[str], options: RenderOptions, job: Job | None) -> Iterator[str]:
     """Write one file after the other, and give what to say of each. Raises what keeps the others from being written."""
-    from voronoi_tiles.designs.design import Design
     from voronoi_tiles.pictures.rendering import render
 
     pictures = [target for target in targets if target.lower().endswith(_PICTURE)]
-    read = Design.load(design)
+    read = load(design)
     try:
         tiling = read.tessellate()
     except TouchingCopiesError:
