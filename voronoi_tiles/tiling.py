@@ -14,6 +14,7 @@ from voronoi_tiles.base.arguments import instance, path_name
 from voronoi_tiles.base.errors import ArgumentError, CheckError, UnknownNameError
 from voronoi_tiles.base.files import refuse_overwriting, write_whole
 from voronoi_tiles.base.maps import Placement
+from voronoi_tiles.base.text import counted
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.tile import Tile, TileCopy
 from voronoi_tiles.vector.proof import ProofReport
@@ -53,8 +54,7 @@ class Tiling:
     proof: ProofReport
 
     def __repr__(self) -> str:
-        many = "tile" if len(self) == 1 else "tiles"
-        return f"<Tiling {self.design.name!r}: {self.design.group.name}, {len(self)} {many}>"
+        return f"<Tiling {self.design.name!r}: {self.design.group.name}, {counted(len(self), 'tile')}>"
 
     def __len__(self) -> int:
         """Count the tiles."""
@@ -133,7 +133,10 @@ class Tiling:
                 "area": lattice.det,
             },
             "tiles": [tile.figures() for tile in self.tiles],
-            "proof": self._proof_rows(),
+            "proof": [
+                {"name": name, "value": value, "limit": limit, "passed": passed}
+                for name, value, limit, passed in self.proof.rows()
+            ],
         }
 
     def check(
@@ -175,13 +178,6 @@ class Tiling:
         if source != self.design.source and Design.loads(source) != self.design:
             raise ArgumentError("the `check` is of another design", remedy="Give the report of this tiling's check().")
 
-    def _proof_rows(self) -> list[dict[str, Any]]:
-        """The figures of the proof in the types of JSON."""
-        return [
-            {"name": name, "value": value, "limit": limit, "passed": passed}
-            for name, value, limit, passed in self.proof.rows()
-        ]
-
     def evidence(self, check: CheckReport) -> dict[str, Any]:
         """What was proved and checked, in the types of JSON, as `voronoi-tiles check --json` prints it.
 
@@ -191,7 +187,10 @@ class Tiling:
         return {
             "design": self.design.name,
             "group": self.design.group.name,
-            "proof": self._proof_rows(),
+            "proof": [
+                {"name": name, "value": value, "limit": limit, "passed": passed}
+                for name, value, limit, passed in self.proof.rows()
+            ],
             "check": check.document(),
         }
 

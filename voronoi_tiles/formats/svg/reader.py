@@ -18,6 +18,7 @@ from voronoi_tiles.formats.shapes import DEPTH_MAX, VISITS_MAX, Dots, DrawingErr
 from voronoi_tiles.formats.svg.basic_shapes import DRAWN, diagonal, draw_shape
 from voronoi_tiles.formats.svg.cascade import Cascade, Declarations
 from voronoi_tiles.formats.svg.conditions import applies, first_that_applies
+from voronoi_tiles.formats.svg.element_transform import placed
 from voronoi_tiles.formats.svg.elements import (
     ANIMATIONS,
     GROUPS,
@@ -33,7 +34,6 @@ from voronoi_tiles.formats.svg.elements import (
     tag_of,
 )
 from voronoi_tiles.formats.svg.lengths import Units, length
-from voronoi_tiles.formats.svg.placing import placed
 from voronoi_tiles.formats.svg.properties import EFFECTS, MARKERS, opacity
 from voronoi_tiles.formats.svg.style import Style, Styles
 from voronoi_tiles.formats.svg.viewport import Clip, Page, read_page, view_box, viewport
@@ -282,7 +282,7 @@ class _SvgWalk:
             pen = Pen()
             pen.begin(IDENTITY_MAP)
             draw_shape(pen, tag, attributes, visit.view, style.units)
-            (paths,) = pen.shapes()
+            ((paths, _),) = pen.shapes()
             return paths.bounds if len(paths) else None
 
         to_page = visit.to_page @ placed(said, visit.view, style.units, bounds)
