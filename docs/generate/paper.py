@@ -12,9 +12,10 @@ from string import Template
 import figures
 from census import EVEN, POINTS, Census, census, censuses
 from claims import CLAIMS, WRONG, Claim, groups_of, outcome, table
+from curves_in_steps import KERF
 from random_sites import TOLERANCE
 from running import ROOT, Command, command_block, image_table, run_all
-from sentences import DRAWS, KERF, NOTICEABLE, TILES, Sentences
+from sentences import DRAWS, NOTICEABLE, TILES, Sentences
 
 from voronoi_tiles import Design
 from voronoi_tiles.groups.wallpaper import GROUPS

@@ -527,7 +527,7 @@ def test_what_is_started_to_ignore_a_signal_does(ignored: signal.Signals, comman
     """Under nohup, or in the background of a script, a command goes on where it would be ended else."""
     fifo = tmp_path / "design.toml"
     os.mkfifo(fifo)
-    call = [f'trap \'\' {ignored.value}; exec "$0" "$@"', command, "info", fifo]
+    call = [f'trap \'\' {ignored.value}; exec "$0" "$@"', command, "info", str(fifo)]
     process = subprocess.Popen(["/bin/sh", "-c", *call], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     with fifo.open("w") as design:
         process.send_signal(ignored)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 import voronoi_tiles as vt
 from voronoi_tiles.pictures.clash import clash_marks, find_clash
+from voronoi_tiles.raster.renderer import Choice
 
 SITE, OTHER, RING, PAPER = (214, 20, 40), (20, 60, 214), (230, 0, 140), (255, 255, 255)
 
@@ -89,7 +90,7 @@ def test_a_design_that_can_be_tiled_has_no_mark() -> None:
 
 @pytest.mark.parametrize("region", [(-10, -10, 10, 10), (590, 6590, 610, 6610)], ids=["named", "far"])
 @pytest.mark.parametrize("renderer", ["cpu", "auto"])
-def test_what_belongs_to_nobody_is_white(renderer: vt.Choice, region: tuple[float, ...]) -> None:
+def test_what_belongs_to_nobody_is_white(renderer: Choice, region: tuple[float, ...]) -> None:
     """The wedge beyond a common end is as far from both copies; wherever one looks, as the pattern repeats."""
     x0, y0, x1, y1 = region
     picture = vt.render(corner_design(), size=400, region=(x0, y0, x1, y1), renderer=renderer)

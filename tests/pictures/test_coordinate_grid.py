@@ -79,8 +79,11 @@ def test_lines_are_where_the_coordinates_are(size: int, step: int) -> None:
     design = vt.Design("p4", 60, vt.Site([vt.segment(25 + 3j, 5 + 11j)]))
     scale, half = size / 100, 50 / size  # lines through the pixels' middles
     left, top = -31 - half, 97 + half
-    options: vt.RenderOptions = {"size": size, "region": (left, top - 100, left + 100, top), "renderer": "cpu"}
-    plain, ruled = (vt.render(design, overlay=overlay, **options).pixels.astype(int) for overlay in ((), "grid"))
+    region = (left, top - 100, left + 100, top)
+    plain, ruled = (
+        vt.render(design, size=size, region=region, renderer="cpu", overlay=overlay).pixels.astype(int)
+        for overlay in ([], ["grid"])
+    )
 
     def blue(pixels: NDArray[np.int_], x: float, y: float) -> bool:
         """Whether a pixel is nearer to the lines' colour than any tile is."""
