@@ -139,6 +139,15 @@ def test_a_background_job_is_ended_by_its_own_signal(watching: Callable[..., Wat
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bird.toml", "mine.dxf", "said.txt"]
 
 
+def test_a_summary_names_options(watching: Callable[..., Watching], tmp_path: Path) -> None:
+    """A smaller gap is named as on the command line, not as an argument of Python."""
+    (tmp_path / "bird.toml").write_text(vt.starter_text("p4"))
+    sheet = ("--sheet", "300x200mm", "--margin", "6mm", "--kerf", "0.15mm")
+    run = watching("bird.toml", "-o", "bird.svg", *sheet)
+    assert "; with --gap 0.5mm 50 tiles would fit)" in run.next("wrote")
+    assert run.end(signal.SIGINT) == 0
+
+
 def test_files_of_others_are_not_written_over(voronoi_tiles: CommandLine, tmp_path: Path) -> None:
     """Neither drawings nor what another program has made of ours, unless they are named; the message says how."""
     (tmp_path / "bird.toml").write_text(SEGMENT)
@@ -162,6 +171,7 @@ def test_files_of_others_are_not_written_over(voronoi_tiles: CommandLine, tmp_pa
         (["-"], "Only a file can be watched"),
         (["none.toml"], "no file 'none.toml'"),
         ([""], "no file ''"),
+        (["leaf.svg"], "leaf.svg: is a drawing, not a design. Make a design of it: voronoi-tiles new p4 --from leaf.svg"),
         (["bird.toml", "-o", "-"], "cannot be written again and again"),
         (["bird.toml", "-o", "bird.gif"], "suffix .png or .svg"),
         (["bird.json", "-o", "bird.json"], "would be overwritten"),
@@ -171,8 +181,9 @@ def test_what_cannot_be_watched(arguments: list[str], message: str, voronoi_tile
     """One message, exit code 2, and nothing written."""
     for name in ("bird.toml", "bird.json"):
         (tmp_path / name).write_text(SEGMENT)
+    (tmp_path / "leaf.svg").write_text(FACE.format(3))
     assert message in complaint(voronoi_tiles("watch", *arguments, cwd=tmp_path))
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["bird.json", "bird.toml"]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["bird.json", "bird.toml", "leaf.svg"]
 
 
 def test_files_that_a_design_names(tmp_path: Path) -> None:

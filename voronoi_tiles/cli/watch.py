@@ -119,7 +119,9 @@ def _is_ours(path: str) -> bool:
 def _refuse_design(design: str) -> None:
     """Refuse what cannot be watched."""
     from voronoi_tiles.base.files import STDOUT, is_special
+    from voronoi_tiles.designs.load import refuse_drawing
 
+    refuse_drawing(design, design)
     if design == STDOUT or is_special(design):
         raise click.UsageError("Only a file can be watched, which is read whenever it is saved.")
     if not os.path.isfile(design):  # noqa: PTH113 - a name that the system refuses is no file, and no error here
@@ -189,4 +191,4 @@ def _written(design: str, targets: Sequence[str], options: RenderOptions, job: J
         for path, product in tiling.export(target, job=job):
             for note in () if product is None else product.notes:
                 say(as_options(note))
-            yield path if product is None else f"{path} ({product.summary()})"
+            yield path if product is None else f"{path} ({as_options(product.summary())})"

@@ -26,8 +26,7 @@ def read_text(file: str, shown: str) -> str:
         raise DesignError(
             "cannot read the design: it is closed", file=shown, remedy="Send a design to it, or name a file."
         )
-    if _is_drawing(file):
-        raise _drawing_error(file, shown)
+    refuse_drawing(file, shown)
     try:
         text = read_document(file, "design", missing="Check the path and its permissions.", remedy=STARTER)
     except DesignError as error:
@@ -35,6 +34,12 @@ def read_text(file: str, shown: str) -> str:
     if text.lstrip()[:1] == "<" or text.split(maxsplit=2)[:2] == ["0", "SECTION"]:
         raise _drawing_error(file, shown)
     return text
+
+
+def refuse_drawing(file: str, shown: str) -> None:
+    """Refuse a file that is a drawing by its name. Raises DesignError."""
+    if _is_drawing(file):
+        raise _drawing_error(file, shown)
 
 
 def _is_drawing(file: str) -> bool:
