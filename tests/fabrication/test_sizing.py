@@ -33,6 +33,18 @@ def scale_of(product: Product) -> float:
     return float(note.split(":")[0].removeprefix("scale "))
 
 
+def test_the_size_that_is_said_is_that_of_the_designs_own_tile() -> None:
+    """It is what a tile's width and height mean elsewhere, not those of a copy that is turned and takes a larger box."""
+    for name in ("p3-puzzle", "p4-hook"):
+        design = tiling(name).design
+        for job in (Job(pieces=6, sheet=(200.0, 150.0)), Job(pieces=6)):
+            product = tiling(name).make(job)
+            scale = scale_of(product) if job.sheet else 1.0
+            left, bottom, right, top = design.scaled(scale).tessellate().tiles[0].outline.bounds
+            size = f"a tile is {right - left:.1f} x {top - bottom:.1f} mm"
+            assert any(note.endswith(size) for note in product.notes), (size, product.notes)
+
+
 @pytest.mark.parametrize(
     ("name", "job"),
     [

@@ -214,8 +214,9 @@ def _tile_areas(tessellation: Tessellation) -> Floats:
 
 
 def _tile_size(layout: Layout) -> str:
-    """How large the largest tile is as it lies."""
-    box = item_boxes(*layout.period.own_outlines)
+    """How large the largest tile is, as the design has it: copies that are turned against it have other boxes."""
+    own = np.unique(layout.period.site, return_index=True)[1]  # the first of each site
+    box = item_boxes(*layout.period.own_outlines)[own]
     width, height = box[:, 2] - box[:, 0], box[:, 3] - box[:, 1]
     k = int(np.argmax(width * height))
     return f"a tile is {width[k]:.1f} x {height[k]:.1f} mm"
