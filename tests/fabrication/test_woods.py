@@ -65,7 +65,7 @@ def test_colours_are_balanced_or_too_few(name: str, colours: int) -> None:
     tessellation = tiling(name).tessellation
     least = colour_tiles(tessellation, "fewest").count
     if colours < least:
-        with pytest.raises(JobError, match="neighbours would be alike") as caught:
+        with pytest.raises(JobError, match=f"with `colours={colours}` neighbours would be alike") as caught:
             colour_tiles(tessellation, colours)
         assert f"Give {least} or more" in str(caught.value)
         return

@@ -90,7 +90,8 @@ class DrawnFiles:
         if not len(outlines):
             where = "" if layer is None else f" on the layer {shown(layer)}"
             raise DesignError(
-                f"nothing is drawn{where}", remedy="Draw lines or curves; texts have to be converted to paths."
+                f"nothing is drawn{where}",
+                remedy="Draw lines or curves, and show their layer; texts have to be converted to paths.",
             )
         left, bottom, right, top = outlines.bounds
         self.size = max(right - left, top - bottom)
@@ -122,7 +123,7 @@ def _chosen(drawing: ReadDrawing, layer: str | None) -> list[Shape]:
         more = f" and {len(there) - _NAMED} more" if len(there) > _NAMED else ""
         raise DesignError(
             f"there is no layer or colour {shown(layer)}",
-            remedy=f"The drawing has {', '.join(map(shown, there[:_NAMED])) or 'none'}{more}.",
+            remedy=f"The drawing has {', '.join(map(shown, there[:_NAMED])) or 'none'}{more}; hidden layers do not count.",
         )
     return found
 

@@ -84,7 +84,7 @@ def _so_many(pairs: Ints, fewest: PeriodicColouring, colours: int) -> PeriodicCo
     if found is None:
         few = colours < fewest.count
         raise JobError(
-            f"with {colours} `colours` "
+            f"with `colours={colours}` "
             + ("neighbours would be alike" if few else "some would be on no tile: the pattern does not repeat so late"),
             remedy=f"Give {fewest.count} {'or more' if few else 'or a few more'}, "
             "or colour by site, handedness or orientation.",

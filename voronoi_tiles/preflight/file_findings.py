@@ -122,11 +122,13 @@ def _left_out(drawing: ReadDrawing) -> Iterator[Finding]:
             message, remedy = f"{count:,} {name}: not read", "Convert it to paths, or remove it if it is not needed."
         yield Finding("unsupported", "warning", message, remedy, value=float(count))
     if drawing.clones:
-        name = "blocks" if drawing.format == "dxf" else "clones"
+        name = "block" if drawing.format == "dxf" else "clone"
+        judged = f"{name}: it is" if drawing.clones == 1 else f"{name}s: they are"
+        them = "it" if drawing.clones == 1 else "them"
         yield Finding(
             "clones",
             "info" if drawing.format == "dxf" else "warning",
-            f"{drawing.clones:,} {name}: they are judged as drawn here, but many drivers leave them out",
+            f"{drawing.clones:,} {judged} judged as drawn here, but many drivers leave {them} out",
             "Unlink the clones." if drawing.format == "svg" else "Explode the blocks.",
             value=float(drawing.clones),
         )
