@@ -92,6 +92,18 @@ def test_what_files_of_colours_have_in_common_is_said_once(here: Path, call: Cal
     ]
 
 
+@pytest.mark.parametrize("option", [("--scale", "2"), ("--tile-width", "30mm"), ("--tile-height", "30mm")])
+def test_a_size_and_a_number_of_pieces_on_a_sheet_are_two_sizes(
+    here: Path, call: Call, option: tuple[str, str]
+) -> None:
+    """The number alone would decide; where the sheet is what is looked for, both go together."""
+    before = set(here.rglob("*"))
+    number = ("--pieces", "4", *option)
+    refused = call("export", "squares.toml", "-o", "a.svg", "--sheet", "90x90mm", *number)
+    check_refused(refused, here, before, f"until so many fill the sheet. Leave out {option[0]}, or --pieces")
+    assert call("export", "squares.toml", "-o", "a.svg", *number).exit_code == 0
+
+
 @pytest.mark.parametrize("form", ["svg", "dxf", "pdf", "lbrn2"])
 def test_every_format_the_same_bytes_twice(here: Path, call: Call, form: str, voronoi_tiles: CommandLine) -> None:
     """In two processes; the suffix says what it is."""

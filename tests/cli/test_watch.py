@@ -171,7 +171,7 @@ def test_files_of_others_are_not_written_over(voronoi_tiles: CommandLine, tmp_pa
         (["-"], "Only a file can be watched"),
         (["none.toml"], "no file 'none.toml'"),
         ([""], "no file ''"),
-        (["leaf.svg"], "leaf.svg: is a drawing, not a design. Make a design of it: voronoi-tiles new p4 --from leaf.svg"),
+        (["leaf.svg"], "leaf.svg: is a drawing, not a design. Make a design of it: voronoi-tiles new p4"),
         (["bird.toml", "-o", "-"], "cannot be written again and again"),
         (["bird.toml", "-o", "bird.gif"], "suffix .png or .svg"),
         (["bird.json", "-o", "bird.json"], "would be overwritten"),

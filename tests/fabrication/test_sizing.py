@@ -34,7 +34,7 @@ def scale_of(product: Product) -> float:
 
 
 def test_the_size_that_is_said_is_that_of_the_designs_own_tile() -> None:
-    """It is what a tile's width and height mean elsewhere, not those of a copy that is turned and takes a larger box."""
+    """It is what a tile's width and height mean elsewhere, not those of a turned copy in a larger box."""
     for name in ("p3-puzzle", "p4-hook"):
         design = tiling(name).design
         for job in (Job(pieces=6, sheet=(200.0, 150.0)), Job(pieces=6)):

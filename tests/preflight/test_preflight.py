@@ -109,7 +109,8 @@ PLANTED: dict[str, tuple[str, list[tuple[str, Any, Any]]]] = {
 def test_a_single_clone_is_no_plural() -> None:
     """One is counted as one, two as two."""
     once = "<path id='a' d='M1 1h5v5z'/><use href='#a' x='20'/>"
-    for body, words in ((once, "1 clone: it is judged"), (f"{once}<use href='#a' x='40'/>", "2 clones: they are judged")):
+    twice = f"{once}<use href='#a' x='40'/>"
+    for body, words in ((once, "1 clone: it is judged"), (twice, "2 clones: they are judged")):
         assert [finding.message for finding in judged(body).findings if finding.message.startswith(words)]
 
 

@@ -136,13 +136,25 @@ def _settings(option: Option[Any, Any]) -> dict[str, Any]:
             return {"type": _TYPES[kind], "metavar": option.shown}
 
 
+def _refuse_scale() -> None:
+    """Refuse options that scale the design beside a number of pieces on a sheet, which would undo them."""
+    for name in click.get_current_context().meta.get(SCALE, ()):
+        flag = "--scale" if name == "factor" else f"--{name.replace('_', '-')}"
+        raise click.UsageError(
+            f"--pieces scales the design until so many fill the sheet. Leave out {flag}, or --pieces."
+        )
+
+
 def with_job(command: Command) -> Command:
     """Add the options of a job; the command gets `job`, None where none of them is given."""
 
     @wraps(command)
     def run(**arguments: Any) -> Any:
         given = {name: value for name in _OPTIONS if (value := arguments.pop(name)) is not None}
-        return command(job=Job(**given) if given else None, **arguments)
+        job = Job(**given) if given else None
+        if job is not None and job.pieces is not None and job.sheet is not None:
+            _refuse_scale()
+        return command(job=job, **arguments)
 
     for name, option in reversed(_OPTIONS.items()):
         flags = _SPELLINGS.get(name, (f"--{name.replace('_', '-')}",))

@@ -123,7 +123,8 @@ def _chosen(drawing: ReadDrawing, layer: str | None) -> list[Shape]:
         more = f" and {len(there) - _NAMED} more" if len(there) > _NAMED else ""
         raise DesignError(
             f"there is no layer or colour {shown(layer)}",
-            remedy=f"The drawing has {', '.join(map(shown, there[:_NAMED])) or 'none'}{more}; hidden layers do not count.",
+            remedy=f"The drawing has {', '.join(map(shown, there[:_NAMED])) or 'none'}{more}; "
+            "hidden layers do not count.",
         )
     return found
 
