@@ -49,7 +49,8 @@ def test_a_drawing_becomes_a_design(voronoi_tiles: CommandLine, tmp_path: Path) 
     (tmp_path / "designs").mkdir()
     for output in ("leaf.toml", "designs/leaf.toml"):
         result = voronoi_tiles("new", "p3", "--from", "leaf.svg", "-o", output, cwd=tmp_path)
-        assert (result.returncode, result.stdout, result.stderr) == (0, "", "")
+        assert (result.returncode, result.stdout) == (0, "")
+        assert re.fullmatch(r"leaf\.svg is 60\.1 x 43\.14 mm, in a cell of a = [\d.]+\n", result.stderr)
         design = vt.Design.load(tmp_path / output)
         assert [site.name for site in design.sites] == ["leaf"]
         assert Path(design.files[1]).resolve() == tmp_path / "leaf.svg"

@@ -6,6 +6,7 @@ import os
 from collections.abc import Iterable, Sequence
 from typing import Final
 
+import numpy as np
 import shapely
 from shapely import affinity
 
@@ -52,8 +53,8 @@ def drawing_text(
 ) -> tuple[str, tuple[str, ...]]:
     """The commented design file of a drawing in a group, as it is to be written to `output`, None for nowhere.
 
-    Its cell is made for it, and its tiles have been computed. Also gives the notes of the design. Raises DesignError
-    where the drawing cannot be read.
+    Its cell is made for it, and its tiles have been computed. Also gives the notes of the design, with its size. Raises
+    DesignError where the drawing cannot be read.
     """
     kind = read_group(group)
     files = DrawnFiles("", 1.0)
@@ -63,7 +64,8 @@ def drawing_text(
     except DesignError as error:
         raise error.with_key("") from None
     tolerance = min(max(FLATTENING_MM, _one_digit(files.size / _COARSE)), _one_digit(files.size / _FINE))
-    place = find_place(Design("p1", _ROOM, Site(lines, tolerance=tolerance)).noded, kind)
+    noded = Design("p1", _ROOM, Site(lines, tolerance=tolerance)).noded
+    place = find_place(noded, kind)
     folder = os.path.realpath(os.path.dirname(output or ""))  # noqa: PTH120 - any name
     beside, base = os.path.split(file)
     stroke = {"file": os.path.relpath(os.path.join(os.path.realpath(beside), base), folder), **chosen}  # noqa: PTH118
@@ -83,7 +85,11 @@ def drawing_text(
         result=f"{name}-tile.svg",
     )
     Design.loads(text, folder=folder).tessellate()
-    return text, (*files.notes, _POLYGON.format(group=group)) if group in _ENCLOSED else tuple(files.notes)
+    # A unit that is a slip, or was guessed, is seen by the size.
+    nodes = noded[0].nodes
+    cell = ", ".join(f"{key} = {value:g}" for key, value in place.cell.items())
+    notes = [*files.notes, f"{file} is {np.ptp(nodes.real):.4g} x {np.ptp(nodes.imag):.4g} mm, in a cell of {cell}"]
+    return text, (*notes, _POLYGON.format(group=group)) if group in _ENCLOSED else tuple(notes)
 
 
 def _one_digit(value: float) -> float:
