@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections import Counter
 from typing import Any
 
@@ -195,6 +196,22 @@ def test_the_report_says_how_many_sheets() -> None:
     assert figures["packing"][0]["share"] == pytest.approx(50 * 400 / (4 * 105 * 65))
     assert figures["pieces"]["count"] == 100
     assert squares().report(Job())["packing"] == []
+
+
+def test_a_frame_around_packed_tiles_is_reported_and_made_again() -> None:
+    """With a kerf too: packed tiles need no room beside each other. The recipe of every file lays the same files."""
+    job = Job(sheet=(120.0, 120.0), stock=(105.0, 65.0), colours=2, kerf=0.2, frame=8.0, pack=True)
+    figures = squares().report(job)
+    assert (figures["pieces"]["count"], figures["pieces"]["frame"]) == (25, 1)
+    assert sum(row["pieces"] for row in figures["packing"]) == 25
+    tiles = squares()
+    files = {name: product.drawing for name, product in make_colours(tiles.design, tiles.tessellation, job)}
+    assert list(files)[-1] == "frame"
+    for name, drawing in files.items():
+        recipe = json.loads(drawing.recipe["job"])
+        again = make_colours(tiles.design, tiles.tessellation, Job(**recipe))
+        assert [other for other, _ in again] == list(files)
+        assert dict(again)[name].drawing.recipe == drawing.recipe
 
 
 @pytest.mark.parametrize(

@@ -176,7 +176,8 @@ def make_reported(design: Design, tessellation: Tessellation, job: Job) -> tuple
         }
         for one in (pack_colours(plan.layout, plan.colouring) if job.pack else ())
     ]
-    together = replace(job, colours=job.scheme, into="layers", pack=False, stock=None)
+    # Tiles lie as they are laid out, where a frame and a kerf, which a job has only with packing, are taken into account.
+    together = replace(job, colours=job.scheme, into="layers", pack=False, stock=None, fit="whole", frame=None)
     return plan.product(together), rows
 
 
@@ -220,6 +221,7 @@ class _Plan:
 
     def packed(self, job: Job) -> list[tuple[str, Product]]:
         """The sheets that the colours are packed on, and the frame, each with a name for its file."""
+        job = replace(job, only_colour=None)  # which the recipe of a frame has
         found = []
         for one in pack_colours(self.layout, self.colouring):
             for number, layout in enumerate(one.sheets):
