@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from math import fsum
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -88,6 +89,13 @@ class ProofReport:
         ]
         # Written so that NaN fails.
         return [(name, value, limit, bool(value <= limit)) for name, value, limit in figures]
+
+    def document(self) -> list[dict[str, Any]]:
+        """The figures in the types of JSON: each with "name", "value", "limit" and "passed"."""
+        return [
+            {"name": name, "value": value, "limit": limit, "passed": passed}
+            for name, value, limit, passed in self.rows()
+        ]
 
     @property
     def passed(self) -> bool:

@@ -133,10 +133,7 @@ class Tiling:
                 "area": lattice.det,
             },
             "tiles": [tile.figures() for tile in self.tiles],
-            "proof": [
-                {"name": name, "value": value, "limit": limit, "passed": passed}
-                for name, value, limit, passed in self.proof.rows()
-            ],
+            "proof": self.proof.document(),
         }
 
     def check(
@@ -187,10 +184,7 @@ class Tiling:
         return {
             "design": self.design.name,
             "group": self.design.group.name,
-            "proof": [
-                {"name": name, "value": value, "limit": limit, "passed": passed}
-                for name, value, limit, passed in self.proof.rows()
-            ],
+            "proof": self.proof.document(),
             "check": check.document(),
         }
 
