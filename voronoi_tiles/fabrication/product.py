@@ -176,7 +176,7 @@ def make_reported(design: Design, tessellation: Tessellation, job: Job) -> tuple
         }
         for one in (pack_colours(plan.layout, plan.colouring) if job.pack else ())
     ]
-    # Tiles lie as they are laid out, where a frame and a kerf, which a job has only with packing, are taken into account.
+    # What is laid out stays; a frame and a kerf go together only where tiles are packed.
     together = replace(job, colours=job.scheme, into="layers", pack=False, stock=None, fit="whole", frame=None)
     return plan.product(together), rows
 
