@@ -178,7 +178,11 @@ def test_fills_are_closed(tmp_path: Path) -> None:
         ("a.svg", LAYERS, ["text (1)", 'layer "guide"']),
         ("a.svg", f'{HEAD}><path d="M 1 1 h 9" stroke="red"/></svg>', ["no size"]),
         ("a.svg", f'{HEAD} width="90" height="9"><path d="M 1 1 h 9" stroke="red"/></svg>', ["no unit"]),
-        ("a.dxf", "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\n0\n10\n0\n20\n0\n11\n3\n21\n2\n0\nENDSEC\n0\nEOF\n", []),
+        (
+            "a.dxf",
+            "0\nSECTION\n2\nENTITIES\n0\nLINE\n8\n0\n10\n0\n20\n0\n11\n3\n21\n2\n0\nENDSEC\n0\nEOF\n",
+            ["no unit"],
+        ),
     ],
 )
 def test_what_is_left_out_or_guessed_is_said(tmp_path: Path, name: str, text: str, said: list[str]) -> None:

@@ -137,6 +137,17 @@ def test_the_scale_of_a_design_is_scaled_numbers(group: str, factor: float) -> N
     assert vt.Design.from_dict(table(1.0, scale=factor)) != vt.Design.from_dict(table(1.0))
 
 
+def test_equal_designs_are_moved_alike() -> None:
+    """By lengths in the design's units, whether its size stands in its numbers or in its scale."""
+    keyed = vt.Design("p4", 60, vt.Site([vt.polyline(POINTS)], rotate=20, translate=4), scale=1.5)
+    written = vt.Design("p4", 90, vt.Site([vt.polyline(POINTS, scale=1.5)], rotate=20, translate=6))
+    assert keyed == written
+    moves: dict[str, Any] = {"mirror": True, "scale": 0.5, "rotate": 30, "translate": (10, -4)}
+    moved = keyed.moved(**moves)
+    assert moved == written.moved(**moves)
+    assert np.abs(plane(moved.noded[0].nodes) - image(matrix(moves), plane(keyed.noded[0].nodes))).max() < 1e-12
+
+
 def test_tolerances_are_not_scaled() -> None:
     """They say how exact the product is: a larger design has more segments, not coarser ones."""
     design = vt.Design("p1", (900, 900, 90), vt.Site([vt.path(CURVE)], tolerance=0.01))

@@ -17,10 +17,11 @@ from voronoi_tiles.base.files import refuse_overwriting, write_whole
 from voronoi_tiles.base.units import UNIT_MM, Units
 from voronoi_tiles.designs.art import Art
 from voronoi_tiles.designs.checking import CheckedDesign, checked
-from voronoi_tiles.designs.coordinates import PointLike
+from voronoi_tiles.designs.coordinates import PointLike, pair
 from voronoi_tiles.designs.design_arguments import argument_of, cell_table, listed_sites, scale_table
 from voronoi_tiles.designs.drawn_site import Site, site_of
 from voronoi_tiles.designs.load import parse, read_text
+from voronoi_tiles.designs.schema import placement
 from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.designs.toml_text import toml_text
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
@@ -321,11 +322,14 @@ class Design:
     ) -> Design:
         """The design with all strokes and art moved in its cell, in the order of the arguments, about the origin.
 
-        `mirror` is x -> -x, `rotate` in degrees counter-clockwise. The group and its origin stay, so that the tiles
-        are others, but for the motions that map the group onto itself. Raises DesignError.
+        `mirror` is x -> -x, `rotate` in degrees counter-clockwise, `translate` in the design's units whatever its
+        `scale`. The group and its origin stay, so that the tiles are others, but for the motions that map the group
+        onto itself. Raises DesignError.
         """
+        by = placement({"mirror": mirror, "scale": scale, "rotate": rotate, "translate": pair(translate)})
+        shift = by.translate / self.scale  # which comes after what places a site
         return self.replace(
-            sites=self._moved(lambda site: site.moved(mirror=mirror, scale=scale, rotate=rotate, translate=translate))
+            sites=self._moved(lambda site: site.moved(mirror=mirror, scale=scale, rotate=rotate, translate=shift))
         )
 
     def _moved(self, move: Callable[[Site], Site]) -> list[Site]:
