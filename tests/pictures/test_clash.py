@@ -118,6 +118,17 @@ def test_the_file_says_what_its_picture_shows(overlay: tuple[str, ...], tmp_path
     assert text.split(b"\0", 1)[1].decode() == str(result.touching)
 
 
+def test_there_are_no_tiles_to_colour_where_copies_touch() -> None:
+    """A picture in the colours of woods shows the clash as any other does; what is no such colour is refused still."""
+    plain, woods = (
+        vt.render(corner_design(), size=60, colours=colours, renderer="cpu") for colours in ("none", "handedness")
+    )
+    assert isinstance(woods.touching, vt.TouchingCopiesError)
+    assert np.array_equal(plain.pixels, woods.pixels)
+    with pytest.raises(vt.JobError, match="`colours` 'blue' is unknown"):
+        vt.render(corner_design(), size=60, colours="blue", renderer="cpu")
+
+
 def test_images_of_the_place_are_marked_as_well() -> None:
     """The place turned by the group; in a picture of very many cells only the pair is."""
     design = corner_design()

@@ -21,6 +21,7 @@ from voronoi_tiles.base.values import shown
 from voronoi_tiles.base.version import __version__
 from voronoi_tiles.crosscheck import CheckReport
 from voronoi_tiles.designs.design import Design
+from voronoi_tiles.fabrication.job_options import read_colours
 from voronoi_tiles.formats.png import PngStream
 from voronoi_tiles.groups.symmetry_elements import placed, symmetry_elements
 from voronoi_tiles.pictures import difference as diff
@@ -104,7 +105,8 @@ def render(
     - `notice` is called with one line when OpenGL is given up, `progress` with how many rows, of how many, are done.
 
     Raises ArgumentError for a size, a region or a word that cannot be, DesignError for art that is not there,
-    RenderError where OpenGL fails and is insisted on, OutputError, and with the overlay "outline" ProofError.
+    RenderError where OpenGL fails and is insisted on, OutputError, with the overlay "outline" or `colours` ProofError,
+    and JobError for `colours` that cannot be.
 
     >>> import voronoi_tiles as vt
     >>> picture = vt.render(vt.starter("p4"), size=(120, 80), renderer="cpu")
@@ -145,6 +147,7 @@ def paint(
     for word in overlay:
         if word not in OVERLAYS:
             raise ArgumentError(f"`overlay` {shown(word)} is unknown", remedy=f"Use {', '.join(OVERLAYS)}.")
+    scheme = read_colours("colours", colours)
     pattern = Pattern(design.noded, design.group, design.lattice)
     region, width, height = fitted_region(default_region(pattern) if region is None else region, size)
     touching: TouchingCopiesError | None = None
@@ -165,7 +168,7 @@ def paint(
             *(clash_marks(touching, design, region, width, height) if touching else []),
         ],
         style=style,
-        colouring=None if colours == "none" else wood_colouring(design, pattern, colours),
+        colouring=None if scheme == "none" or touching else wood_colouring(design, pattern, scheme),
         nobody=_PAPER if touching else None,
     )
     text = {
