@@ -99,7 +99,7 @@ def test_python_and_a_file_say_the_same(text: str) -> None:
         assert same_bits(other, read)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=80, deadline=None)
 @given(design=strategies.designs(), units=st.sampled_from(["mm", "cm", "in"]))
 def test_toml_gives_the_design_back(design: dict[str, Any], units: str) -> None:
     """Any design, written as TOML and read, is equal to the bit, and so is one made in Python."""

@@ -91,7 +91,7 @@ def site_shapely(site: NodedSite) -> shapely.Geometry:
     return as_shapely([[complex(x0, y0), complex(x1, y1)] for x0, y0, x1, y1 in site.elements.tolist()])
 
 
-@settings(deadline=None, max_examples=300)
+@settings(deadline=None, max_examples=150)
 @given(grid_lines)
 def test_noding_on_a_grid(lines: list[list[complex]]) -> None:
     """Collinear, overlapping, T-shaped, crossing, repeated: segments meet only at nodes, the drawing stays."""

@@ -96,7 +96,7 @@ def fits(plug: shapely.Polygon, hole: shapely.Polygon, from_: complex, to: compl
     return placed.difference(hole).area, hole.difference(placed).area
 
 
-@pytest.mark.parametrize("true", [0.05, 0.2, 0.4])
+@pytest.mark.parametrize("true", [0.2, *(pytest.param(kerf, marks=pytest.mark.slow) for kerf in (0.05, 0.4))])
 def test_the_plug_for_the_true_kerf_fits_exactly(true: float) -> None:
     """Cut with kerf K, plug and hole for K have the nominal size and one outline; the others differ by 2 (K - k)."""
     drawing = coupon_drawing(KERFS, thickness=3.0, plug=12.0)
@@ -155,7 +155,7 @@ def test_slots_take_the_sheet() -> None:
     assert centres == pytest.approx([hole.real for hole in holes[: len(KERFS)]])
 
 
-@pytest.mark.parametrize("true", [0.08, 0.31])
+@pytest.mark.parametrize("true", [0.08, pytest.param(0.31, marks=pytest.mark.slow)])
 def test_strips_measure_the_kerf(true: float) -> None:
     """The kerf is what is missing from the strips side by side, divided by their number."""
     drawing = coupon_drawing(KERFS, thickness=3.0)

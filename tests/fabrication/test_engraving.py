@@ -65,7 +65,7 @@ def check_copies(lines: Any, images: list[Any]) -> None:
     assert float(shapely.distance(wanted, dense(lines)).max()) < 1e-6
 
 
-@pytest.mark.parametrize("name", ["pg-wave", "p4g-fan", "p1-leaf"])
+@pytest.mark.parametrize("name", ["pg-wave", pytest.param("p4g-fan", marks=pytest.mark.slow), "p1-leaf"])
 def test_art_moves_with_every_copy(tmp_path: Path, name: str) -> None:
     """Turned and mirrored where the copy is; only on tiles that are there."""
     tiles = drawn(tmp_path, f'<path d="M 2 3 L 9 4 L 5 12" {STROKE}/>', name)

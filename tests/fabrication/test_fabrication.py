@@ -138,7 +138,10 @@ KINDS = {"exact": {LINE, QUAD}, "arc": {LINE, ARC}, "polyline": {LINE}, "spline"
 
 
 @pytest.mark.parametrize("curves", sorted(KINDS))
-@pytest.mark.parametrize(("name", "edges"), [("p1-leaf", "once"), ("p1-leaf", "pieces"), ("pg-swallow", "once")])
+@pytest.mark.parametrize(
+    ("name", "edges"),
+    [("p1-leaf", "once"), ("p1-leaf", "pieces"), pytest.param("pg-swallow", "once", marks=pytest.mark.slow)],
+)
 def test_curves_are_within_the_accuracy(name: str, edges: str, curves: str) -> None:
     """Of the exact tiles both ways, with fewer pieces where the accuracy is coarser."""
     size = (round(2.6 * abs(tiling(name).design.lattice.a), 1),) * 2

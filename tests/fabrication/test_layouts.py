@@ -111,7 +111,7 @@ def test_a_missing_or_doubled_line_is_seen() -> None:
     assert more <= least
 
 
-@pytest.mark.parametrize("name", ["p4-hook", "p1-fish", "pg-wave"])
+@pytest.mark.parametrize("name", [pytest.param("p4-hook", marks=pytest.mark.slow), "p1-fish", "pg-wave"])
 def test_lines_are_the_exact_tiles(name: str) -> None:
     """Turned by a quarter and moved: the lines of the sheet are those of the copies by the group's operations."""
     size = sheet_of(name, 2.5)
@@ -230,11 +230,11 @@ def least_gap(shapes: list[Any]) -> float:
     [
         ("p1-leaf", {"gap": 2.0}, 2.0),
         ("pg-wave", {"kerf": 0.2}, 1.0),
-        ("p3-puzzle", {"kerf": 0.8}, 1.6),
-        ("p6-rosette", {"gap": 3.0, "fillet": 0.3}, 3.0),
+        pytest.param("p3-puzzle", {"kerf": 0.8}, 1.6, marks=pytest.mark.slow),
+        pytest.param("p6-rosette", {"gap": 3.0, "fillet": 0.3}, 3.0, marks=pytest.mark.slow),
         ("cmm-scroll", {"gap": 1.0}, 1.0),
         ("p4g-fan", {"gap": 2.0, "rotate": 20.0, "fit": "clip"}, 2.0),
-        ("p31m", {"gap": 0.0, "kerf": 0.3}, 0.0),
+        pytest.param("p31m", {"gap": 0.0, "kerf": 0.3}, 0.0, marks=pytest.mark.slow),
     ],
 )
 def test_contours_are_as_far_apart_as_asked_and_no_farther(name: str, job: dict[str, Any], wanted: float) -> None:
