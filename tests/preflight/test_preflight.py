@@ -19,7 +19,7 @@ from click.testing import CliRunner
 from helpers.examples import each_example, tiling
 
 from voronoi_tiles import Design, Job
-from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.base.errors import ArgumentError, DesignError
 from voronoi_tiles.cli.preflight import preflight as command
 from voronoi_tiles.formats.dxf.reader import dxf_drawing
 from voronoi_tiles.formats.recipe import job_of, tab_width
@@ -536,3 +536,27 @@ def test_the_commands_messages(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) 
     result = CliRunner().invoke(command, [str(path)])
     assert result.exit_code == 2
     assert "not enough memory for this drawing. Split it" in result.stderr
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        {"limits": 3},
+        {"limits": None},
+        {"limits": {"tolerance": 1}},
+        {"layers": 3},
+        {"layers": None},
+        {"layers": [3]},
+        {"layers": [["cut"]]},
+        {"layers": b"cut"},
+    ],
+    ids=str,
+)
+def test_arguments_that_cannot_be_are_named(arguments: dict[str, Any], tmp_path: Path) -> None:
+    """Limits that are none, and layers that are no names: one ArgumentError, before anything is read."""
+    (name,) = arguments
+    drawing = svg_drawing(f"<svg {NS} {PAGE} stroke='red'><path d='M0 0h1'/></svg>".encode(), "t.svg")
+    with pytest.raises(ArgumentError, match=f"`{name}`"):
+        preflight(tmp_path / "none.svg", **arguments)
+    with pytest.raises(ArgumentError, match=f"`{name}`"):
+        judge(drawing, "t.svg", **arguments)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterable
 from typing import Any, TypeVar
 
 from voronoi_tiles.base.errors import ArgumentError
@@ -30,6 +31,16 @@ def number(name: str, value: Any, remedy: str, *, least: float = -COORDINATE_MAX
     if not is_number(value) or not least <= value <= COORDINATE_MAX:
         raise ArgumentError(f"`{name}` {shown(value)} cannot be", remedy=remedy)
     return float(value)
+
+
+def texts(name: str, value: Any, remedy: str) -> list[str]:
+    """The value of an argument that has to be texts; a single one is a list of one. Raises ArgumentError."""
+    listed = [value] if isinstance(value, str) else value
+    if isinstance(listed, Iterable):
+        found = list(listed)
+        if all(isinstance(each, str) for each in found):
+            return found
+    raise ArgumentError(f"`{name}` {shown(value)} cannot be", remedy=remedy)
 
 
 def function(name: str, value: Any) -> None:

@@ -11,7 +11,7 @@ from types import ModuleType
 
 import numpy as np
 
-from voronoi_tiles.base.arguments import path_name
+from voronoi_tiles.base.arguments import instance, path_name, texts
 from voronoi_tiles.base.files import refuse_overwriting, write_whole
 from voronoi_tiles.formats.reading import DrawingError, ReadDrawing, read_drawing
 from voronoi_tiles.formats.recipe import tab_width
@@ -37,8 +37,8 @@ def preflight(
 
     Only the `layers` (or colours "#rrggbb") are judged; without any, all strokes but those on layers whose names say
     that they are engraved or scored. With `marked` a picture of the drawing is written, an SVG file with a numbered
-    mark at every finding. Raises DrawingError for what cannot be read, and for a layer that the file has not, and
-    OutputError.
+    mark at every finding. Raises DrawingError for what cannot be read, and for a layer that the file has not,
+    OutputError, and ArgumentError.
 
     >>> import tempfile, voronoi_tiles as vt
     >>> with tempfile.TemporaryDirectory() as folder:
@@ -48,9 +48,10 @@ def preflight(
     (False, ['duplicate'])
     """
     name = path_name("path", path)
+    layers = _check(limits, layers)
     shown = "standard input" if name == "-" else name
     try:
-        report = judge(read_drawing(path), shown, limits=limits, layers=[layers] if isinstance(layers, str) else layers)
+        report = judge(read_drawing(path), shown, limits=limits, layers=layers)
     except DrawingError as error:
         raise error.with_file(shown) from None
     if marked is not None:
@@ -62,7 +63,11 @@ def preflight(
 def judge(
     drawing: ReadDrawing, file: str, *, limits: Limits = DEFAULT_LIMITS, layers: Collection[str] = ()
 ) -> PreflightReport:
-    """Find what would spoil the cut of a drawing that was read; `file` is its name in the report."""
+    """Find what would spoil the cut of a drawing that was read; `file` is its name in the report.
+
+    Raises DrawingError for a layer that the drawing has not, and ArgumentError.
+    """
+    layers = _check(limits, layers)
     if drawing.job:  # a file of our own is in millimetres, also where its version cannot say so
         drawing = replace(drawing, unit=drawing.unit or "mm", unit_known=True)
     if limits.tabs is None:
@@ -95,6 +100,12 @@ def judge(
         length=float(lengths.sum()),
         cut=tuple(cut),
     )
+
+
+def _check(limits: Limits, layers: Collection[str]) -> list[str]:
+    """The names of the layers. Raises ArgumentError for arguments of other types."""
+    instance("limits", limits, Limits)
+    return texts("layers", layers, 'Give names of layers or colours, such as ["cut", "#ff0000"].')
 
 
 class _CallableModule(ModuleType):
