@@ -263,6 +263,14 @@ HOSTILE = {
     "sheet": f"<style>{'a{' * 100_000}</style>",
     "long sheet": f"<style>{'a{b:c}' * 1_000_000}</style>",
     "custom": "<g style='" + ";".join(f"--a{k}:1" for k in range(2000)) + "'/>",
+    "a circle of many variables": LINE.format(
+        "style='" + ";".join(f"--a{k}: var(--a{(k + 1) % 400})" for k in range(400)) + "'"
+    ),
+    "a long chain of brackets and variables": LINE.format(
+        "style='" + ";".join(f"--a{k}: {'a(' * 30}var(--a{k + 1}){')' * 30}" for k in range(400)) + "'"
+    ),
+    "a long name of a layer": "<style>@layer " + ".".join("a" * 60_000) + " { path { fill: red } }</style>",
+    "many long names of layers": "<style>" + ("@layer " + ".".join("a" * 1_000) + ";") * 1_000 + "</style>",
     "universal selectors": "<style>"
     + "".join(f"g g g g g g .x{k} > * {{ fill: red }}" for k in range(300))
     + "</style>"
@@ -284,6 +292,13 @@ def test_hostile_styles_give_one_message(name: str, monkeypatch: pytest.MonkeyPa
     assert "\n" not in str(caught.value)
 
 
+def test_variables_in_brackets_are_replaced() -> None:
+    """A variable counts wherever it stands: in a function, and in brackets in it."""
+    drawing = svg("<circle stroke='red' style='--a: 2; r: calc((var(--a) + 1) * 1px)'/>")
+    assert summary(drawing) == summary(svg("<circle stroke='red' r='3'/>"))
+    assert not drawing.ignored
+
+
 def test_variables_that_grow_are_none() -> None:
     """A bomb of variables has no value; what uses it is named."""
     doubling = ";".join(f"--a{k}: var(--a{k - 1}) var(--a{k - 1})" for k in range(1, 60))
@@ -291,6 +306,18 @@ def test_variables_that_grow_are_none() -> None:
     assert drawing.ignored == {"paint 'var(--a59)'": 1}
     deep = "var(--a," * 60 + "red" + ")" * 60
     assert svg(LINE.format(f'style="stroke: {deep}"')).shapes[0].stroke == "#ff0000"
+
+
+@given(
+    st.sampled_from(["oklch({})", "oklab({})", "lab({})", "lch({})", "hsl({})", "hwb({})", "rgb({})"])
+    | st.sampled_from(["srgb-linear", "display-p3", "rec2020", "prophoto-rgb", "xyz"]).map("color({} {{}})".format),
+    st.lists(st.sampled_from(["1e308", "-1e308%", "1e154", "-1e103", "1e400", "0.5", "none"]), min_size=3, max_size=3),
+)
+def test_colours_of_numbers_beyond_all_bounds_are_seen(notation: str, numbers: list[str]) -> None:
+    """A colour with numbers that nobody means is shown in some colour, or named: no line vanishes."""
+    said = notation.format(" ".join(numbers))
+    drawing = svg(LINE.format(f'fill="none" stroke="{said}"'))
+    assert [shape.stroke is not None for shape in drawing.shapes] == [True]
 
 
 def test_rules_that_are_not_read_are_counted_and_hide_nothing() -> None:

@@ -197,10 +197,15 @@ class Declarations:
     def inherit_custom(self, before: Mapping[str, str]) -> Mapping[str, str]:
         """The custom properties of the element; `before` are its parent's.
 
-        Raises DrawingError where there are more than CUSTOM_MAX.
+        Raises DrawingError where there are more than CUSTOM_MAX, or where one stands for another too often in turn.
         """
         own = {name: self._candidates(name)[0][0] for name in self.names if name.startswith("--")}
-        self.custom = _Custom(before, own).resolved() if own else before
+        try:
+            self.custom = _Custom(before, own).resolved() if own else before
+        except RecursionError:
+            raise DrawingError(
+                "custom properties that stand for each other in a long chain", remedy="Save it as plain SVG."
+            ) from None
         return self.custom
 
 
@@ -268,7 +273,7 @@ class _Custom:
 def substituted(text: str, lookup: Callable[[str], str | None]) -> str | None:
     """A value with what var() stands for; None where that is nothing, or longer than VALUE_MAX.
 
-    Raises DrawingError where brackets, or properties that stand for each other, are nested too deep.
+    Raises DrawingError where brackets are nested too deep.
     """
     if "var(" not in text.lower():
         return text
@@ -280,13 +285,14 @@ def _replaced(tokens: list[Token], lookup: Callable[[str], str | None]) -> str |
     """The text of tokens, without var()."""
     parts: list[str] = []
     for token in tokens:
-        if token.type != "function":
+        if token.type not in {"function", "() block"}:
             part: str | None = tinycss2.serialize([token])
-        elif token.lower_name == "var":
+        elif token.type == "function" and token.lower_name == "var":
             part = _of_variable(token, lookup)
         else:
-            inner = _replaced(token.arguments, lookup)
-            part = None if inner is None else f"{token.name}({inner})"
+            name, inside = (token.name, token.arguments) if token.type == "function" else ("", token.content)
+            inner = _replaced(inside, lookup)
+            part = None if inner is None else f"{name}({inner})"
         if part is None:
             return None
         parts.append(part)

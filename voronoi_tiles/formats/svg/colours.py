@@ -69,8 +69,16 @@ def _parsed(word: str, current: Colour, dark: bool) -> Colour | None:
             return current
         case "" if word in _SYSTEM_COLOURS:
             return Colour(_SYSTEM_COLOURS[word])
-    found = Color.match(word, fullmatch=True)
-    return None if found is None else _shown(found.color)
+    return _written(word)
+
+
+def _written(word: str) -> Colour | None:
+    """The colour of a name, or of a function that says its channels; None where it is none."""
+    try:
+        found = Color.match(word, fullmatch=True)
+        return None if found is None else _shown(found.color)
+    except (ArithmeticError, ValueError):  # the powers of large numbers are beyond all bounds
+        return None
 
 
 def _hexadecimal(digits: str) -> Colour | None:

@@ -14,7 +14,7 @@ from cssselect2 import SelectorError, parser
 from tinycss2.ast import Node as Token
 
 from voronoi_tiles.formats.shapes import DrawingError
-from voronoi_tiles.formats.svg.css_text import check_nesting, split
+from voronoi_tiles.formats.svg.css_text import NESTING_MAX, check_nesting, split
 from voronoi_tiles.formats.svg.properties import PROPERTIES, WIDE, Origin, Verdict, expanded, verdict
 from voronoi_tiles.formats.svg.selectors import Selectors, is_understood, parse_selectors
 from voronoi_tiles.formats.svg.xml_tree import Node
@@ -147,7 +147,14 @@ class StyleSheets:
             self.unread += 1
 
     def _layer(self, names: tuple[str, ...]) -> tuple[int, ...]:
-        """The place of a layer among all; layers come in the order in which they are first named."""
+        """The place of a layer among all; layers come in the order in which they are first named.
+
+        Raises DrawingError where layers are nested more than NESTING_MAX deep.
+        """
+        if len(names) > NESTING_MAX:
+            raise DrawingError(
+                f"layers nested more than {NESTING_MAX} deep in its styles", remedy="Save it as plain SVG."
+            )
         return (
             *(self._layers.setdefault(names[:count], len(self._layers)) for count in range(1, len(names) + 1)),
             *_LAST,
