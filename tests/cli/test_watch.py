@@ -160,7 +160,7 @@ def test_files_of_others_are_not_written_over(voronoi_tiles: CommandLine, tmp_pa
         (tmp_path / name).write_text(text)
         message = complaint(voronoi_tiles("watch", "bird.toml", cwd=tmp_path))
         assert f"{name} is there already" in message
-        assert "-o bird.png -o bird.svg" in message
+        assert "-o bird-tile.png -o bird-tile.svg" in message
         assert (tmp_path / name).read_text() == text
         (tmp_path / name).unlink()
 

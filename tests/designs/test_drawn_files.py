@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import json
+import os
 from pathlib import Path
 
 import ezdxf
@@ -202,6 +203,8 @@ def test_what_is_left_out_or_guessed_is_said(tmp_path: Path, name: str, text: st
         ({"file": ""}, "must be a file's name"),
         ({"file": 5}, "must be a file's name"),
         ({"file": "-"}, "-: cannot be read"),
+        ({"file": "pipe.svg"}, "pipe.svg: is a pipe or a device"),
+        ({"file": "/dev/zero"}, "/dev/zero: is a pipe or a device"),
         ({"file": "text.svg"}, "text.svg: nothing is drawn. Draw lines or curves, and show their layer"),
         ({"file": "dot.svg"}, "dot.svg: nothing is drawn"),
         ({"file": "broken.svg"}, "broken.svg, line 1, d: broken SVG path data"),
@@ -224,6 +227,7 @@ def test_what_cannot_be_drawn_is_refused(tmp_path: Path, chosen: dict[str, objec
     table = {"schema": 1, "group": "p4", "cell": {"a": 90}, "site": [{"strokes": [{"point": [1, 1]}, chosen]}]}
     write(tmp_path, "design.json", json.dumps(table))
     write(tmp_path, "design.toml", "schema = 1")
+    os.mkfifo(tmp_path / "pipe.svg")
     with pytest.raises(vt.DesignError) as caught:
         vt.Design.load(tmp_path / "design.json")
     assert str(caught.value).startswith(f"{tmp_path / 'design.json'}, site[0].strokes[1]")

@@ -178,3 +178,19 @@ def test_touching_strokes_get_a_place(tmp_path: Path) -> None:
 def test_a_point_gets_a_place() -> None:
     """It has no size, and any cell will do."""
     assert placed(vt.Design("p4", 60, vt.Site([vt.point(0)])), "p3").tessellate()[0].area > 0
+
+
+@pytest.mark.parametrize("size", [1e-50, 1e-11])
+def test_strokes_too_small_for_any_cell_are_refused(size: float) -> None:
+    """With a sentence on the strokes, for there is no cell to speak of."""
+    with pytest.raises(vt.DesignError, match="the strokes are smaller than 1e-09"):
+        placed(vt.Site([vt.segment(0j, size)]), "p3")
+
+
+def test_a_drawing_that_no_site_can_be_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is wrong with a drawing, and not with a design or a stroke that nobody has written."""
+    monkeypatch.setattr("voronoi_tiles.base.box_join.PAIRS_MAX", 50)
+    (tmp_path / "hatch.svg").write_text(svg("".join(f"M0 {k}H100M{k} 0V100" for k in range(20))))
+    with pytest.raises(vt.DesignError) as caught:
+        drawing_text("p3", str(tmp_path / "hatch.svg"))
+    assert str(caught.value).startswith(f"{tmp_path / 'hatch.svg'}: the strokes cross")

@@ -59,7 +59,7 @@ def new(
         raise click.UsageError("--from takes a drawing, --fill a design: give one of them.")
     if drawing is None and (layer is not None or element is not None):
         raise click.UsageError("--layer and --id choose a part of a drawing: add --from DRAWING.")
-    if drawing == "-":
+    if drawing is not None and (drawing == "-" or is_special(drawing)):
         raise click.UsageError("The design names the drawing: --from needs a file.")
     stream = output == STDOUT or is_special(output)
     refuse_existing(output)

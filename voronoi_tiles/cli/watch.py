@@ -94,7 +94,7 @@ def _beside(design: str) -> tuple[str, ...]:
     targets = tuple(str(Path(design).with_suffix(suffix)) for suffix in (_PICTURE, ".svg"))
     for target in targets:
         if os.path.lexists(target) and not _is_ours(target):
-            named = " ".join(f"-o {path}" for path in targets)
+            named = " ".join(f"-o {Path(design).with_suffix('')}-tile{Path(path).suffix}" for path in targets)
             raise click.UsageError(
                 f"{target} is there already, and was not made by this program, or not left as it was. "
                 f"Say what to write: {named}, or other names."

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.base.files import is_special
 from voronoi_tiles.base.values import Table, shown, text, within
 from voronoi_tiles.designs.art import GUIDE
 from voronoi_tiles.formats.caveats import caveats
@@ -73,6 +74,8 @@ class DrawnFiles:
         if (name, element) not in self._read_before:
             # Never "-": a stroke is no place for standard input.
             path = os.path.join(self._folder or os.curdir, name)  # noqa: PTH118 - any name
+            if is_special(path):  # which would wait for a writer, and holds nothing the next time
+                raise DesignError("is a pipe or a device", remedy=FILE_REMEDY)
             self._read_before[name, element] = read_drawing(path, element=element)
         return self._read_before[name, element]
 

@@ -19,7 +19,9 @@ import shapely
 from scipy import ndimage, signal, sparse, spatial
 
 from voronoi_tiles.base.arrays import Complexes, Floats, plane
+from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import Isometry, move
+from voronoi_tiles.base.tolerance import CELL_MIN
 from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 
@@ -55,8 +57,13 @@ class Place(NamedTuple):
 
 
 def find_place(sites: Sequence[NodedSite], group: WallpaperGroup) -> Place:
-    """A cell of a group and a place in it for sites, which stay as they lie to each other; numbers are short."""
+    """A cell of a group and a place in it for sites, which stay as they lie to each other; numbers are short.
+
+    Raises DesignError for what is smaller than the smallest cell.
+    """
     drawing = _Silhouette.of(sites)
+    if drawing.diameter < CELL_MIN:
+        raise DesignError(f"the strokes are smaller than {CELL_MIN:g} together", remedy="Draw them larger.")
     upright = group.lattice(1.0, 1.0, 90.0)
     parts = {(unit, conj) for unit, _, conj in map(upright.isometry, group.operations)}
     search = _CellSearch(drawing, group, {part: drawing.distances(*part) for part in parts})

@@ -62,10 +62,15 @@ def drawing_text(
     try:
         lines = path(files.path_data({"file": file, **chosen}))
     except DesignError as error:
-        raise error.with_key("") from None
+        raise error.with_key(error.key if error.key in chosen else "") from None
     tolerance = min(max(FLATTENING_MM, _one_digit(files.size / _COARSE)), _one_digit(files.size / _FINE))
-    noded = Design("p1", _ROOM, Site(lines, tolerance=tolerance)).noded
-    place = find_place(noded, kind)
+    try:
+        noded = Design("p1", _ROOM, Site(lines, tolerance=tolerance)).noded
+        place = find_place(noded, kind)
+    except DesignError as error:
+        raise DesignError(
+            error.message, file=file, remedy="Draw less, or choose a part of it by layer or id."
+        ) from None
     folder = os.path.realpath(os.path.dirname(output or ""))  # noqa: PTH120 - any name
     beside, base = os.path.split(file)
     stroke = {"file": os.path.relpath(os.path.join(os.path.realpath(beside), base), folder), **chosen}  # noqa: PTH118
