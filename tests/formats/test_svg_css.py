@@ -278,6 +278,7 @@ HOSTILE = {
     + "</g>" * 900,
     "siblings": f"<style>g:nth-last-of-type(2n) {{ fill: red }}</style>{'<g/>' * 3_000}",
     "transform": '<path d="M0 0h1" style="transform: scale(1e300) scale(1e300)"/>',
+    "scale": '<path d="M0 0h1" style="scale: 1e308%" stroke="red"/>',
     "calc": f'<circle r="calc({"(" * 1000}1px{")" * 1000})"/>',
 }
 

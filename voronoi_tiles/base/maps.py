@@ -166,7 +166,8 @@ class Affine(NamedTuple):
     @property
     def scale(self) -> float:
         """The square root of the factor by which areas grow."""
-        return math.sqrt(abs(abs(self.a) ** 2 - abs(self.b) ** 2))
+        a, b = abs(self.a), abs(self.b)
+        return math.sqrt(abs(a - b)) * math.sqrt(a + b)  # squares of large numbers are beyond all bounds
 
 
 IDENTITY_MAP: Final = Affine(1 + 0j, 0j, 0j)
