@@ -12,12 +12,13 @@ import pytest
 import shapely
 from ezdxf.xclip import XClip
 from helpers import sheets
-from helpers.dxf_text import Tags, file_of, read, written
+from helpers.dxf_text import LINE, Tags, file_of, read, written
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
-from voronoi_tiles.formats.reading import ReadDrawing
+from voronoi_tiles.formats.dxf.splines import fitted_cubics
+from voronoi_tiles.formats.reading import DrawingError, ReadDrawing
 from voronoi_tiles.formats.svg.reader import svg_drawing
 from voronoi_tiles.paths.conversion import to_lines
 from voronoi_tiles.paths.paths import CUBIC, Paths
@@ -247,3 +248,38 @@ def test_clips_that_are_not_read_are_named() -> None:
         drawing = read(written(document))
         assert drawing.ignored == ({} if off else {"XCLIP of an INSERT in rows": 1})
         assert len(drawing.shapes) == (8 if off else 16)
+
+
+def test_many_spans_are_fitted_as_few_are() -> None:
+    """Rational spans that take more and less halvings: the cubics are those of some spans after the others."""
+    random = np.random.default_rng(1)
+    size = np.exp(random.uniform(-8.0, 8.0, (1_100, 1)))
+    weights = np.exp(random.normal(size=(1_100, 4))).astype(np.complex128)
+    points = (random.normal(size=(1_100, 4)) + 1j * random.normal(size=(1_100, 4))) * size * weights
+    together = fitted_cubics(points, weights, 1e-3)
+    few = [fitted_cubics(points[k : k + 11], weights[k : k + 11], 1e-3) for k in range(0, 1_100, 11)]
+    one = fitted_cubics(points[-1:], weights[-1:], 1e-3)
+    assert len(set(map(len, few))) > 5
+    assert (np.concatenate(few) == together).all()
+    assert (one == together[-len(one) :]).all()
+
+
+def test_spans_that_no_cubics_follow_end() -> None:
+    """A great many jumps, and numbers that are none: one DrawingError, and not two to the fourteenth parts of each."""
+    points = np.tile(np.array([0, 1e12, -1e12j, 1], np.complex128), (50_000, 1))
+    for spans in (points, np.full((50_000, 4), np.nan + 0j)):
+        with pytest.raises(DrawingError, match="cannot be followed"):
+            fitted_cubics(spans, np.tile([1, 1e-9, 1e9, 1], (50_000, 1)).astype(np.complex128), 1e-7)
+
+
+@pytest.mark.parametrize(
+    ("knots", "weights"),
+    [([-1e308] * 4 + [1e308] * 4, [1] * 4), ([0] * 4 + [1] * 4, [1e308, 1, 1, 1]), ([0] * 4 + [1] * 4, [1e400] * 4)],
+)
+def test_splines_beyond_all_bounds_are_none(knots: list[float], weights: list[float]) -> None:
+    """They are counted, as others that cannot be, and the line beside them is read."""
+    tags: Tags = [(0, "SPLINE"), (8, "0"), (70, 8), (71, 3), *((40, knot) for knot in knots)]
+    tags += [(41, weight) for weight in weights] + [(code, 9.0 * k**2) for k in range(4) for code in (10, 20)]
+    drawing = read(file_of(tags, LINE))
+    assert len(drawing.shapes) == 1
+    assert any("SPLINE" in name for name in drawing.ignored)

@@ -20,6 +20,9 @@ from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD
 
 _MIRRORED: Final = Affine(0j, -1 + 0j, 0j)  # seen from below, x runs to the left
 _UPRIGHT: Final = 1e-9  # how far an axis may lean; relative. Programs write axes with 10 digits or more.
+_NUMBER_MAX: Final = 1e100
+"""Largest knot and weight of a spline, whose differences and products are to be numbers."""
+
 _DEGREE_MAX: Final = 25
 
 
@@ -180,10 +183,10 @@ def _draw_spline(pen: Pen, entity: Any, to_page: Affine) -> Sequence[str]:
         raise NotDrawn("without knots")
     if not 1 <= degree <= _DEGREE_MAX or len(points) <= degree or len(knots) != len(points) + degree + 1:
         raise NotDrawn("of which degree, knots and points do not fit")
-    if not (np.isfinite(knots).all() and np.isfinite(points).all() and (np.diff(knots) >= 0.0).all()):
+    if not ((np.abs(knots) <= _NUMBER_MAX).all() and np.isfinite(points).all() and (np.diff(knots) >= 0.0).all()):
         raise NotDrawn("of which the knots fall, or are no numbers")
     weights = np.ones(1) if by_fit or not len(entity.weights) else np.array(entity.weights, np.float64)
-    if len(weights) not in {1, len(points)} or not (weights > 0.0).all():
+    if len(weights) not in {1, len(points)} or not ((weights > 0.0) & (weights <= _NUMBER_MAX)).all():
         raise NotDrawn("of which a weight is missing, or not greater than 0")
     tolerance = CURVE_ACCURACY / to_page.largest
     if degree <= 3 and np.ptp(weights) == 0.0:

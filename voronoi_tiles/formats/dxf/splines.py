@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, Floats
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints
 from voronoi_tiles.formats.shapes import DrawingError
 
 _HALVINGS_MAX = 14  # a span that needs more is no curve, but a jump
+_BLOCK = 1_024  # spans that are fitted at once
+_HALVED_MAX = 128 * _BLOCK  # parts of them that are halved at once; a span takes some ten
 
 
 def bezier_spans(points: Complexes, knots: Floats, degree: int) -> Complexes:
@@ -50,37 +50,51 @@ def fitted_cubics(points: Complexes, weights: Complexes, accuracy: float) -> Com
     is taken at seven parameters of each cubic, against half the accuracy. Raises DrawingError where halving does not
     end.
     """
-    found = [cubic for span, weight in zip(points, weights, strict=True) for cubic in _fitted(span, weight, accuracy)]
-    return np.array(found, np.complex128).reshape(-1, 4)
+    # Some spans at a time, for the sake of memory: all that are not fitted yet are halved in one step.
+    parts = [
+        _fitted(points[first : first + _BLOCK], weights[first : first + _BLOCK], accuracy)
+        for first in range(0, len(points), _BLOCK)
+    ]
+    return np.concatenate(parts) if parts else np.empty((0, 4), np.complex128)
 
 
-def _fitted(points: Complexes, weights: Complexes, accuracy: float) -> Iterator[tuple[complex, ...]]:
-    """The cubics for one span."""
-    todo = [(0.0, 1.0, 0)]
-    while todo:
-        u, v, depth = todo.pop()
-        p, dp, q, dq = *_evaluated(points, weights, u), *_evaluated(points, weights, v)
+def _fitted(points: Complexes, weights: Complexes, accuracy: float) -> Complexes:
+    """The cubics for some spans, one after the other; complex128 (k, 4)."""
+    span, u, v = np.arange(len(points)), np.zeros(len(points)), np.ones(len(points))
+    found: list[tuple[Ints, Floats, Complexes]] = []
+    for _ in range(_HALVINGS_MAX + 1):
+        curve, weight = points[span], weights[span]
+        p, dp = _evaluated(curve, weight, u)
+        q, dq = _evaluated(curve, weight, v)
         first, second = p + dp * (v - u) / 3, q - dq * (v - u) / 3
-        t = np.arange(1, 8) / 8
-        s = 1 - t
-        on = p * s**3 + 3 * first * s * s * t + 3 * second * s * t * t + q * t**3
-        true = np.array([_evaluated(points, weights, u + k * (v - u))[0] for k in t.tolist()])
-        if np.abs(on - true).max() <= accuracy / 2:
-            yield p, first, second, q
-        elif depth >= _HALVINGS_MAX:
-            raise DrawingError("the curve cannot be followed", remedy="Draw it again, or convert it to arcs.")
-        else:
-            middle = (u + v) / 2
-            todo += [(middle, v, depth + 1), (u, middle, depth + 1)]
+        off = np.zeros(len(span))
+        for k in range(1, 8):
+            t = k / 8
+            s = 1 - t
+            on = p * s**3 + 3 * first * s * s * t + 3 * second * s * t * t + q * t**3
+            off = np.maximum(off, np.abs(on - _evaluated(curve, weight, u + t * (v - u))[0]))
+        near = off <= accuracy / 2
+        found.append((span[near], u[near], np.stack((p, first, second, q), axis=1)[near]))
+        span, u, v = span[~near], u[~near], v[~near]
+        if not len(span):
+            spans, begins, cubics = (np.concatenate(column) for column in zip(*found, strict=True))
+            ordered: Complexes = cubics[np.lexsort((begins, spans))]
+            return ordered
+        if len(span) > _HALVED_MAX:
+            break
+        middle = (u + v) / 2
+        span, u, v = np.tile(span, 2), np.concatenate((u, middle)), np.concatenate((middle, v))
+    raise DrawingError("the curve cannot be followed", remedy="Draw it again, or convert it to arcs.")
 
 
-def _evaluated(points: Complexes, weights: Complexes, at: float) -> tuple[complex, complex]:
-    """The point of a rational Bezier curve at a parameter, and its derivative there, by de Casteljau."""
+def _evaluated(points: Complexes, weights: Complexes, at: Floats) -> tuple[Complexes, Complexes]:
+    """The points of rational Bezier curves (n, k), at a parameter of each, and the derivatives there: de Casteljau."""
     both = np.stack((points, weights))
-    degree = both.shape[1] - 1
+    degree = both.shape[2] - 1
+    at = at[:, None]
     for _ in range(degree - 1):
-        both = (1 - at) * both[:, :-1] + at * both[:, 1:]
-    slope, weight_slope = degree * (both[:, 1] - both[:, 0])
-    point, weight = (1 - at) * both[:, 0] + at * both[:, 1]
-    place = complex(point / weight)
-    return place, complex((slope - place * weight_slope) / weight)
+        both = (1 - at) * both[:, :, :-1] + at * both[:, :, 1:]
+    slope, weight_slope = degree * (both[:, :, 1] - both[:, :, 0])
+    point, weight = ((1 - at) * both[:, :, :1] + at * both[:, :, 1:])[:, :, 0]
+    place: Complexes = point / weight
+    return place, (slope - place * weight_slope) / weight
