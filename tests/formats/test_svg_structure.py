@@ -39,6 +39,7 @@ PLACES = {
     'style="TRANSFORM: TRANSLATEX(1CM)"': (96 / 2.54, 0, 20 + 96 / 2.54, 10),
     'style="transform: rotate(90deg); transform-origin: center"': (65, -25, 75, -5),
     'transform="rotate(90)" transform-origin="50% 50%"': (65, -25, 75, -5),
+    'transform="rotate(90)" transform-origin="20 15"': (25, -5, 35, 15),
     'style="transform: scale(2); transform-box: fill-box; transform-origin: 50% 50%"': (-10, -5, 30, 15),
     'x="10" style="transform: scale(2); transform-box: fill-box"': (10, 0, 50, 20),
     'style="rotate: 90deg; translate: 10px 20px; scale: 2"': (-10, 20, 10, 60),
@@ -55,6 +56,14 @@ def test_transforms_and_geometry_of_css_are_applied(said: str) -> None:
     place = PLACES[said]
     assert extents(drawing) == ([] if place is None else [pytest.approx(place, abs=1e-9)])
     assert not drawing.ignored
+
+
+def test_what_is_passed_over_is_said_once() -> None:
+    """A transform out of the plane above one that is read, and an origin that is none."""
+    style = "transform: rotate(90deg); transform: rotateX(60deg); transform-origin: 20 15"
+    drawing = svg(RECT.format(f'style="{style}"'))
+    assert extents(drawing) == [pytest.approx((-10, 0, 0, 20), abs=1e-9)]
+    assert dict(drawing.ignored) == {"transform 'rotateX(60deg)'": 1, "transform-origin '20 15'": 1}
 
 
 number = st.floats(-50, 50).map(lambda x: round(x, 3))

@@ -132,12 +132,16 @@ class Declarations:
 
     def own(self, name: str) -> str | None:
         """The value of a property that is not inherited; None for its initial value."""
-        value = self.value(name)
+        return self.own_written(name)[0]
+
+    def own_written(self, name: str) -> tuple[str | None, Origin]:
+        """The same, and where it is written."""
+        value, origin, _ = self.found(name)
         if value is None or value.lower() not in WIDE:
-            return value
+            return value, origin
         if value.lower() == "inherit":
             self.note(called(name, value))
-        return None
+        return None, origin
 
     def found(self, name: str) -> tuple[str | None, Origin, bool]:
         """The value that counts, where it is written, and whether something of it was not understood."""

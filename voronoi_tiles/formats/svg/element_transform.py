@@ -39,14 +39,11 @@ def placed(said: Declarations, view: tuple[float, float], units: Units, bounds: 
         if found is None:
             said.note(called("transform", alone))
         return found or IDENTITY_MAP
-    text, origin, _ = said.found("transform")
+    text, origin = said.own_written("transform")
     box = Box(0j, *view, units)
     if (said.own("transform-box") or "view-box").lower() != "view-box":
         box = _own_box(said, bounds, units) or box
-    if origin == Origin.ATTRIBUTE:
-        inner = parse_transform(text or "")
-    else:
-        inner = css_transform(said.own("transform") or "none", box)
+    inner = parse_transform(text or "") if origin == Origin.ATTRIBUTE else css_transform(text or "none", box)
     result = IDENTITY_MAP
     for part in (
         css_translate(said.own("translate") or "none", box),
@@ -55,7 +52,8 @@ def placed(said: Declarations, view: tuple[float, float], units: Units, bounds: 
         inner,
     ):
         result = result @ (part or IDENTITY_MAP)
-    about = transform_origin(said.own("transform-origin") or "0 0", box) or 0j
+    text, origin = said.own_written("transform-origin")
+    about = transform_origin(text or "0 0", box, unitless=origin == Origin.ATTRIBUTE) or 0j
     if about != 0j:
         result = Affine(1 + 0j, 0j, about) @ result @ Affine(1 + 0j, 0j, -about)
     if not abs(result.c) < float("inf"):

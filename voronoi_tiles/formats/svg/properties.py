@@ -237,6 +237,10 @@ def _transform(value: str, origin: Origin) -> Verdict:
     return Verdict.INVALID if known else _said(False, value)
 
 
+def _transform_origin(value: str, origin: Origin) -> Verdict:
+    return _said(transform_origin(value, _BOX, unitless=origin == Origin.ATTRIBUTE) is not None, value)
+
+
 _EFFECT: Final = re.compile(r"[\w\s.,%+-]+|.*[\w-]+\(.*", re.DOTALL)
 """What may be the value of an effect: words and numbers, or something with a function."""
 
@@ -260,7 +264,7 @@ _JUDGES: Final[dict[str, Callable[[str, Origin], Verdict]]] = {
     "overflow": _any_word,
     "transform": _transform,
     "transform-box": _word("view-box", "fill-box", "stroke-box", "content-box", "border-box"),
-    "transform-origin": lambda value, _: _said(transform_origin(value, _BOX) is not None, value),
+    "transform-origin": _transform_origin,
     "translate": lambda value, _: _said(css_translate(value, _BOX) is not None, value),
     "rotate": lambda value, _: _said(css_rotate(value) is not None, value),
     "scale": lambda value, _: _said(css_scale(value) is not None, value),

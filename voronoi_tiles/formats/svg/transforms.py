@@ -103,8 +103,11 @@ def css_scale(text: str) -> Affine | None:
     return _scaling(parts[:2]) if len(parts) <= 3 else None
 
 
-def transform_origin(text: str, box: Box) -> complex | None:
-    """The point that a transform leaves where it is; None where the text is broken."""
+def transform_origin(text: str, box: Box, *, unitless: bool = False) -> complex | None:
+    """The point that a transform leaves where it is; None where the text is broken.
+
+    As an attribute it may be written `unitless`, in user units.
+    """
     parts = [part.lower() for part in words(text)]
     if len(parts) == 3:
         parts.pop()  # in depth
@@ -116,7 +119,8 @@ def transform_origin(text: str, box: Box) -> complex | None:
         parts.append("center")
     if parts[0] in {"top", "bottom"} or parts[1] in {"left", "right"}:
         return None
-    measures = [Measure(0.0, _SIDES[part]) if part in _SIDES else _css_length(part, box.units) for part in parts]
+    read = parse_measure if unitless else _css_length
+    measures = [Measure(0.0, _SIDES[part]) if part in _SIDES else read(part, box.units) for part in parts]
     x, y = measures
     if x is None or y is None:
         return None
