@@ -120,6 +120,41 @@ def test_slivers_between_loose_lines(kind: str, a: float, b: float, turn: float)
         assert [one.value for one in slivers] == [pytest.approx(width, abs=5e-3)]
 
 
+@settings(max_examples=30, deadline=None)
+@given(
+    st.sampled_from(["outline", "circle", "lines"]),
+    st.floats(0.1, 3),
+    st.floats(0, 0.4),
+    st.floats(0, 360),
+    st.booleans(),
+)
+def test_slivers_that_a_line_cuts_off(kind: str, b: float, past: float, turn: float, backwards: bool) -> None:
+    """A line from side to side of an outline cuts a strip off, whether it ends on the other lines or runs past them."""
+    half = math.sqrt(30**2 - (30 - b) ** 2) if kind == "circle" else 50
+    # Rounded, ends lie within the tolerance of what they meet.
+    x, y = round(half + past, 3), 30 - b
+    ends = [-x, x][:: -1 if backwards else 1]
+    outline = {
+        "outline": "<path d='M-50 30V-30H50V30Z'/>",
+        "circle": "<circle r='30'/>",
+        "lines": "<path d='M-60 30H60'/><path d='M-50 40V-40'/><path d='M50 40V-40'/>",
+    }[kind]
+    body = f"{outline}<path d='M{ends[0]} {y}H{ends[1]}'/>"
+    slivers = [
+        one for one in found(f"<g transform='translate(300 300) rotate({turn})'>{body}</g>") if one.kind == "sliver"
+    ]
+    if b > 1.003:
+        assert not slivers
+    elif b < 0.99:
+        assert [one.value for one in slivers] == [pytest.approx(b, rel=2e-3, abs=6e-3)]
+
+
+def test_a_line_that_ends_on_itself_cuts_a_sliver_off() -> None:
+    """A loop of one line, like the letter P."""
+    slivers = [one for one in found("<path d='M10 10V60H10.4V20H10'/>") if one.kind == "sliver"]
+    assert [one.value for one in slivers] == [pytest.approx(0.4, abs=2e-3)]
+
+
 @pytest.mark.parametrize(
     ("body", "kinds"),
     [

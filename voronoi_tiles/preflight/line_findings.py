@@ -8,7 +8,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.preflight.chords import chords_of, counts_of
 from voronoi_tiles.preflight.contacts import AROUND, Meeting, crossings, find_contacts, overlaps
@@ -66,7 +66,8 @@ def find_on_lines(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:
     over = _overshoots(ends, limits)
     yield from (_crossing(lines, meeting) for meeting in along.crossed + crossed if not over(meeting))
     yield from (_touch(meeting, limits) for meeting in along.touched + touched)
-    slivers = find_slivers(lines.chords, limits.feature, limits.tolerance)
+    met = _met(lines, ends, along.crossed + crossed)
+    slivers = find_slivers(lines.chords, met, limits.feature, limits.tolerance)
     yield from _necks(lines, limits, slivers)
     yield from (_sliver(sliver, limits) for sliver in slivers)
     yield from _features(lines, limits)
@@ -135,6 +136,12 @@ def _overshoots(ends: PathEnds, limits: Limits) -> Callable[[Meeting], bool]:
         return any(abs(place - meeting.place) <= AROUND * limits.tolerance for place in near)
 
     return is_past
+
+
+def _met(lines: JudgedLines, ends: PathEnds, crossed: list[Meeting]) -> Complexes:
+    """Where lines that are no rings cross others, or run past them."""
+    places = [meeting.place for meeting in crossed if not lines.chords.ring[list(meeting.paths)].all()]
+    return np.append(ends.met[ends.free & np.isfinite(ends.past)], np.array(places, np.complex128))
 
 
 def _gap(lines: JudgedLines, ends: PathEnds, k: int, tabs: float) -> LineFinding:

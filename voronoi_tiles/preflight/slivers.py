@@ -8,9 +8,9 @@ from typing import Final, NamedTuple
 import numpy as np
 import shapely
 
-from voronoi_tiles.base.arrays import Bools, Floats, Ints, plane, ranges
-from voronoi_tiles.base.components import components
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, plane, ranges
 from voronoi_tiles.preflight.chords import Chords
+from voronoi_tiles.preflight.faces import faces_of
 
 _STEPS: Final = 12
 """Halvings of the interval in which the width of a sliver is looked for; a count. They leave a four-thousandth."""
@@ -28,9 +28,10 @@ class Sliver(NamedTuple):
     material: bool
 
 
-def find_slivers(chords: Chords, limit: float, touching: float) -> list[Sliver]:
-    """The regions inside closed paths, and between lines whose ends meet, in which no disc of this diameter fits.
+def find_slivers(chords: Chords, crossed: Complexes, limit: float, touching: float) -> list[Sliver]:
+    """The regions inside closed paths, and between lines that meet, in which no disc of this diameter fits.
 
+    `crossed` (complex128, n) are places where lines that are no rings cross others.
     A region that is no wider than `touching` is none: its edges are one line, drawn twice. Nor is one that is smaller
     than the limit both ways.
 
@@ -41,7 +42,11 @@ def find_slivers(chords: Chords, limit: float, touching: float) -> list[Sliver]:
         return []
     # Discs fit between curves, not their chords: what is as wide as the limit is wide enough.
     radius = (limit - touching) / 2
-    found = [*_in_rings(chords, limit, radius), *_between_lines(chords, limit, radius, touching)]
+    found = list(_in_rings(chords, limit, radius))
+    # What lines divide a sliver into are slivers, too.
+    said = {sliver.paths[0] for sliver in found if sliver.material}
+    between = _between_lines(chords, crossed, limit, radius, touching)
+    found += [sliver for sliver in between if said.isdisjoint(sliver.paths)]
     return [sliver for sliver in found if sliver.width > touching]
 
 
@@ -72,35 +77,23 @@ def _in_rings(chords: Chords, limit: float, radius: float) -> Iterator[Sliver]:
             yield Sliver(*widest, paths, bool(depth[k] % 2 == 0))
 
 
-def _between_lines(chords: Chords, limit: float, radius: float, touching: float) -> Iterator[Sliver]:
-    """The slivers between open lines that meet at their ends."""
-    line = np.flatnonzero(~chords.ring)
-    if len(line) < 2:
+def _between_lines(
+    chords: Chords, crossed: Complexes, limit: float, radius: float, touching: float
+) -> Iterator[Sliver]:
+    """The slivers between lines that are no rings, and what they meet."""
+    if chords.ring.all():
         return
-    first, last = chords.first[line], chords.first[line + 1] - 1
-    ends = np.concatenate((chords.start[first], chords.end[last]))
-    points = shapely.points(plane(ends))
-    joined = shapely.STRtree(points).query(points, predicate="dwithin", distance=touching).astype(np.intp)
-    ends = ends[components(len(ends), *joined)]
-    # A line as its points: the chords' beginnings, and its end.
-    counts = last - first + 2
-    at = np.append(0, np.cumsum(counts))
-    way = np.empty(at[-1], np.complex128)
-    inner = np.ones(len(way), np.bool_)
-    inner[at[1:] - 1] = False
-    way[inner] = chords.start[ranges(first, counts - 1)]
-    way[at[:-1]], way[at[1:] - 1] = np.split(ends, 2)
-    lines = shapely.linestrings(plane(way), indices=np.repeat(np.arange(len(line)), counts))
-    faces = shapely.get_parts(shapely.polygonize(lines))
-    box = shapely.bounds(faces)
+    faces = faces_of(chords, crossed, touching)
+    box = shapely.bounds(faces.polygons)
     large = np.maximum(box[:, 2] - box[:, 0], box[:, 3] - box[:, 1]) >= limit
-    holes = shapely.get_num_interior_rings(faces)
-    narrow = shapely.area(faces) <= radius * shapely.length(faces) + np.pi * radius**2 * holes
-    for face in faces[large & narrow]:
+    holes = shapely.get_num_interior_rings(faces.polygons)
+    narrow = shapely.area(faces.polygons) <= radius * shapely.length(faces.polygons) + np.pi * radius**2 * holes
+    parts = shapely.STRtree(faces.parts)
+    for face in faces.polygons[large & narrow]:
         widest = _widest(face, radius)
         if widest is not None:
-            around = shapely.covered_by(lines, shapely.boundary(face).buffer(touching))
-            yield Sliver(*widest, tuple(line[around].tolist()), True)
+            around = parts.query(shapely.boundary(face).buffer(touching), predicate="covers")
+            yield Sliver(*widest, tuple(np.unique(faces.path[around]).tolist()), True)
 
 
 def _nested(chords: Chords, ring: Ints, area: Floats) -> tuple[Ints, Ints]:

@@ -1,0 +1,93 @@
+"""The regions that lines of their own bound: where their ends meet, and where they end on other lines or cross them."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints, owned_ranges, plane
+from voronoi_tiles.base.components import components
+from voronoi_tiles.preflight.chord_distance import foot_share
+from voronoi_tiles.preflight.chords import Chords
+
+_AROUND = 4.0  # how far along its path from its end a chord is still met as that end; in tolerances
+
+
+class Faces(NamedTuple):
+    """Regions as shapely's polygons, and the parts of paths that bound them, with the path of each (intp, n)."""
+
+    polygons: NDArray[np.object_]
+    parts: NDArray[np.object_]
+    path: Ints
+
+
+class _Cuts(NamedTuple):
+    """Where paths are divided: the path, the length along it and the point, each (n,)."""
+
+    path: Ints
+    at: Floats
+    point: Complexes
+
+
+def faces_of(chords: Chords, crossed: Complexes, touching: float) -> Faces:
+    """The regions that paths which are no rings bound, with each other and with rings that they meet.
+
+    What is nearer than `touching` is one place; `crossed` (complex128, n) are places where paths cross.
+    """
+    line = np.flatnonzero(~chords.ring)
+    first, last = chords.first[line], chords.first[line + 1] - 1
+    nodes = np.concatenate((chords.start[first], chords.end[last], crossed))
+    points = shapely.points(plane(nodes))
+    nodes = nodes[components(len(nodes), *_pairs(shapely.STRtree(points), points, touching))]
+    cuts = _cuts(chords, nodes, *_pairs(chords.tree, points, touching), touching)
+    return _divided(chords, np.union1d(line, cuts.path), line, nodes[: 2 * len(line)], cuts)
+
+
+def _pairs(tree: shapely.STRtree, points: NDArray[np.object_], touching: float) -> tuple[Ints, Ints]:
+    """The points, and what is near to each."""
+    one, two = tree.query(points, predicate="dwithin", distance=touching).astype(np.intp)
+    return one, two
+
+
+def _cuts(chords: Chords, nodes: Complexes, node: Ints, chord: Ints, touching: float) -> _Cuts:
+    """Where paths pass by nodes, but not at their own ends: these are nodes themselves."""
+    path = chords.path[chord]
+    at = chords.before[chord] + foot_share(nodes[node], chords.start[chord], chords.end[chord]) * chords.lengths[chord]
+    at = np.minimum(at, chords.total[path])  # a sum may round beyond it
+    first, last = chords.first[path], chords.first[path + 1] - 1
+    inner = np.ones(len(path), np.bool_)
+    for end, far in ((chords.start[first], at), (chords.end[last], chords.total[path] - at)):
+        inner &= chords.ring[path] | (far > _AROUND * touching) | (np.abs(end - nodes[node]) > 2 * touching)
+    path, at, node = path[inner], at[inner], node[inner]
+    # Neighbouring chords meet a node in one place.
+    order = np.lexsort((at, node, path))
+    path, at, node = path[order], at[order], node[order]
+    new = np.append(True, (np.diff(path) != 0) | (np.diff(node) != 0) | (np.diff(at) > _AROUND * touching))[: len(path)]
+    return _Cuts(path[new], at[new], nodes[node[new]])
+
+
+def _divided(chords: Chords, paths: Ints, line: Ints, ends: Complexes, cuts: _Cuts) -> Faces:
+    """The faces of these paths, of which `line` are no rings and have these ends, beginnings first."""
+    # The points of paths and the cuts, in the order in which they follow each other.
+    chord, _ = owned_ranges(chords.first[paths], chords.first[paths + 1])
+    begin, end = chords.start[chords.first[:-1]].copy(), chords.start[chords.first[:-1]].copy()
+    begin[line], end[line] = np.split(ends, 2)
+    points = chords.start.copy()
+    points[chords.first[:-1]] = begin
+    path = np.concatenate((chords.path[chord], paths, cuts.path))
+    at = np.concatenate((chords.before[chord], chords.total[paths], cuts.at))
+    point = np.concatenate((points[chord], end[paths], cuts.point))
+    # A cut stands behind the beginning and before the end of its path.
+    rank = np.repeat((0, 2, 1), (len(chord), len(paths), len(cuts.path)))
+    order = np.lexsort((rank, at, path))
+    path, point, is_cut = path[order], point[order], rank[order] == 1
+    # Each cut ends a part and begins the next one.
+    twice = np.repeat(np.arange(len(path)), np.where(is_cut, 2, 1))
+    begins = np.append(True, np.diff(path[twice]) != 0)
+    begins[1:] |= twice[1:] == twice[:-1]
+    part = np.cumsum(begins) - 1
+    parts = shapely.linestrings(plane(point[twice]), indices=part)
+    return Faces(shapely.get_parts(shapely.polygonize(parts)), parts, path[twice][begins])
