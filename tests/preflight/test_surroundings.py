@@ -67,6 +67,29 @@ def test_what_repeats_is_judged_as_what_does_not(seed: int, end: str) -> None:
         assert a[3:] == pytest.approx(b[3:], abs=0.11)
 
 
+@pytest.mark.parametrize("order", [(0, 1, 2, 3), (2, 0, 1, 3), (3, 1, 0, 2)])
+@pytest.mark.parametrize("by_cell", [True, False])
+def test_what_more_than_two_paths_bound_is_found_wherever_it_repeats(order: tuple[int, ...], by_cell: bool) -> None:
+    """Strips of four lines, whose ends are too far apart to be near to each other, with all of their lines."""
+    strip = [[0j, 11 + 0j], [0.4j, 11 + 0.4j], [0j, 0.4j], [11 + 0j, 11 + 0.4j]]
+    places = [complex(40 + 12 * i, 40 + 9 * j) for i in range(9) for j in range(9)]
+    lines = [[z + at for z in strip[k]] for at in places for k in order]
+    if not by_cell:
+        lines = [[z + at for z in strip[k]] for k in order for at in places]
+    lines += [[40 + 39.8j, 60 + 39.5j], [100 + 100j, 100 + 70j]]  # other surroundings for some of them
+    data = ["M" + "L".join(f"{z.real:.6f} {z.imag:.6f}" for z in line) for line in lines]
+    body = "".join(f"<path id='{k}' d='{one}'/>" for k, one in enumerate(data))
+    drawing = svg_drawing(f"<svg {PAGE}>{body}</svg>".encode(), "t.svg")
+    repeated = judge(drawing, "t.svg")
+    with pytest.MonkeyPatch.context() as patch:
+        assert surroundings(Paths.concatenate([shape.paths for shape in drawing.shapes]), 2.0, 5e-6) is not None
+        patch.setattr("voronoi_tiles.preflight.surroundings.PATHS_MIN", 10**6)
+        single = judge(drawing, "t.svg")
+    slivers = [[one for one in digest(report) if one[0] == "sliver"] for report in (repeated, single)]
+    assert len(slivers[1]) > 70
+    assert [one[:3] for one in slivers[0]] == [one[:3] for one in slivers[1]]
+
+
 def test_a_lattice_is_judged_by_a_few_of_its_paths() -> None:
     """Of a sheet of equal tiles one of each surroundings is judged, of tiles that differ all."""
     generator = np.random.default_rng(5)

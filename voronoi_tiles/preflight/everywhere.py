@@ -35,18 +35,25 @@ def findings_everywhere(subject: CutLines, limits: Limits) -> Iterator[Finding]:
 
 
 def _images(subject: CutLines, repeated: Repetition, one: LineFinding) -> Iterator[LineFinding]:
-    """A finding on the part that is judged, wherever it holds: each pair of paths from the first of them."""
-    paths = repeated.judged[list(one.paths)].tolist()
+    """A finding on the part that is judged, wherever it holds.
+
+    It repeats with its first path, a mutual one with any of its paths that all others are near to: the first of these
+    in the drawing leads.
+    """
+    paths = list(dict.fromkeys(repeated.judged[list(one.paths)].tolist()))
+    leaders = paths[:1]
+    if one.mutual:
+        beside = [sum(other in repeated.beside(path) for other in paths) for path in paths]
+        leaders = [path for path, count in zip(paths, beside, strict=True) if count == max(beside)]
     begin = subject.paths.start[subject.paths.offsets[:-1]]
-    for turned in (paths, paths[::-1]) if one.mutual and len(set(paths)) > 1 else (paths,):
-        if not repeated.is_judged(turned[0]):
-            continue
-        for image in repeated.images(*turned):
-            if one.mutual and image[0] > image[-1]:
-                continue
-            shift = complex(begin[image[0]] - begin[turned[0]])
-            other = None if one.other is None else one.other + shift
-            yield one._replace(place=one.place + shift, paths=image, other=other)
+    for leader in filter(repeated.is_judged, leaders):
+        kept = [path for path in paths if path == leader or path in repeated.beside(leader)]
+        for image in repeated.images(leader, *kept):
+            there = dict(zip(kept, image[1:], strict=True))
+            if there[leader] == min(there[path] for path in leaders if path in there):
+                shift = complex(begin[there[leader]] - begin[leader])
+                other = None if one.other is None else one.other + shift
+                yield one._replace(place=one.place + shift, paths=image[1:], other=other)
 
 
 def _once(found: list[LineFinding], limits: Limits) -> Iterator[LineFinding]:

@@ -234,7 +234,7 @@ def _necks(lines: JudgedLines, limits: Limits, slivers: list[Sliver]) -> Iterato
 
 
 def _sliver(sliver: Sliver, limits: Limits) -> LineFinding:
-    common = sliver.place, sliver.width, sliver.paths
+    common = sliver.place, sliver.width, sliver.paths, None, True
     message = f"of {sliver.width:.3g} mm at most: narrower than {limits.feature:g} mm everywhere"
     if sliver.material:
         return LineFinding("sliver", "warning", f"piece {message}", "Widen it: it may break or burn.", *common)

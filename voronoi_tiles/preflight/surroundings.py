@@ -44,10 +44,13 @@ class Repetition:
         """Whether what is found of a path holds for all of its kind."""
         return int(self.first[self.kind[path]]) == path
 
+    def beside(self, path: int) -> list[int]:
+        """The paths that are near to one."""
+        return self.near[self.offsets[path] : self.offsets[path + 1]].tolist()
+
     def images(self, path: int, *others: int) -> Iterator[tuple[int, ...]]:
-        """A judged path with others that are near to it, and the same for each path of its kind; itself comes first."""
-        here = self.near[self.offsets[path] : self.offsets[path + 1]].tolist()
-        others = tuple(other for other in others if other == path or other in here)
+        """A judged path with others that are near to it, or itself, and the same for each path of its kind."""
+        here = self.beside(path)
         ranks = [None if other == path else here.index(other) for other in others]
         for image in np.flatnonzero(self.kind == self.kind[path]).tolist():
             there = self.offsets[image]
