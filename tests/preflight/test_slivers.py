@@ -149,6 +149,14 @@ def test_slivers_that_a_line_cuts_off(kind: str, b: float, past: float, turn: fl
         assert [one.value for one in slivers] == [pytest.approx(b, rel=2e-3, abs=6e-3)]
 
 
+def test_a_neck_between_two_slivers_is_said() -> None:
+    """Two strips of 0.8 mm side by side, 0.7 mm apart in the middle of a piece: that is narrow, too."""
+    body = "<rect x='10' y='10' width='90' height='60'/>" + "".join(
+        f"<path d='M{x} 10V{y}h.8V10'/>" for x, y in ((40, 50), (41.5, 45))
+    )
+    assert sorted(one.kind for one in found(body)) == ["neck", "sliver", "sliver"]
+
+
 def test_a_line_that_ends_on_itself_cuts_a_sliver_off() -> None:
     """A loop of one line, like the letter P."""
     slivers = [one for one in found("<path d='M10 10V60H10.4V20H10'/>") if one.kind == "sliver"]

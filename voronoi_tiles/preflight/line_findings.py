@@ -214,16 +214,20 @@ def _touch(meeting: Meeting, limits: Limits) -> LineFinding:
 
 
 def _necks(lines: JudgedLines, limits: Limits, slivers: list[Sliver]) -> Iterator[LineFinding]:
-    """Narrow places; those of slivers only where these are less than half as wide as elsewhere."""
+    """Narrow places; those between the lines of a sliver only where it is less than half as wide as elsewhere."""
     if limits.neck <= 0.0:
         return
-    slim = {path: sliver.width for sliver in slivers if sliver.material for path in sliver.paths}
+    slim: dict[int, list[tuple[frozenset[int], float]]] = {}
+    for sliver in slivers:
+        for path in sliver.paths if sliver.material else ():
+            slim.setdefault(path, []).append((frozenset(sliver.paths), sliver.width))
     accuracy = max(NECK_ACCURACY * limits.neck, limits.tolerance / 4)
     chords = chords_of(lines.paths, counts_of(lines.paths, accuracy), limits.tolerance)
     for neck in find_necks(chords, 2 * accuracy + limits.tolerance, limits.neck):
         common = neck.place, neck.width, neck.paths, None, True
         if neck.material:
-            if all(path in slim and neck.width > slim[path] / 2 for path in neck.paths):
+            around = slim.get(neck.paths[0], ())
+            if any(paths.issuperset(neck.paths) and neck.width > width / 2 for paths, width in around):
                 continue
             beside = f"two lines side by side, {neck.width:.3g} mm apart"
             message = beside if neck.loose else f"neck of {neck.width:.3g} mm"
