@@ -152,6 +152,12 @@ def test_clean_drawings_give_nothing(body: str) -> None:
     assert report.passed
 
 
+def test_lines_that_are_short_altogether_are_warnings() -> None:
+    """A curve taken apart into lines of their own, as CAD programs do: the machine stutters all the same."""
+    body = "".join(f"<path d='M{100 + k * 0.008:.3f} 50h.008'/>" for k in range(30))
+    assert [one.severity for one in judged(body).findings if one.kind == "short"] == ["warning"] * 30
+
+
 @pytest.mark.parametrize("data", ["h-.005h-20z", "h-.005h-.005h-.005h-20z", "h-20v-.005v-.004z"])
 def test_few_short_segments_are_remarks(data: str) -> None:
     """A machine does not stutter at one; they are named all the same, and what helps in files of our own."""

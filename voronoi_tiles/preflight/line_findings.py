@@ -264,10 +264,15 @@ def _features(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:
 
 
 def _short(lines: JudgedLines, limits: Limits) -> Iterator[LineFinding]:
-    """Segments below the limit: machines stutter where many follow each other, and hardly notice one among longer."""
+    """Segments below the limit: machines stutter where many follow each other, and hardly notice one among longer.
+
+    A path that is shorter as a whole is no better than a dot, or one of many.
+    """
     paths = lines.paths
     short = paths.lengths < limits.shortest
-    for piece, many in zip(np.flatnonzero(short).tolist(), _in_a_row(paths, short) >= STUTTER, strict=True):
+    serious = _in_a_row(paths, short) >= STUTTER
+    serious |= paths.path_lengths[paths.owner[short]] < limits.shortest
+    for piece, many in zip(np.flatnonzero(short).tolist(), serious, strict=True):
         yield LineFinding(
             "short",
             "warning" if many else "info",
