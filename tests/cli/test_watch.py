@@ -139,6 +139,8 @@ def test_a_background_job_is_ended_by_its_own_signal(watching: Callable[..., Wat
     assert sorted(path.name for path in tmp_path.iterdir()) == ["bird.toml", "mine.dxf", "said.txt"]
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="POSIX signals")
+@pytest.mark.usefixtures("heard_signals")
 def test_a_summary_names_options(watching: Callable[..., Watching], tmp_path: Path) -> None:
     """A smaller gap is named as on the command line, not as an argument of Python."""
     (tmp_path / "bird.toml").write_text(vt.starter_text("p4"))
