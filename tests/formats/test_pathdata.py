@@ -440,12 +440,13 @@ def random_path(rng: random.Random) -> str:
 
 
 def draws_a_dot(data: str) -> bool:
-    """Whether a subpath, as svgelements sees it, has segments and none of a length."""
+    """Whether a subpath that is moved to, as svgelements sees it, has segments and none of a length."""
     import svgelements
 
     for subpath in svgelements.Path(data).as_subpaths():
         drawn = [segment for segment in subpath if not isinstance(segment, svgelements.Move)]
-        if drawn and all(segment.start == segment.end and segment.length() < 1e-9 for segment in drawn):
+        begun = len(drawn) < len(subpath)  # one that goes on after a Z is no dot: the Z was drawn
+        if begun and drawn and all(segment.start == segment.end and segment.length() < 1e-9 for segment in drawn):
             return True
     return False
 

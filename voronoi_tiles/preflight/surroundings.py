@@ -46,7 +46,8 @@ class Repetition:
 
     def beside(self, path: int) -> list[int]:
         """The paths that are near to one."""
-        return self.near[self.offsets[path] : self.offsets[path + 1]].tolist()
+        here: list[int] = self.near[self.offsets[path] : self.offsets[path + 1]].tolist()
+        return here
 
     def images(self, path: int, *others: int) -> Iterator[tuple[int, ...]]:
         """A judged path with others that are near to it, or itself, and the same for each path of its kind."""
