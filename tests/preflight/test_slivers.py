@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 import shapely
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from voronoi_tiles.formats.svg.reader import svg_drawing
@@ -58,6 +58,7 @@ SHAPES = {
     st.floats(0, 360),
     st.booleans(),
 )
+@example("rhombus", 5.0, 0.375, 5.0, False)  # shrunk by GEOS it lasts half a hundredth too long
 def test_slivers_are_found_and_nothing_else_is(kind: str, a: float, b: float, turn: float, mirrored: bool) -> None:
     """Strips, tapers, ellipses, rings and bows of any size, turned any way: found where no disc of 1 mm fits."""
     shape, width = SHAPES[kind](a, b)

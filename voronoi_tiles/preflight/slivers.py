@@ -133,5 +133,6 @@ def _widest(shape: shapely.Geometry, radius: float) -> tuple[complex, float] | N
             high = middle
         else:
             low, core = middle, left
+    # What is left of a shape is known to half a hundredth of the distance; how far a point is from the edge, exactly.
     point = core.representative_point()
-    return complex(point.x, point.y), low + high
+    return complex(point.x, point.y), 2 * float(shape.boundary.distance(point))
