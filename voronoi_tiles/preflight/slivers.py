@@ -135,4 +135,6 @@ def _widest(shape: shapely.Geometry, radius: float) -> tuple[complex, float] | N
             low, core = middle, left
     # What is left of a shape is known to half a hundredth of the distance; how far a point is from the edge, exactly.
     point = core.representative_point()
-    return complex(point.x, point.y), 2 * float(shape.boundary.distance(point))
+    edges = shapely.boundary(shapely.get_parts(shape))
+    # Lines beside the polygons, where the shape is not all of polygons, may have no boundary.
+    return complex(point.x, point.y), 2 * float(np.nanmin(shapely.distance(edges, point)))
