@@ -299,7 +299,8 @@ class Tiling:
         """Render the coloured tessellation, into memory or as a PNG file: see `render`, whose options it takes."""
         from voronoi_tiles.pictures.rendering import paint
 
-        return paint(self.design, path, outlines=[tile.outline for tile in self.tiles], **options)
+        records = [tile._record for tile in self.tiles]  # noqa: SLF001 - the tiling owns its tiles
+        return paint(self.design, path, records=records, **options)
 
     def plot(self, ax: Any = None, *, region: Any = None) -> Any:
         """Draw the tiles and their sites on axes of matplotlib (None: the current ones), which it gives back.

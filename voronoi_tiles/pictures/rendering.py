@@ -36,6 +36,7 @@ from voronoi_tiles.raster.renderer import Choice, Method, Provenance, Renderer
 from voronoi_tiles.raster.scene import Pattern
 from voronoi_tiles.vector.outline import Outline
 from voronoi_tiles.vector.proof import proved_tiles
+from voronoi_tiles.vector.tessellation import TileRecord
 
 OVERLAYS = ("symmetry", "cell", "outline", "art", "grid")
 """What can be drawn on top: mirrors, glides and rotation centres; the cell; the exact outlines; the sites' art, in the
@@ -122,7 +123,7 @@ def paint(
     design: Design,
     path: str | os.PathLike[str] | None,
     *,
-    outlines: Sequence[Outline] | None = None,
+    records: Sequence[TileRecord] | None = None,
     size: int | tuple[int, int] = DEFAULT_SIZE,
     region: Region | None = None,
     overlay: str | Sequence[str] = (),
@@ -133,7 +134,7 @@ def paint(
     notice: Callable[[str], None] | None = None,
     progress: Callable[[int, int], None] | None = None,
 ) -> Rendering | Provenance:
-    """Render as `render` does; `outlines` are the design's, where they are known."""
+    """Render as `render` does; `records` are the design's tiles, where they are known."""
     instance("design", design, Design)
     for name, call in (("notice", notice), ("progress", progress)):
         function(name, call)
@@ -151,8 +152,9 @@ def paint(
     pattern = Pattern(design.noded, design.group, design.lattice)
     region, width, height = fitted_region(default_region(pattern) if region is None else region, size)
     touching: TouchingCopiesError | None = None
-    if outlines is None:
-        outlines, touching = _outlines(design, needed="outline" in overlay)
+    if records is None:
+        records, touching = _records(design, needed="outline" in overlay or scheme != "none")
+    outlines = None if records is None else [record.outline for record in records]
     style = PictureStyle.of_size(width, height)
     if "art" in overlay:
         style = replace(style, site=0.0)
@@ -168,7 +170,9 @@ def paint(
             *(clash_marks(touching, design, region, width, height) if touching else []),
         ],
         style=style,
-        colouring=None if scheme == "none" or touching else wood_colouring(design, pattern, scheme),
+        colouring=None
+        if scheme == "none" or records is None
+        else wood_colouring(records[0].tessellation, pattern, scheme),
         nobody=_PAPER if touching else None,
     )
     text = {
@@ -266,20 +270,19 @@ def _overlays(
     return found
 
 
-def _outlines(design: Design, *, needed: bool) -> tuple[list[Outline] | None, TouchingCopiesError | None]:
+def _records(design: Design, *, needed: bool) -> tuple[list[TileRecord] | None, TouchingCopiesError | None]:
     """The tiles, None where they fail their proof or copies touch, and the error that says where these do.
 
-    A picture is drawn all the same. Raises ProofError where the outlines are `needed`.
+    A picture is drawn all the same. Raises ProofError where the tiles are `needed`.
     """
     try:
-        tiles, _ = proved_tiles(design.noded, design.group, design.lattice)
+        return proved_tiles(design.noded, design.group, design.lattice)[0], None
     except ProofError:
         if needed:
             raise
         return None, None
     except TouchingCopiesError as error:
         return None, error.with_file(design.file or None)
-    return [tile.outline for tile in tiles], None
 
 
 def _symbols(centres: Complexes, orders: NDArray[np.intp], radius: float) -> Complexes:

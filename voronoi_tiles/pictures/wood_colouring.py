@@ -4,21 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.tile_colouring import colour_tiles
 from voronoi_tiles.groups.periodic_colouring import PeriodicColouring
 from voronoi_tiles.raster.scene import Pattern
 from voronoi_tiles.vector.copies import translation
 from voronoi_tiles.vector.motions import compose, split, to_motion
-from voronoi_tiles.vector.proof import proved_tiles
+from voronoi_tiles.vector.tessellation import Tessellation
 
 
-def wood_colouring(design: Design, pattern: Pattern, scheme: str | int) -> PeriodicColouring:
+def wood_colouring(tessellation: Tessellation, pattern: Pattern, scheme: str | int) -> PeriodicColouring:
     """The colouring of a pattern's copies by what `--colours` takes; "layers" and "files" are "fewest".
 
-    Raises JobError for too few colours, or too many, ProofError where the tiles fail their proof.
+    Raises JobError for too few colours, or too many.
     """
-    tessellation = proved_tiles(design.noded, design.group, design.lattice)[0][0].tessellation
     found = colour_tiles(tessellation, "fewest" if scheme in {"layers", "files"} else scheme)
     period, repeat = tessellation.period, found.repeat
     number = {
