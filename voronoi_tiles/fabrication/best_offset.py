@@ -8,7 +8,7 @@ import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.fabrication.region import Region
-from voronoi_tiles.fabrication.tile_placement import place_tiles
+from voronoi_tiles.fabrication.tile_placement import group_box, place_tiles
 from voronoi_tiles.paths.segments import item_boxes
 from voronoi_tiles.vector.complex.period import Period
 
@@ -109,10 +109,7 @@ def _group(period: Period, region: Region, shift: complex) -> tuple[int, complex
     tile, step = placement.tile[placement.whole], placement.step[placement.whole]
     if not len(tile):
         return 0, 0j
-    place = period.shifts(step) + shift
-    box = item_boxes(*period.own_outlines)[tile]
-    x0, x1 = float((box[:, 0] + place.real).min()), float((box[:, 2] + place.real).max())
-    y0, y1 = float((box[:, 1] + place.imag).min()), float((box[:, 3] + place.imag).max())
+    x0, y0, x1, y1 = group_box(period, tile, period.shifts(step) + shift)
     left, bottom, right, top = region.bounds
     return len(tile), complex(left - x0 + right - x1, bottom - y0 + top - y1) / 2
 

@@ -22,7 +22,7 @@ from voronoi_tiles.fabrication.kerf import Compensation
 from voronoi_tiles.fabrication.region import Region
 from voronoi_tiles.fabrication.spacing import FARTHEST, UNSTRETCHED, Stretch, pulled_apart, spread
 from voronoi_tiles.fabrication.tile_placement import TilePlacement, place_tiles
-from voronoi_tiles.paths.areas import ring_areas
+from voronoi_tiles.paths.areas import item_areas
 from voronoi_tiles.paths.conversion import to_lines
 from voronoi_tiles.paths.offset import OffsetError, offset
 from voronoi_tiles.paths.paths import Paths
@@ -182,8 +182,7 @@ class Layout:
     @cached_property
     def tile_areas(self) -> Floats:
         """The areas of the period's tiles, square millimetres."""
-        outlines, items = self.period.own_outlines
-        return np.asarray(np.add.reduceat(ring_areas(outlines), items[:-1]))
+        return item_areas(*self.period.own_outlines)
 
     def _whole(self, copies: Ints) -> tuple[Paths, Ints]:
         """The rings of whole tiles, and where each one's begin."""
@@ -350,7 +349,7 @@ def _pulled(tiles: DressedTiles, placement: TilePlacement, sheet: Sheet, stretch
 
 def piece_areas(pieces: ClosedPieces) -> Floats:
     """The area of each piece, its holes taken off."""
-    return np.asarray(np.add.reduceat(ring_areas(pieces.paths), pieces.items[:-1]))
+    return item_areas(pieces.paths, pieces.items)
 
 
 def _inset(region: Region, width: float) -> Region:

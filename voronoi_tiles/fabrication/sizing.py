@@ -15,14 +15,14 @@ from typing import Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Floats
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.arc_fitting import curve_fit
 from voronoi_tiles.fabrication.job import SHEET_MAX, Job, JobError
 from voronoi_tiles.fabrication.layout import Layout, lay_out, refilled
 from voronoi_tiles.fabrication.sheets import read_sheet
-from voronoi_tiles.paths.areas import ring_areas
+from voronoi_tiles.fabrication.tile_placement import group_box
+from voronoi_tiles.paths.areas import item_areas, ring_areas
 from voronoi_tiles.paths.segments import item_boxes
 from voronoi_tiles.vector.proof import proved_tiles
 from voronoi_tiles.vector.tessellation import Tessellation
@@ -76,7 +76,7 @@ def _scaled(
     budget = AccuracyBudget.of(job, curves)
     sheet = read_sheet(job, budget)
     assert sheet.region is not None
-    areas = _tile_areas(tessellation) * design.unit_mm**2
+    areas = item_areas(*tessellation.period.own_outlines) * design.unit_mm**2
     # So many of the smallest tile have the area of the region.
     largest = math.sqrt(float(ring_areas(sheet.region.border).sum()) / (pieces * float(areas.min())))
 
@@ -122,7 +122,7 @@ def _with_sheet(design: Design, tessellation: Tessellation, job: Job, curves: st
     """The job with the smallest sheet, of those tried, that holds so many tiles; whole millimetres."""
     job = replace(job, pieces=None, sheet=(SHEET_MAX, SHEET_MAX))  # until it is found
     budget = AccuracyBudget.of(job, curves)
-    areas = _tile_areas(tessellation) * design.unit_mm**2
+    areas = item_areas(*tessellation.period.own_outlines) * design.unit_mm**2
     border = job.margin + job.kerf / 2 + job.frame_width
     least = math.sqrt(pieces * float(areas.min()))
     box = item_boxes(*tessellation.period.own_outlines)
@@ -185,11 +185,8 @@ def _grown(
             high, layout = middle, smaller
         else:
             low = middle
-    box = item_boxes(*layout.spaced.own_outlines)[layout.placement.tile]
-    place = layout.spaced.shifts(layout.placement.step)
-    across = float((box[:, 2] + place.real).max() - (box[:, 0] + place.real).min())
-    up = float((box[:, 3] + place.imag).max() - (box[:, 1] + place.imag).min())
-    trimmed = _whole_mm(across + 2 * border), _whole_mm(up + 2 * border)
+    x0, y0, x1, y1 = group_box(layout.spaced, layout.placement.tile, layout.spaced.shifts(layout.placement.step))
+    trimmed = _whole_mm(x1 - x0 + 2 * border), _whole_mm(y1 - y0 + 2 * border)
     return trimmed if filled(trimmed) is not None else size(high)
 
 
@@ -205,12 +202,6 @@ def _laid(lay: Callable[[], Layout]) -> Layout | None:
         return lay()
     except JobError:
         return None
-
-
-def _tile_areas(tessellation: Tessellation) -> Floats:
-    """The areas of the tiles of a period, in the design's units."""
-    outlines, items = tessellation.period.own_outlines
-    return np.asarray(np.add.reduceat(ring_areas(outlines), items[:-1]))
 
 
 def _tile_size(layout: Layout) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Floats, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
 from voronoi_tiles.fabrication.region import Region, beside_border
 from voronoi_tiles.paths.intersections import candidate_pairs, crossings
 from voronoi_tiles.paths.paths import Paths
@@ -22,6 +22,17 @@ class TilePlacement:
     tile: Ints
     step: Ints
     whole: Bools
+
+
+def group_box(period: Period, tile: Ints, place: Complexes) -> tuple[float, float, float, float]:
+    """The box around tiles of a period, each moved by its place (complex128): x0, y0, x1, y1."""
+    box = item_boxes(*period.own_outlines)[tile]
+    return (
+        float((box[:, 0] + place.real).min()),
+        float((box[:, 1] + place.imag).min()),
+        float((box[:, 2] + place.real).max()),
+        float((box[:, 3] + place.imag).max()),
+    )
 
 
 def place_tiles(period: Period, region: Region) -> TilePlacement:

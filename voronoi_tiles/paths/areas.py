@@ -6,7 +6,7 @@ from typing import Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Floats
+from voronoi_tiles.base.arrays import Floats, Ints
 from voronoi_tiles.paths.paths import ARC, CUBIC, QUAD, Paths
 
 _SMALL: Final = 0.2
@@ -36,6 +36,14 @@ def ring_areas(paths: Paths) -> Floats:
         chord = np.abs(end[arcs] - start[arcs])
         area[arcs] += chord**2 * _segment(half)
     return np.asarray(np.bincount(paths.owner, area, len(paths)), np.float64)
+
+
+def item_areas(paths: Paths, items: Ints) -> Floats:
+    """The area of each item, its holes taken off: item k are the closed paths from items[k] up to items[k + 1].
+
+    Raises ValueError for CUBIC.
+    """
+    return np.asarray(np.add.reduceat(ring_areas(paths), items[:-1]))
 
 
 def _segment(half: Floats) -> Floats:
