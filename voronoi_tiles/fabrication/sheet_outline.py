@@ -7,7 +7,9 @@ from typing import Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints, plane
+from voronoi_tiles.base.components import components
+from voronoi_tiles.base.neighbours import Neighbours
 from voronoi_tiles.paths.conversion import to_lines
 from voronoi_tiles.paths.paths import Paths
 
@@ -66,28 +68,20 @@ def sheet_outline(paths: Paths) -> SheetOutline:
 
 def _nodes(points: Complexes) -> Ints:
     """The number of the place of each point; points within MEETING are one place, as are those linked by others."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree
 
     places, place = np.unique(points, return_inverse=True)
-    xy = np.column_stack((places.real, places.imag))
-    count = len(xy)
+    count = len(places)
     # The three nearest are enough: where more are near, too many ends meet in any case.
-    _, near = cKDTree(xy).query(xy, k=min(4, count), distance_upper_bound=MEETING)
-    row, column = np.nonzero(np.reshape(near, (count, -1)) < count)
-    linked = coo_array((np.ones(len(row)), (row, np.reshape(near, (count, -1))[row, column])), shape=(count, count))
-    return np.asarray(connected_components(linked, directed=False)[1][place], np.intp)
+    _, near = cKDTree(plane(places)).query(plane(places), k=min(4, count), distance_upper_bound=MEETING)
+    near = np.reshape(near, (count, -1))
+    row, column = np.nonzero(near < count)
+    return components(count, row, near[row, column])[place]
 
 
 def _groups(node: Ints) -> Ints:
     """The number of the connected set that each path (n, 2) between nodes belongs to."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    count = int(node.max()) + 1
-    edges = coo_array((np.ones(len(node)), (node[:, 0], node[:, 1])), shape=(count, count))
-    return np.asarray(connected_components(edges, directed=False)[1][node[:, 0]], np.intp)
+    return components(int(node.max()) + 1, node[:, 0], node[:, 1])[node[:, 0]]
 
 
 def _walked(node: Ints) -> tuple[Ints, Bools, list[int]]:
@@ -151,10 +145,7 @@ def reason_open(outline: SheetOutline) -> tuple[str, complex | None]:
 
 def _widest(ends: Complexes) -> tuple[float, complex]:
     """The end that is the nearest to another one, but does not meet it: how far that is, and where."""
-    from scipy.spatial import cKDTree
-
-    xy = np.column_stack((ends.real, ends.imag))
-    distance, _ = cKDTree(xy).query(xy, k=2)
+    distance, _ = Neighbours(ends).nearest(ends, 2)
     apart = np.where(distance[:, 1] > MEETING, distance[:, 1], np.inf)
     nearest = int(np.argmin(apart))
     return float(apart[nearest]), complex(ends[nearest])
@@ -169,7 +160,7 @@ def _crossing(paths: Paths) -> complex | None:
     for path in range(len(chords)):
         some = slice(int(chords.offsets[path]), int(chords.offsets[path + 1]))
         points = np.append(chords.start[some], chords.end[some][-1:])
-        lines.append(shapely.LineString(np.column_stack((points.real, points.imag))))
+        lines.append(shapely.LineString(plane(points)))
     one, two = shapely.STRtree(lines).query(lines, predicate="crosses")
     if not len(one):
         return None
