@@ -156,7 +156,7 @@ def placed(
     if not (all(map(math.isfinite, rectangle)) and x0 < x1 and y0 < y1):
         raise ValueError(f"not a rectangle (x0, y0, x1, y1): {rectangle}")
     frame = _ShownWindow(x0, y0, x1, y1)
-    points = [_placed_centre(lattice.cartesian(centre.x, centre.y), lattice, frame) for centre in elements.centres]
+    points = [images_in(lattice.cartesian(centre.x, centre.y), lattice, rectangle) for centre in elements.centres]
     orders = np.repeat([centre.order for centre in elements.centres], [len(part) for part in points])
     return PlacedElements(
         np.concatenate([np.empty(0, np.complex128), *points]),
@@ -212,11 +212,12 @@ class _ShownWindow:
         return inside
 
 
-def _placed_centre(point: complex, lattice: Lattice, frame: _ShownWindow) -> Complexes:
-    """The images of a point under the lattice in a rectangle, clamped to it.
+def images_in(point: complex, lattice: Lattice, rectangle: tuple[float, float, float, float]) -> Complexes:
+    """The images of a point under the lattice in a rectangle (x0, y0, x1, y1), clamped to it: complex128 (n,).
 
     They stand in rows along the shorter vector of the reduced basis, so that few rows have none.
     """
+    frame = _ShownWindow(*rectangle)
     u, v = lattice.reduced_basis
     low, high = frame.across(u)
     own, step = u.real * point.imag - u.imag * point.real, u.real * v.imag - u.imag * v.real

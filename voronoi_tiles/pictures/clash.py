@@ -9,6 +9,7 @@ import numpy as np
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.errors import TouchingCopiesError
 from voronoi_tiles.designs.design import Design
+from voronoi_tiles.groups.symmetry_elements import images_in
 from voronoi_tiles.groups.wallpaper import Lattice
 from voronoi_tiles.raster.picture import Overlay, Region
 from voronoi_tiles.vector.cells.touching import refuse_touching
@@ -84,19 +85,8 @@ def _images(spot: complex, design: Design, region: Region) -> Complexes:
     lattice = design.lattice
     if (x1 - x0) * (y1 - y0) > _IMAGES_MAX * lattice.det:
         return np.zeros(0, complex)
-    own = np.array([lattice.isometry(operation)(spot) for operation in design.group.operations])
-    s, t = lattice.fractional(complex(x0 + x1, y0 + y1) / 2 - own)
-    own = own + np.round(s) * lattice.a + np.round(t) * lattice.b
-    corners = np.array([complex(x, y) for x in (x0, x1) for y in (y0, y1)])
-    low, high = ([edge(part) for part in lattice.fractional(corners)] for edge in (np.min, np.max))
-    i, j = (
-        np.arange(math.floor(first - at.max()), math.ceil(last - at.min()) + 1)
-        for first, last, at in zip(low, high, lattice.fractional(own), strict=True)
-    )
-    shifts = (i[:, None] * lattice.a + j * lattice.b).ravel()
-    found: Complexes = (own[:, None] + shifts).ravel()
-    inside = (found.real >= x0) & (found.real <= x1) & (found.imag >= y0) & (found.imag <= y1)
-    return found[inside]
+    own = [lattice.isometry(operation)(spot) for operation in design.group.operations]
+    return np.concatenate([images_in(complex(image), lattice, region) for image in own])
 
 
 def _nearest_vector(lattice: Lattice, z: complex) -> complex:
