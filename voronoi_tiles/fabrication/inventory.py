@@ -8,6 +8,7 @@ from math import fsum
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Floats, Ints
+from voronoi_tiles.base.text import counted
 from voronoi_tiles.fabrication.layout import FRAME, Layout, piece_areas
 from voronoi_tiles.fabrication.tile_colouring import TileColouring
 
@@ -40,7 +41,7 @@ class Inventory:
         """The count in words: "54 pieces", "40 tiles and a frame", "a frame of 2 pieces"."""
         count, parts = self.count, self.frame
         what = "tile" if parts else "piece"
-        pieces = [f"{count:,} {what}{'s' * (count != 1)}"] if count or not parts else []
+        pieces = [counted(count, what)] if count or not parts else []
         return " and ".join([*pieces, *(["a frame" if parts == 1 else f"a frame of {parts} pieces"] if parts else [])])
 
     @property

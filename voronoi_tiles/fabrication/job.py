@@ -227,13 +227,18 @@ class Job:
         if self.pack:
             return None
         if self.gap is None:
-            return max(APART_MM, 2 * self.kerf) if self.kerf > 0.0 else None
+            return self._enough if self.kerf > 0.0 else None
         return self.gap if self.gap > 0.0 or self.kerf > 0.0 else None
 
     @property
     def side_by_side(self) -> float:
         """How far contours that are packed are kept apart; millimetres."""
-        return max(APART_MM, 2 * self.kerf) if self.gap is None else self.gap
+        return self._enough if self.gap is None else self.gap
+
+    @property
+    def _enough(self) -> float:
+        """How far contours are kept apart where no gap says; millimetres."""
+        return max(APART_MM, 2 * self.kerf)
 
     @property
     def cuts_pieces(self) -> bool:

@@ -10,6 +10,7 @@ from typing import Final
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, Ints, plane
+from voronoi_tiles.base.text import counted
 from voronoi_tiles.fabrication.engraving import piece_numbers
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.layout import Layout, PlacedTiles, Sheet
@@ -36,7 +37,7 @@ class PackedColour:
         """What there is to say of it, a sentence."""
         tiles, sheets = sum(len(sheet.copies.tile) for sheet in self.sheets), len(self.sheets)
         return (
-            f"colour {self.colour + 1}: {tiles:,} piece{'s' * (tiles != 1)} on {sheets:,} sheet{'s' * (sheets != 1)}, "
+            f"colour {self.colour + 1}: {counted(tiles, 'piece')} on {counted(sheets, 'sheet')}, "
             f"{self.share:.1%} of {'it' if sheets == 1 else 'them'}"
         )
 

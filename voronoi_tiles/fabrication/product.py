@@ -111,7 +111,7 @@ class Product:
         woods = f", {colours} colours" if self.scheme is not None and colours > 1 else ""
         return (
             f"{self.pieces.counted}, {self.pieces.tile_area / area:.1%} of {self.drawing.width:.5g} x "
-            f"{self.drawing.height:.5g} mm, {length:.3g} m of cuts in {strokes:,} path{'s' * (strokes != 1)}{woods}"
+            f"{self.drawing.height:.5g} mm, {length:.3g} m of cuts in {counted(strokes, 'path')}{woods}"
         )
 
     def save(self, path: str | os.PathLike[str]) -> None:
