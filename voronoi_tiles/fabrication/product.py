@@ -200,13 +200,14 @@ class _Plan:
         preset.require(form)
         curves = _curves(job, preset, form)
         said: tuple[str, ...] = ()
-        if job.pieces is not None:
-            design, tessellation, job, found = sized(design, tessellation, job, curves)
+        if job.pieces is None:
+            budget = AccuracyBudget.of(job, curves)
+            fit = curve_fit(job, curves, budget, design.unit_mm)
+            layout = lay_out(design, tessellation, job, read_sheet(job, budget), budget, fit)
+        else:
+            layout, found = sized(design, tessellation, job, curves)
             said = (found,)
-        budget = AccuracyBudget.of(job, curves)
-        fit = curve_fit(job, curves, budget, design.unit_mm)
-        layout = lay_out(design, tessellation, job, read_sheet(job, budget), budget, fit)
-        colours = colour_tiles(tessellation, job.scheme, layout.period)
+        colours = colour_tiles(layout.tessellation, job.scheme, layout.period)
         if job.split is not None and colours.count == 1:
             said += (f"by {job.scheme} all tiles are alike: there is one colour",)
         return cls(form, preset, curves, layout, TileColouring(colours, layout.copies), said, smaller_gap(layout))

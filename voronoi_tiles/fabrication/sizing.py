@@ -56,22 +56,19 @@ _HALVED: Final = 5
 """Halvings of the last step of a sheet."""
 
 
-def sized(design: Design, tessellation: Tessellation, job: Job, curves: str) -> tuple[Design, Tessellation, Job, str]:
-    """What a job with a number of pieces comes to: the scaled design, or the sheet; the job without the number; a line.
+def sized(design: Design, tessellation: Tessellation, job: Job, curves: str) -> tuple[Layout, str]:
+    """The layout of a job with a number of pieces, of the scaled design or on the sheet that is found; a line on it.
 
-    `curves` are those of the file: exact, arc, spline or polyline. Raises JobError where no size that is tried will do.
+    Its job has no number of pieces. `curves` are those of the file: exact, arc, spline or polyline. Raises JobError
+    where no size that is tried will do.
     """
     assert job.pieces is not None
-    if job.sheet is not None:
-        return _scaled(design, tessellation, job, curves, job.pieces)
-    done, text = _with_sheet(design, tessellation, job, curves, job.pieces)
-    return design, tessellation, done, text
+    look = _with_sheet if job.sheet is None else _scaled
+    return look(design, tessellation, job, curves, job.pieces)
 
 
-def _scaled(
-    design: Design, tessellation: Tessellation, job: Job, curves: str, pieces: int
-) -> tuple[Design, Tessellation, Job, str]:
-    """The design at the largest scale of those tried at which a sheet holds so many tiles."""
+def _scaled(design: Design, tessellation: Tessellation, job: Job, curves: str, pieces: int) -> tuple[Layout, str]:
+    """The layout at the largest scale of those tried at which a sheet holds so many tiles."""
     job = replace(job, pieces=None)
     budget = AccuracyBudget.of(job, curves)
     sheet = read_sheet(job, budget)
@@ -110,7 +107,7 @@ def _scaled(
         own = proved_tiles(made.noded, made.group, made.lattice)[0][0].tessellation
         layout = _laid(partial(lay_out, made, own, job, sheet, budget, curve_fit(job, curves, budget, made.unit_mm)))
         if layout is not None and len(layout.copies.tile) >= pieces:
-            return made, own, job, f"scale {scale:.{_DIGITS}g}: {_tile_size(layout)}"
+            return layout, f"scale {scale:.{_DIGITS}g}: {_tile_size(layout)}"
         scale = _rounded(scale * (1 - 10.0 ** (1 - _DIGITS)))
     raise JobError(
         f"{pieces:,} `pieces` fit on the sheet at a scale of {low:.{_DIGITS}g} by the design's curves alone",
@@ -118,8 +115,8 @@ def _scaled(
     )
 
 
-def _with_sheet(design: Design, tessellation: Tessellation, job: Job, curves: str, pieces: int) -> tuple[Job, str]:
-    """The job with the smallest sheet, of those tried, that holds so many tiles; whole millimetres."""
+def _with_sheet(design: Design, tessellation: Tessellation, job: Job, curves: str, pieces: int) -> tuple[Layout, str]:
+    """The layout on the smallest sheet, of those tried, that holds so many tiles; whole millimetres."""
     job = replace(job, pieces=None, sheet=(SHEET_MAX, SHEET_MAX))  # until it is found
     budget = AccuracyBudget.of(job, curves)
     areas = item_areas(*tessellation.period.own_outlines) * design.unit_mm**2
@@ -154,7 +151,7 @@ def _with_sheet(design: Design, tessellation: Tessellation, job: Job, curves: st
         done = replace(job, sheet=size)
         layout = _laid(partial(lay_out, design, tessellation, done, read_sheet(done, budget), budget, fit))
         if layout is not None and len(layout.copies.tile) >= pieces:
-            return done, f"sheet {size[0]:g} x {size[1]:g} mm: {_tile_size(layout)}"
+            return layout, f"sheet {size[0]:g} x {size[1]:g} mm: {_tile_size(layout)}"
         size = (size[0] + 1.0, size[1] + 1.0)
     raise JobError(f"no sheet was found for {pieces:,} `pieces`", remedy="Ask for one piece more or less.")
 
