@@ -105,6 +105,13 @@ class Chords:
         chord, share, on = self.where(path, at)
         return self.start[chord] + share * (self.end[chord] - self.start[chord]), on
 
+    def on_pieces(self, chords: Ints, share: Floats) -> tuple[Ints, Floats]:
+        """The pieces of chords, and the parameters of pieces at these shares of the chords, which take equal steps."""
+        piece = self.piece[chords]
+        first = np.searchsorted(self.piece, piece)
+        count = np.searchsorted(self.piece, piece, side="right") - first
+        return piece, (chords - first + share) / count
+
     def apart(self, path: Ints, one: Floats, other: Floats) -> Floats:
         """From one length along a path to another, the shorter way round a ring; signed."""
         way = other - one

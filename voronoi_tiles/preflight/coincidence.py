@@ -133,10 +133,8 @@ def near_all_the_way(chords: Chords, path: Ints, one: Floats, other: Floats, tol
 def curve_points(chords: Chords, paths: Paths, path: Ints, at: Floats) -> tuple[Ints, Complexes]:
     """The pieces at these lengths along the chords of paths, and the points of the curves themselves."""
     chord, share, _ = chords.where(path, at)
-    piece = chords.piece[chord]
-    first = np.searchsorted(chords.piece, piece)
-    count = np.searchsorted(chords.piece, piece, side="right") - first
-    return piece, at_parameter(paths, piece, (chord - first + share) / count).point
+    piece, t = chords.on_pieces(chord, share)
+    return piece, at_parameter(paths, piece, t).point
 
 
 class NearChords(NamedTuple):

@@ -68,10 +68,7 @@ def signed_distances(paths: Paths, chords: Chords, points: Complexes, own: Ints,
     after = chords.next(chord)
     best, result = np.full(len(points), np.inf), np.zeros(len(points))
     for near in (chord, before, np.where(after < 0, chord, after)):
-        piece = chords.piece[near]
-        first = np.searchsorted(chords.piece, piece)
-        count = np.searchsorted(chords.piece, piece, side="right") - first
-        t = (near - first + foot_share(points, chords.start[near], chords.end[near])) / count
+        piece, t = chords.on_pieces(near, foot_share(points, chords.start[near], chords.end[near]))
         for _ in range(_STEPS):
             there = at_parameter(paths, piece, t)
             speed = dot(there.way, there.way)
