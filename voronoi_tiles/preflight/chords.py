@@ -10,7 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, plane
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, plane, ranges
 from voronoi_tiles.paths.conversion import chord_counts, chords
 from voronoi_tiles.paths.paths import Paths
 
@@ -134,6 +134,14 @@ class Chords:
 def lines(start: Complexes, end: Complexes) -> NDArray[np.object_]:
     """Segments as shapely's lines."""
     return np.asarray(shapely.linestrings(plane(np.stack((start, end), axis=1))), dtype=object)
+
+
+def polygons(chords: Chords, paths: Ints) -> NDArray[np.object_]:
+    """What paths of three or more chords enclose, as shapely's polygons; they may be invalid."""
+    counts = np.diff(chords.first)[paths]
+    points = plane(chords.start[ranges(chords.first[paths], counts)])
+    rings = shapely.linearrings(points, indices=np.repeat(np.arange(len(paths)), counts))
+    return np.asarray(shapely.polygons(rings), dtype=object)
 
 
 def counts_of(paths: Paths, accuracy: float) -> Ints:

@@ -10,7 +10,7 @@ import shapely
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, plane, ranges
 from voronoi_tiles.preflight.chord_distance import Nearest, distinct, divisor, dot, nearest, runs
 from voronoi_tiles.preflight.chord_search import FOUND_MAX, pairs, too_dense, too_many
-from voronoi_tiles.preflight.chords import Chords, lines
+from voronoi_tiles.preflight.chords import Chords, lines, polygons
 from voronoi_tiles.preflight.contacts import run_beside
 
 _APPROACH: Final = 1e-6
@@ -188,9 +188,6 @@ def _is_material(chords: Chords, place: Complexes) -> Bools:
     rings = np.flatnonzero(np.diff(chords.first) >= 3)
     if not chords.ring.all() or not len(rings):
         return np.ones(len(place), np.bool_)
-    counts = np.diff(chords.first)[rings]
-    which = ranges(chords.first[rings], counts)
-    points = plane(chords.start[which])
-    polygons = shapely.polygons(shapely.linearrings(points, indices=np.repeat(np.arange(len(rings)), counts)))
-    inside, _ = shapely.STRtree(polygons).query(shapely.points(place.real, place.imag), predicate="within")
+    tree = shapely.STRtree(polygons(chords, rings))
+    inside, _ = tree.query(shapely.points(place.real, place.imag), predicate="within")
     return np.asarray(np.bincount(inside, minlength=len(place)) % 2 == 1, np.bool_)

@@ -8,8 +8,8 @@ from typing import Final, NamedTuple
 import numpy as np
 import shapely
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, plane, ranges
-from voronoi_tiles.preflight.chords import Chords
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, plane
+from voronoi_tiles.preflight.chords import Chords, polygons
 from voronoi_tiles.preflight.faces import faces_of
 
 _STEPS: Final = 12
@@ -98,12 +98,9 @@ def _between_lines(
 
 def _nested(chords: Chords, ring: Ints, area: Floats) -> tuple[Ints, Ints]:
     """Pairs of rings, by their places in `ring`, of which the first lies inside the second."""
-    counts = np.diff(chords.first)[ring]
-    which = ranges(chords.first[ring], counts)
-    rings = shapely.linearrings(plane(chords.start[which]), indices=np.repeat(np.arange(len(ring)), counts))
-    polygons = shapely.polygons(rings)
     middle = (chords.start[chords.first[ring]] + chords.end[chords.first[ring]]) / 2
-    inside, outside = shapely.STRtree(polygons).query(shapely.points(plane(middle)), predicate="within").astype(np.intp)
+    tree = shapely.STRtree(polygons(chords, ring))
+    inside, outside = tree.query(shapely.points(plane(middle)), predicate="within").astype(np.intp)
     # A ring that crosses another one is not in it, and none is in a smaller one.
     smaller: Bools = area[inside] < area[outside]
     return inside[smaller], outside[smaller]
@@ -111,12 +108,9 @@ def _nested(chords: Chords, ring: Ints, area: Floats) -> tuple[Ints, Ints]:
 
 def _region(chords: Chords, paths: tuple[int, ...]) -> shapely.Geometry:
     """The inside of the first path without that of the others."""
-    shell, *holes = (
-        shapely.Polygon(plane(chords.start[chords.first[path] : chords.first[path + 1]])) for path in paths
-    )
-    shape = shapely.make_valid(shell)
+    shape, *holes = shapely.make_valid(polygons(chords, np.array(paths, np.intp)))
     for hole in holes:
-        shape = shape.difference(shapely.make_valid(hole))
+        shape = shape.difference(hole)
     return shape
 
 
