@@ -26,7 +26,7 @@ _WAYS_MAX: Final = 200_000_000  # and altogether
 
 
 class Neck(NamedTuple):
-    """A narrow place: its middle, its width, the paths and chords on both sides, and whether material is between.
+    """A narrow place: its middle, its width, the paths on both sides, and whether material is between.
 
     With `loose` it is beside the loose end of a line.
     """
@@ -34,7 +34,6 @@ class Neck(NamedTuple):
     place: complex
     width: float
     paths: tuple[int, int]
-    chords: tuple[int, int]
     material: bool
     loose: bool
 
@@ -97,7 +96,6 @@ def _narrowest(chords: Chords, one: Ints, two: Ints, near: Nearest, limit: float
             complex(place),
             float(near.distance[k]),
             (int(chords.path[one[k]]), int(chords.path[two[k]])),
-            (int(one[k]), int(two[k])),
             bool(solid),
             bool(end),
         )
