@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Final
 
+from voronoi_tiles.base.text import counted
 from voronoi_tiles.formats.caveats import unit_caveat
 from voronoi_tiles.formats.reading import ReadDrawing
 from voronoi_tiles.preflight.findings import Finding, LayerUse
@@ -111,7 +112,7 @@ def _left_out(drawing: ReadDrawing) -> Iterator[Finding]:
             message = f"{count:,} {name}: not understood; it counts as paint, whatever its colour"
             remedy = 'Write it as "#rrggbb", or as none.'
         elif name == "invisible object":
-            message = f"{count:,} {name}{'s' * (count > 1)}: an opacity of 0 hides what many drivers cut; left out here"
+            message = f"{counted(count, name)}: an opacity of 0 hides what many drivers cut; left out here"
             remedy = "Remove it, or make it visible."
         elif name == "clip of a nested svg":
             message = f"{count:,} {name}: objects reach over the edge of a nested drawing, and are not cut off there"
@@ -122,13 +123,12 @@ def _left_out(drawing: ReadDrawing) -> Iterator[Finding]:
             message, remedy = f"{count:,} {name}: not read", "Convert it to paths, or remove it if it is not needed."
         yield Finding("unsupported", "warning", message, remedy, value=float(count))
     if drawing.clones:
-        name = "block" if drawing.format == "dxf" else "clone"
-        judged = f"{name}: it is" if drawing.clones == 1 else f"{name}s: they are"
-        them = "it" if drawing.clones == 1 else "them"
+        clones = counted(drawing.clones, "block" if drawing.format == "dxf" else "clone")
+        they_are, them = ("it is", "it") if drawing.clones == 1 else ("they are", "them")
         yield Finding(
             "clones",
             "info" if drawing.format == "dxf" else "warning",
-            f"{drawing.clones:,} {judged} judged as drawn here, but many drivers leave {them} out",
+            f"{clones}: {they_are} judged as drawn here, but many drivers leave {them} out",
             "Unlink the clones." if drawing.format == "svg" else "Explode the blocks.",
             value=float(drawing.clones),
         )
