@@ -14,7 +14,6 @@ from __future__ import annotations
 import argparse
 import gc
 import json
-import os
 import resource
 import statistics
 import subprocess
@@ -28,6 +27,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from processes import usage_of
 from report import machine, published, table
 
 from voronoi_tiles import Design
@@ -276,18 +276,8 @@ def print_stages(group: str, most: int) -> None:
 
 def process_cost(command: Sequence[str], runs: int) -> float:
     """The median processor time, user and system, of a command's runs."""
-    seconds = []
-    for _ in range(runs):
-        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)  # noqa: S603 our own
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        assert process.stderr is not None
-        message = process.stderr.read().decode()
-        process.stderr.close()
-        if process.returncode:
-            raise SystemExit(f"{' '.join(command)} failed: {message}")
-        seconds.append(usage.ru_utime + usage.ru_stime)
-    return statistics.median(seconds)
+    used = [usage_of(command) for _ in range(runs)]
+    return statistics.median(usage.ru_utime + usage.ru_stime for usage in used)
 
 
 def print_processes(runs: int) -> None:

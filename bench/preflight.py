@@ -14,15 +14,13 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import statistics
-import subprocess
-import sys
 import tempfile
 from pathlib import Path
 from typing import NamedTuple
 
 from against import Checkout, checkouts
+from processes import usage_of
 from report import machine, published, table
 from sheets import design_text
 
@@ -40,11 +38,7 @@ def cost(checkout: Checkout, file: Path) -> tuple[Cost, bytes]:
     """What the preflight of a file costs, and the report that it prints."""
     with tempfile.TemporaryFile() as printed:
         command = [str(checkout.environment / "bin" / "voronoi-tiles"), "preflight", str(file), "--json"]
-        process = subprocess.Popen(command, stdout=printed, stderr=subprocess.DEVNULL)  # noqa: S603 our own
-        _, status, usage = os.wait4(process.pid, 0)
-        process.returncode = os.waitstatus_to_exitcode(status)
-        if process.returncode not in {0, 1}:
-            sys.exit(f"failed: {' '.join(command)}")
+        usage = usage_of(command, stdout=printed, fine=(0, 1))
         printed.seek(0)
         return Cost(usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1000), printed.read()
 

@@ -14,13 +14,12 @@ from __future__ import annotations
 
 import argparse
 import io
-import os
-import subprocess
 import sys
 import tempfile
 import time
 from pathlib import Path
 
+from processes import usage_of
 from report import machine, published
 
 from voronoi_tiles import Design, Job
@@ -60,14 +59,7 @@ def design_text(tiles: int) -> str:
 def run(arguments: list[str]) -> tuple[float, float]:
     """Run the command line: seconds, and megabytes at its peak."""
     begun = time.perf_counter()
-    quiet = subprocess.DEVNULL
-    process = subprocess.Popen(  # noqa: S603 - our own command line
-        [sys.executable, "-m", "voronoi_tiles", *arguments], stdout=quiet, stderr=quiet
-    )
-    _, status, usage = os.wait4(process.pid, 0)
-    process.returncode = os.waitstatus_to_exitcode(status)
-    if process.returncode:
-        sys.exit(f"failed: {' '.join(arguments)}")
+    usage = usage_of([sys.executable, "-m", "voronoi_tiles", *arguments])
     return time.perf_counter() - begun, usage.ru_maxrss / 1000
 
 
