@@ -19,13 +19,15 @@ import subprocess
 import sys
 import tarfile
 import tempfile
+from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from engine import CURVES, process_cost
 from report import machine, published, table
 
+Result = TypeVar("Result")
 ROOT = Path(__file__).parents[1]
 SHEETS, SEGMENTS = ("p4-hook", "pgg-crane", "p6m-flower", "cm-moth", "p3-puzzle"), (24, 100, 1000)
 SHEET, KERF = ("--sheet", "600x300mm", "--margin", "5mm"), ("--kerf", "0.15mm")
@@ -139,13 +141,21 @@ def tasks(examples: Path, folder: Path) -> list[Task]:
     return found
 
 
-def timed(task: Task, old: Checkout, new: Checkout, rounds: int) -> tuple[float, float]:
-    """The medians of the old checkout and of the new one, which take turns at being first."""
-    runs: dict[Checkout, list[float]] = {old: [], new: []}
+def in_turns(
+    old: Checkout, new: Checkout, rounds: int, measure: Callable[[Checkout], Result]
+) -> tuple[list[Result], list[Result]]:
+    """What is measured of the old checkout and of the new one, which take turns at being first."""
+    runs: dict[Checkout, list[Result]] = {old: [], new: []}
     for number in range(rounds):
         for checkout in (old, new) if number % 2 else (new, old):
-            runs[checkout].append(checkout.cost(task))
-    return statistics.median(runs[old]), statistics.median(runs[new])
+            runs[checkout].append(measure(checkout))
+    return runs[old], runs[new]
+
+
+def timed(task: Task, old: Checkout, new: Checkout, rounds: int) -> tuple[float, float]:
+    """The medians of the old checkout and of the new one."""
+    before, after = in_turns(old, new, rounds, lambda checkout: checkout.cost(task))
+    return statistics.median(before), statistics.median(after)
 
 
 def differing(old: Checkout, new: Checkout, folder: Path) -> tuple[int, list[str]]:
@@ -183,17 +193,21 @@ def compare(commit: str, rounds: int, keep: Path) -> bool:
     return not changed
 
 
-def main() -> None:
-    """Compare; exit with 1 where outlines differ."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+def run(name: str, about: str | None, rounds: int, compare: Callable[[str, int, Path], Result]) -> Result:
+    """Compare as the command line says; `name` is that of the marks in README.md, `rounds` the default of --rounds."""
+    parser = argparse.ArgumentParser(description=about, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("commit", nargs="?", default="1e5cef8")
-    parser.add_argument("--rounds", type=int, default=5)
+    parser.add_argument("--rounds", type=int, default=rounds)
     parser.add_argument("--keep", type=Path, metavar="FOLDER")
     parser.add_argument("--write", action="store_true")
     options = parser.parse_args()
-    with tempfile.TemporaryDirectory() as name, published("against", write=options.write):
-        same = compare(options.commit, options.rounds, (options.keep or Path(name)).resolve())
-    sys.exit(0 if same else 1)
+    with tempfile.TemporaryDirectory() as folder, published(name, write=options.write):
+        return compare(options.commit, options.rounds, (options.keep or Path(folder)).resolve())
+
+
+def main() -> None:
+    """Compare; exit with 1 where outlines differ."""
+    sys.exit(0 if run("against", __doc__, 5, compare) else 1)
 
 
 if __name__ == "__main__":

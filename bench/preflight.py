@@ -12,16 +12,16 @@ mm.
 
 from __future__ import annotations
 
-import argparse
 import json
 import statistics
 import tempfile
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
-from against import Checkout, checkouts
+from against import Checkout, checkouts, in_turns, run
 from processes import usage_of
-from report import machine, published, table
+from report import machine, table
 from sheets import design_text
 
 TILES = 10_000
@@ -67,16 +67,12 @@ def compare(commit: str, rounds: int, keep: Path) -> None:
         heads = "ratio, time", "ratio, memory", "this, CPU s", f"{commit}, CPU s", "this, MB", f"{commit}, MB"
         table("Ratio = this checkout / the commit:", *heads, "paths", "segments", "file")
         for what, file in sheets(old, Path(name)).items():
-            runs: dict[Checkout, list[Cost]] = {old: [], new: []}
-            for number in range(rounds):
-                for checkout in (old, new) if number % 2 else (new, old):
-                    spent, report = cost(checkout, file)
-                    runs[checkout].append(spent)
-            said = json.loads(report)
+            before, after = in_turns(old, new, rounds, partial(cost, file=file))
+            said = json.loads(after[-1][1])
             paths = sum(layer["shapes"] for layer in said["layers"])
             (s, m), (t, n) = (
-                (statistics.median(run.seconds for run in some), max(run.megabytes for run in some))
-                for some in (runs[new], runs[old])
+                (statistics.median(spent.seconds for spent, _ in some), max(spent.megabytes for spent, _ in some))
+                for some in (after, before)
             )
             print(
                 f"| {s / t:.2f} | {m / n:.2f} | {s:.2f} | {t:.2f} | {m:.0f} | {n:.0f} | {paths:,} | "
@@ -87,14 +83,7 @@ def compare(commit: str, rounds: int, keep: Path) -> None:
 
 def main() -> None:
     """Compare."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("commit", nargs="?", default="1e5cef8")
-    parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--keep", type=Path, metavar="FOLDER")
-    parser.add_argument("--write", action="store_true")
-    options = parser.parse_args()
-    with tempfile.TemporaryDirectory() as name, published("preflight", write=options.write):
-        compare(options.commit, options.rounds, (options.keep or Path(name)).resolve())
+    run("preflight", __doc__, 3, compare)
 
 
 if __name__ == "__main__":
