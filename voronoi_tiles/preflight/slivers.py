@@ -13,7 +13,8 @@ from voronoi_tiles.preflight.chords import Chords, polygons
 from voronoi_tiles.preflight.faces import faces_of
 
 _STEPS: Final = 12
-"""Halvings of the interval in which the width of a sliver is looked for; a count. They leave a four-thousandth."""
+"""Halvings of the interval in which it is looked for how far a sliver can be shrunk; a count. They leave a
+four-thousandth."""
 
 
 class Sliver(NamedTuple):
