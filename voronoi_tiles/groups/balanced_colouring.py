@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from voronoi_tiles.base.arrays import Ints
+from voronoi_tiles.base.components import components
 from voronoi_tiles.groups.periodic_colouring import (
     SEARCHED,
     SQUARES,
@@ -101,13 +102,10 @@ def _hand_on(beside: NDArray[np.bool_], colour: Ints, many: int, few: int) -> bo
 
 def _exchange(beside: NDArray[np.bool_], colour: Ints, many: int, few: int) -> bool:
     """Exchange two colours in a connected part of the nodes that have them, so that counts come nearer; whether any."""
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import connected_components
-
     nodes = np.flatnonzero((colour == many) | (colour == few))
-    parts, part = connected_components(csr_array(beside[np.ix_(nodes, nodes)]), directed=False)
+    part = components(len(nodes), *np.nonzero(beside[np.ix_(nodes, nodes)]))
     sign = np.where(colour[nodes] == many, 1, -1)
-    surplus = np.bincount(part, sign, parts).astype(np.intp)
+    surplus = np.bincount(part, sign).astype(np.intp)
     gap = int(sign.sum())
     # Two counts that differ by g differ by |g - 2 s| when a part with the surplus s is exchanged.
     best = int(np.argmin(np.abs(gap - 2 * surplus)))
