@@ -20,7 +20,7 @@ from voronoi_tiles.designs.checking import CheckedDesign, checked
 from voronoi_tiles.designs.coordinates import PointLike, pair
 from voronoi_tiles.designs.design_arguments import argument_of, cell_table, listed_sites, scale_table
 from voronoi_tiles.designs.drawn_site import Site, site_of
-from voronoi_tiles.designs.load import parse, read_text
+from voronoi_tiles.designs.load import parse, read_table
 from voronoi_tiles.designs.schema import placement
 from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.designs.toml_text import toml_text
@@ -178,12 +178,10 @@ class Design:
         """
         file = path_name("path", path)
         shown = "standard input" if file == "-" else file or repr(file)
-        text = read_text(file, shown)
-        suffix = Path(file).suffix.lower()
-        form = suffix[1:] if suffix in (".toml", ".json") else None
+        table = read_table(file, shown)
         if file == "-":
-            return cls.loads(text, format=form, file=shown)
-        read = cls.loads(text, format=form, file=shown, folder=Path(file).parent)
+            return cls.from_dict(table, file=shown)
+        read = cls.from_dict(table, file=shown, folder=Path(file).parent)
         return _fill(read, read._parts, Path(file).stem, read.folder, file)  # noqa: SLF001 - it is one of us
 
     @classmethod

@@ -6,6 +6,7 @@ import os
 import shlex
 import sys
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from voronoi_tiles.base import values
@@ -16,7 +17,17 @@ STARTER = 'Run "voronoi-tiles new p4" for a design to start from.'
 """The remedy where there is nothing to mend."""
 
 
-def read_text(file: str, shown: str) -> str:
+def read_table(file: str, shown: str) -> Mapping[str, Any]:
+    """Read a design file, TOML or JSON by its suffix (else by its content); "-" is standard input.
+
+    `shown` is what messages call it. Raises DesignError.
+    """
+    text = _read_text(file, shown)
+    suffix = Path(file).suffix.lower()
+    return parse(text, suffix[1:] if suffix in (".toml", ".json") else None, shown)
+
+
+def _read_text(file: str, shown: str) -> str:
     """Read the text of a file, or of standard input, "-"; `shown` is what messages call it. Raises DesignError."""
     if not file:
         raise DesignError(

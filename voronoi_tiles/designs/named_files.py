@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator, Mapping
-from pathlib import Path
 from typing import Any
 
 from voronoi_tiles.base.errors import DesignError
-from voronoi_tiles.designs.load import parse, read_text
+from voronoi_tiles.designs.load import read_table
 
 
 def named_files(path: str) -> tuple[str, ...]:
@@ -16,8 +15,7 @@ def named_files(path: str) -> tuple[str, ...]:
 
     Raises DesignError where the design cannot be read, or is neither TOML nor JSON.
     """
-    suffix = Path(path).suffix.lower()
-    table = parse(read_text(path, path), suffix[1:] if suffix in (".toml", ".json") else None, path)
+    table = read_table(path, path)
     folder = os.path.dirname(path)  # noqa: PTH120 - any name
     try:
         return tuple(dict.fromkeys(os.path.join(folder, name) for name in _names(table)))  # noqa: PTH118 - any name
