@@ -18,7 +18,7 @@ import numpy as np
 import shapely
 from scipy import ndimage, signal, sparse, spatial
 
-from voronoi_tiles.base.arrays import Complexes, Floats, plane
+from voronoi_tiles.base.arrays import Complexes, Floats, counting, plane
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import Isometry, move
 from voronoi_tiles.base.tolerance import CELL_MIN
@@ -105,10 +105,7 @@ class _Silhouette:
         diameter = float(max(np.ptp(x), np.ptp(y))) or 1.0  # a single point is as good anywhere
         pixel = diameter / _PIXELS
         lines = _snapped(_samples(ends - middle, pixel), pixel)
-        faces = [
-            shapely.polygonize(shapely.linestrings(plane(site.ends[site.ends[:, 0] != site.ends[:, 1]] - middle)))
-            for site in sites
-        ]
+        faces = [shapely.polygonize(shapely.linestrings(plane(site.nodes[site.segments] - middle))) for site in sites]
         points = np.unique(np.concatenate([lines, *(_inside(face, pixel) for face in faces)]))
         # A bridge is nearer to its own ends than to anything outside the disc over it.
         bridges = _bridges(points, 1.5 * pixel)
@@ -144,9 +141,9 @@ class _Silhouette:
 def _samples(ends: Complexes, step: float) -> Complexes:
     """Points along segments (n, 2), no farther apart than a step."""
     counts = np.ceil(np.abs(ends[:, 1] - ends[:, 0]) / step).astype(np.intp) + 1
-    rows = np.repeat(np.arange(len(ends)), counts)
-    along = (np.arange(len(rows)) - np.repeat(np.cumsum(counts) - counts, counts)) / np.maximum(counts - 1, 1)[rows]
-    points: Complexes = ends[rows, 0] + along * (ends[rows, 1] - ends[rows, 0])
+    number, row = counting(counts)
+    along = number / np.maximum(counts - 1, 1)[row]
+    points: Complexes = ends[row, 0] + along * (ends[row, 1] - ends[row, 0])
     return points
 
 

@@ -160,5 +160,5 @@ def _apart(sites: Sequence[NodedSite]) -> list[complex]:
 
 def _shape(site: NodedSite) -> list[shapely.Geometry]:
     """The lines and points of a site."""
-    lines = shapely.linestrings(plane(site.ends[site.ends[:, 0] != site.ends[:, 1]]))
+    lines = shapely.linestrings(plane(site.nodes[site.segments]))
     return [*lines, *shapely.points(plane(site.nodes[site.isolated]))]
