@@ -113,6 +113,13 @@ def text(value: object, remedy: str) -> str:
     return value
 
 
+def file_name(value: object, remedy: str) -> str:
+    """Read the name of a file."""
+    if not isinstance(value, str) or not value or "\0" in value:
+        raise DesignError(f"must be a file's name, not {shown(value)}", remedy=remedy)
+    return value
+
+
 def flag(value: object, remedy: str) -> bool:
     """Read true or false."""
     if not isinstance(value, bool):

@@ -241,8 +241,7 @@ def _read_art(value: object) -> Art:
     table = values.table(value, ("file", *PLACEMENT), remedy)
     file = values.required(table, "file", remedy)
     with values.within("file"):
-        if not isinstance(file, str) or not file or "\0" in file:
-            raise DesignError(f"must be a file's name, not {values.shown(file)}", remedy=remedy)
+        values.file_name(file, remedy)
     schema.placement(table)
     return Art(**table)
 

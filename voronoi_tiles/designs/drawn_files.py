@@ -14,7 +14,7 @@ import numpy as np
 
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.files import is_special
-from voronoi_tiles.base.values import Table, shown, text, within
+from voronoi_tiles.base.values import Table, file_name, shown, text, within
 from voronoi_tiles.designs.art import GUIDE
 from voronoi_tiles.formats.caveats import caveats
 from voronoi_tiles.paths.paths import LINE, Paths
@@ -51,7 +51,8 @@ class DrawnFiles:
         All that is drawn: lines as they are, and the outlines of what is filled, closed. The lower left corner of that
         is at the origin, y up. Raises DesignError, its key relative to the stroke.
         """
-        name = _file_name(stroke["file"])
+        with within("file"):
+            name = file_name(stroke["file"], FILE_REMEDY)
         for key in ("layer", "id"):
             if key in stroke:
                 with within(key):
@@ -104,13 +105,6 @@ class DrawnFiles:
     def _note(self, sentences: Iterable[str]) -> None:
         """Remember what there is to say of files, each sentence once."""
         self.notes += [note for note in sentences if note not in self.notes]
-
-
-def _file_name(value: object) -> str:
-    """The name of a drawing. Raises DesignError."""
-    if not isinstance(value, str) or not value or "\0" in value:
-        raise DesignError(f"must be a file's name, not {shown(value)}", key="file", remedy=FILE_REMEDY)
-    return value
 
 
 def _chosen(drawing: ReadDrawing, layer: str | None) -> list[Shape]:
