@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -14,6 +14,7 @@ from voronoi_tiles.base import values
 from voronoi_tiles.base.arguments import path_name
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.files import refuse_overwriting, write_whole
+from voronoi_tiles.base.maps import Placement
 from voronoi_tiles.base.units import UNIT_MM, Units
 from voronoi_tiles.designs.art import Art
 from voronoi_tiles.designs.checking import CheckedDesign, checked
@@ -127,9 +128,14 @@ class Design:
 
     @cached_property
     def _content(self) -> tuple[object, ...]:
-        listed = json.loads(self.source)["site"]
-        sites = (site_of(table, noded.name) for table, noded in zip(listed, self.noded, strict=True))
-        return self.group.name, self.lattice, self.units, tuple(site.moved(scale=self.scale) for site in sites)
+        by = Placement(self.scale)
+        sites = tuple(site.placed(by) for site in self._sites_of(self.source))
+        return self.group.name, self.lattice, self.units, sites
+
+    def _sites_of(self, text: str) -> tuple[Site, ...]:
+        """The sites in a text of this design, `drawn` or `source`, each with its name."""
+        listed = json.loads(text)["site"]
+        return tuple(site_of(table, noded.name) for table, noded in zip(listed, self.noded, strict=True))
 
     def _repr_svg_(self) -> str:
         """Draw the cell and the sites with their copies: notebooks show this."""
@@ -145,8 +151,7 @@ class Design:
     @cached_property
     def sites(self) -> tuple[Site, ...]:
         """The sites as they are drawn, each with its name; `noded` has their geometry."""
-        listed = json.loads(self.drawn)["site"]
-        return tuple(site_of(table, noded.name) for table, noded in zip(listed, self.noded, strict=True))
+        return self._sites_of(self.drawn)
 
     @property
     def scale(self) -> float:
@@ -313,7 +318,7 @@ class Design:
     def _times(self, factor: float) -> Design:
         """The design scaled by a factor."""
         cell = {name: value if name == "angle" else value * factor for name, value in self.cell.items()}
-        return self.replace(cell=cell, sites=self._moved(lambda site: site.moved(scale=factor)))
+        return self.replace(cell=cell, sites=self._placed(Placement(factor)))
 
     def moved(
         self, *, mirror: bool = False, scale: float = 1.0, rotate: float = 0.0, translate: PointLike = 0j
@@ -325,16 +330,15 @@ class Design:
         onto itself. Raises DesignError.
         """
         by = placement({"mirror": mirror, "scale": scale, "rotate": rotate, "translate": pair(translate)})
-        shift = by.translate / self.scale  # which comes after what places a site
-        return self.replace(
-            sites=self._moved(lambda site: site.moved(mirror=mirror, scale=scale, rotate=rotate, translate=shift))
-        )
+        # The design's scale comes after what places a site.
+        by = Placement(by.scale, by.rotate, by.translate / self.scale, by.mirror)
+        return self.replace(sites=self._placed(by))
 
-    def _moved(self, move: Callable[[Site], Site]) -> list[Site]:
-        """All sites moved; errors name the argument that a stroke was made of."""
+    def _placed(self, by: Placement) -> list[Site]:
+        """All sites, moved after they have been placed; errors name the argument that a stroke was made of."""
         try:
             with values.within("site"):
-                return values.each(self.sites, move)
+                return values.each(self.sites, lambda site: site.placed(by))
         except DesignError as error:
             raise error.with_key(argument_of(error.key or "")) from None
 

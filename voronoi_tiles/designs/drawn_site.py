@@ -98,7 +98,12 @@ class Site:
         `mirror` is x -> -x, `rotate` in degrees counter-clockwise. What placed the site has become a part of what
         places its strokes.
         """
-        by = placement({"mirror": mirror, "scale": scale, "rotate": rotate, "translate": pair(translate)})
+        return self.placed(
+            placement({"mirror": mirror, "scale": scale, "rotate": rotate, "translate": pair(translate)})
+        )
+
+    def placed(self, by: Placement) -> Site:
+        """The same site, moved after it has been placed where it is; see `moved`."""
         by = by @ self.placement
         with values.within("strokes"):
             strokes = values.each(self.strokes, lambda stroke: stroke.placed(by))
