@@ -19,6 +19,7 @@ from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.maps import Isometry
 from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.base.text import counted
 from voronoi_tiles.base.values import is_number, shown
 from voronoi_tiles.paths.conversion import chord_counts, chords
 from voronoi_tiles.paths.paths import LINE, QUAD, Paths
@@ -95,8 +96,7 @@ class Outline:
         return len(self.start)
 
     def __repr__(self) -> str:
-        rings = len(self.ring_offsets) - 1
-        return f"<Outline: {len(self)} edges in {rings} ring{'s' * (rings != 1)}>"
+        return f"<Outline: {counted(len(self), 'edge')} in {counted(len(self.ring_offsets) - 1, 'ring')}>"
 
     @property
     def __geo_interface__(self) -> dict[str, Any]:

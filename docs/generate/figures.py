@@ -16,6 +16,7 @@ import numpy as np
 from running import ROOT, Command, command_block, image_table
 
 from voronoi_tiles import Design, Tiling
+from voronoi_tiles.base.text import counted
 
 RENDER = ("voronoi-tiles", "render")
 PERSPECTIVE = ("python", "docs/generate/perspective.py")
@@ -280,8 +281,4 @@ def _between(design: str) -> str:
     shared = [(found.site, str(found.operation)) == (other, operation) for found in outline.neighbours]
     edges = outline.curved[np.array(shared)[outline.neighbour]].tolist()
     counts = ((edges.count(False), "line"), (edges.count(True), "parabola"))
-    return "boundary: " + ", ".join(_counted(count, what) for count, what in counts if count)
-
-
-def _counted(count: int, what: str) -> str:
-    return f"{count} {what}" + ("" if count == 1 else "s")
+    return "boundary: " + ", ".join(counted(count, what) for count, what in counts if count)

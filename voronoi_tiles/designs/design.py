@@ -15,6 +15,7 @@ from voronoi_tiles.base.arguments import path_name
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.files import refuse_overwriting, write_whole
 from voronoi_tiles.base.maps import Placement
+from voronoi_tiles.base.text import counted
 from voronoi_tiles.base.units import UNIT_MM, Units
 from voronoi_tiles.designs.art import Art
 from voronoi_tiles.designs.checking import CheckedDesign, checked
@@ -112,8 +113,7 @@ class Design:
 
     def __repr__(self) -> str:
         sites = ", ".join(site.name for site in self.noded[:3]) + (", ..." if len(self.noded) > 3 else "")
-        many = "site" if len(self.noded) == 1 else "sites"
-        return f"<Design {self.name!r}: {self.group.name}, {len(self.noded)} {many} ({sites})>"
+        return f"<Design {self.name!r}: {self.group.name}, {counted(len(self.noded), 'site')} ({sites})>"
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Design) and self._content == other._content

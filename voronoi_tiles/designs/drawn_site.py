@@ -10,6 +10,7 @@ from typing import Any, TypeAlias
 from voronoi_tiles.base import values
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import Placement
+from voronoi_tiles.base.text import counted
 from voronoi_tiles.base.values import shown
 from voronoi_tiles.designs.art import Art
 from voronoi_tiles.designs.coordinates import GeoInterface, PathData, PointLike, pair
@@ -72,8 +73,7 @@ class Site:
         object.__setattr__(self, "keys", keys_of(keys))
 
     def __repr__(self) -> str:
-        count = len(self.strokes)
-        return f"<Site {self.name!r}: {count} stroke{'s' * (count != 1)}>"
+        return f"<Site {self.name!r}: {counted(len(self.strokes), 'stroke')}>"
 
     @property
     def placement(self) -> Placement:
