@@ -135,7 +135,7 @@ def path_pieces(data: str, accuracy: float) -> Complexes:
         raise DesignError(
             "the path draws nothing", remedy=f"{_PATH_REMEDY}; an isolated point is a stroke {{ point = [x, y] }}."
         )
-    dots = pen.dots()
+    _, dots = pen.dots(curves)
     if len(dots):
         place = f"[{dots[0].real:g}, {dots[0].imag:g}]"
         raise DesignError(

@@ -128,17 +128,17 @@ class PathPen:
         kind = np.where(is_close, LINE, kind).astype(np.uint8)
         return DrawnCurves(start, end, control, kind, path, closed).take(long & ~is_move)
 
-    def dots(self) -> Complexes:
-        """The beginnings of all paths that were moved to and drawn, and have no length."""
+    def dots(self, curves: DrawnCurves) -> tuple[Ints, Complexes]:
+        """The paths that were moved to and drawn, but have none of the `curves`, and their places."""
         kind = np.frombuffer(self._kinds, np.uint8)
         path = self._path_numbers()
-        first = np.flatnonzero(np.diff(path, prepend=-1))
-        drawn = np.bincount(path[kind != MOVE], minlength=path[-1] + 1)
-        long = np.bincount(self.curves().path, minlength=path[-1] + 1)
-        begun = first[(drawn > 0) & (long == 0) & (kind[first] == MOVE)]
+        moves = np.flatnonzero(kind == MOVE)
+        paths = len(curves.closed)
+        drawn = np.bincount(path[kind != MOVE], minlength=paths) > 0
+        has_length = np.bincount(curves.path, minlength=paths) > 0
+        moves = moves[(drawn & ~has_length)[path[moves]]]
         points = np.frombuffer(self._numbers).view(np.complex128)
-        found: Complexes = points[np.cumsum(POINTS[kind])[begun] - 1]
-        return found
+        return path[moves], points[np.cumsum(POINTS[kind])[moves] - 1]
 
     def _path_numbers(self) -> Ints:
         """The path of each move, curve and closing."""
@@ -220,25 +220,15 @@ class Pen(PathPen):
             closed=curves.closed[drawn],
         )
         bounds = offsets_of(np.bincount(shape[drawn], minlength=len(self._maps)))
-        path, at = self._without_length(drawn)
+        path, at = self.dots(curves)
+        if len(path) > SEGMENTS_MAX:
+            raise DrawingError(f"more than {SEGMENTS_MAX:,} lines of no length", remedy="Remove them.")
         places = _mapped(at[None], maps[path])[0]
         ends = offsets_of(np.bincount(shape[path], minlength=len(self._maps)))
         return [
             (everything.part(low, high), places[first:last])
             for (low, high), (first, last) in zip(pairwise(bounds.tolist()), pairwise(ends.tolist()), strict=True)
         ]
-
-    def _without_length(self, has_length: Bools) -> tuple[Ints, Complexes]:
-        """The paths that were moved to and drawn, but have no length, and where they are."""
-        kind = np.frombuffer(self._kinds, np.uint8)
-        path = self._path_numbers()
-        moves = np.flatnonzero(kind == MOVE)
-        drawn = np.bincount(path[kind != MOVE], minlength=len(has_length)) > 0
-        moves = moves[(drawn & ~has_length)[path[moves]]]
-        if len(moves) > SEGMENTS_MAX:
-            raise DrawingError(f"more than {SEGMENTS_MAX:,} lines of no length", remedy="Remove them.")
-        points = np.frombuffer(self._numbers).view(np.complex128)
-        return path[moves], points[np.cumsum(POINTS[kind])[moves] - 1]
 
 
 def _without_closing(curves: DrawnCurves, growth: Floats) -> DrawnCurves:
