@@ -92,6 +92,11 @@ class PathPen:
         """Draw a line."""
         self.curve(LINE, end)
 
+    def dot(self, place: complex) -> None:
+        """Draw a line of no length, for what has no size: browsers do not draw it, but cutters may."""
+        self.move(place)
+        self.line(place)
+
     def curve(self, kind: int, *points: complex) -> None:
         """Draw one curve by its points."""
         self.draw(kind, [part for point in points for part in (point.real, point.imag)])

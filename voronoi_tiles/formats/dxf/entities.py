@@ -85,12 +85,6 @@ def _point(vector: Any) -> complex:
     return complex(vector.x, vector.y)
 
 
-def _draw_dot(pen: Pen, place: complex) -> None:
-    """A line of no length."""
-    pen.move(place)
-    pen.line(place)
-
-
 def _draw_arc(pen: Pen, entity: Any, to_page: Affine, begin: float, turn: float) -> None:
     """An ARC or a CIRCLE."""
     begin_seen(pen, entity, to_page)
@@ -98,7 +92,7 @@ def _draw_arc(pen: Pen, entity: Any, to_page: Affine, begin: float, turn: float)
     if dxf.radius < 0.0:
         raise NotDrawn("of a negative radius")
     if dxf.radius == 0.0:
-        _draw_dot(pen, _point(dxf.center))
+        pen.dot(_point(dxf.center))
     else:
         _draw_about(pen, _point(dxf.center), Affine(complex(dxf.radius), 0j, 0j), begin, turn)
 
@@ -122,7 +116,7 @@ def _draw_ellipse(pen: Pen, dxf: Any) -> None:
         raise NotDrawn("tilted in space")
     major = _point(dxf.major_axis)
     if major == 0j:
-        _draw_dot(pen, _point(dxf.center))
+        pen.dot(_point(dxf.center))
         return
     if dxf.ratio == 0.0:
         raise NotDrawn("without a width")
@@ -139,7 +133,7 @@ def _draw_bulges(pen: Pen, vertices: list[tuple[complex, float]], closed: bool) 
     if not vertices:
         raise NotDrawn("without vertices")
     if len(vertices) == 1:
-        _draw_dot(pen, vertices[0][0])
+        pen.dot(vertices[0][0])
         return
     pen.move(vertices[0][0])
     following = [*vertices[1:], *(vertices[:1] if closed else [])]

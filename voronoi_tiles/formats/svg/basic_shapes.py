@@ -107,18 +107,12 @@ def _draw_points(pen: Pen, text: str, closed: bool) -> None:
         pen.close()
 
 
-def _draw_dot(pen: Pen, place: complex) -> None:
-    """A line of no length, for what has no size: browsers do not draw it, but cutters may."""
-    pen.move(place)
-    pen.line(place)
-
-
 def _draw_rect(pen: Pen, sizes: _Sizes) -> None:
     """A rectangle, its corners rounded where it has radii."""
     x, y = sizes.across("x"), sizes.down("y")
     across, down = sizes.size("width", sizes.view[0]), sizes.size("height", sizes.view[1])
     if across == 0.0 or down == 0.0:
-        _draw_dot(pen, complex(x, y))
+        pen.dot(complex(x, y))
         return
     rx, ry = sizes.radii()
     rx, ry = min(rx, across / 2), min(ry, down / 2)
@@ -151,7 +145,7 @@ def _draw_corner(pen: Pen, round_: Affine, begin: float, end: complex) -> None:
 def _draw_ellipse(pen: Pen, centre: complex, rx: float, ry: float) -> None:
     """A circle or an ellipse."""
     if rx == 0.0 or ry == 0.0:
-        _draw_dot(pen, centre)
+        pen.dot(centre)
         return
     round_ = Affine(complex((rx + ry) / 2), complex((rx - ry) / 2), 0j)
     start = centre + rx
