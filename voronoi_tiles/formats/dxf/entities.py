@@ -74,11 +74,16 @@ def begin_seen(pen: Pen, entity: Any, to_page: Affine) -> None:
     axis = entity.dxf.get("extrusion")
     if axis is None:
         return
-    if not math.hypot(axis.x, axis.y) <= _UPRIGHT * abs(axis.z):
-        raise NotDrawn("tilted in space")
+    _check_upright(axis)
     if axis.z < 0:
         pen.cancel()
         pen.begin(to_page @ _MIRRORED)
+
+
+def _check_upright(axis: Any) -> None:
+    """Refuse what is seen neither from above nor from below."""
+    if not math.hypot(axis.x, axis.y) <= _UPRIGHT * abs(axis.z):
+        raise NotDrawn("tilted in space")
 
 
 def _point(vector: Any) -> complex:
@@ -112,8 +117,7 @@ def _draw_about(pen: Pen, centre: complex, to_ellipse: Affine, begin: float, tur
 
 def _draw_ellipse(pen: Pen, dxf: Any) -> None:
     axis = dxf.extrusion
-    if not math.hypot(axis.x, axis.y) <= _UPRIGHT * abs(axis.z):
-        raise NotDrawn("tilted in space")
+    _check_upright(axis)
     major = _point(dxf.major_axis)
     if major == 0j:
         pen.dot(_point(dxf.center))
