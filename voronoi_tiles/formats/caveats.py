@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from voronoi_tiles.base.text import counted
 from voronoi_tiles.base.units import RELATIVE
 from voronoi_tiles.formats.shapes import ReadDrawing
 
@@ -26,5 +27,5 @@ def caveats(drawing: ReadDrawing, file: str) -> tuple[str, ...]:
         said.append(f"left out what is no path: {what}; convert texts to paths")
     count = sum(len(dots.places) for dots in drawing.dots)
     if count:
-        said.append(f"left out {count:,} line{'s' * (count != 1)} of no length")
+        said.append(f"left out {counted(count, 'line')} of no length")
     return tuple(f"{file}: {text}" for text in said if text)

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
+from voronoi_tiles.base.text import counted
 from voronoi_tiles.formats.dxf.drawing_unit import HEADER_VARIABLES
 from voronoi_tiles.formats.shapes import DrawingError
 
@@ -73,17 +74,14 @@ class TagMender:
     def __init__(self) -> None:
         self.stated: dict[str, str] = {}
         self.sections: set[str] = set()
-        self._mended: Counter[str] = Counter()
+        self._mended: Counter[tuple[str, str]] = Counter()  # by what is counted, "" for nothing, and what was wrong
         self._section: str | None = None
         self._open = ""  # the entity whose parts follow, up to a SEQEND
 
     @property
     def remarks(self) -> tuple[str, ...]:
         """What was mended, in the order in which it was found."""
-        return tuple(
-            text if "{" not in text else text.format(f"{count:,}", "s" * (count != 1))
-            for text, count in self._mended.items()
-        )
+        return tuple(f"{counted(count, noun)} {text}" if noun else text for (noun, text), count in self._mended.items())
 
     def mended(self, tags: Iterable[Any], *, again: bool = False) -> Iterator[Tag]:
         """The tags, mended. Raises SecondSection, but not where sections may come `again`."""
@@ -92,7 +90,7 @@ class TagMender:
         for entity in _entities(tags):
             name = str(entity[0].value).strip().upper()
             if self._open and name not in {"VERTEX", "ATTRIB", "SEQEND"}:
-                self._mended["{} polyline{} did not end (no SEQEND)"] += 1
+                self._mended["polyline", "did not end (no SEQEND)"] += 1
                 self._open = ""
                 yield Tag(0, "SEQEND")
             if name == "SECTION":
@@ -106,14 +104,14 @@ class TagMender:
                 break
             else:
                 if self._section is None:
-                    self._mended["entities stood outside of all sections"] += 1
+                    self._mended["", "entities stood outside of all sections"] += 1
                     yield from self._begun([Tag(0, "SECTION"), Tag(2, "ENTITIES")], again=again)
                 yield from self._entity(name, entity) if self._section in {"ENTITIES", "BLOCKS"} else entity
         if self._open:
             yield Tag(0, "SEQEND")
         yield from self._closed()
         if not ended:
-            self._mended["the file has no end (no EOF): some of it may be missing"] += 1
+            self._mended["", "the file has no end (no EOF): some of it may be missing"] += 1
         yield Tag(0, "EOF")
 
     def _begun(self, entity: list[Tag], *, again: bool) -> Iterator[Tag]:
@@ -137,7 +135,7 @@ class TagMender:
     def _closed(self) -> Iterator[Tag]:
         """End the section that is open."""
         if self._section is not None:
-            self._mended["{} section{} did not end (no ENDSEC)"] += 1
+            self._mended["section", "did not end (no ENDSEC)"] += 1
             yield Tag(0, "ENDSEC")
         self._section = None
 
@@ -160,7 +158,7 @@ class TagMender:
         entity[0] = Tag(0, name)
         if codes[_MARKER] or name not in _SUBCLASSES:
             return entity
-        self._mended["{} object{} had no subclass markers"] += 1
+        self._mended["object", "had no subclass markers"] += 1
         own = [tag for tag in entity[1:] if tag.code not in _COMMON]
         return [entity[0], Tag(_MARKER, "AcDbEntity"), *common, Tag(_MARKER, _SUBCLASSES[name]), *own]
 

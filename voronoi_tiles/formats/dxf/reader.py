@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from voronoi_tiles.base.maps import Affine
+from voronoi_tiles.base.text import counted
 from voronoi_tiles.formats.dxf.drawing_unit import unit_of
 from voronoi_tiles.formats.dxf.entities import NotDrawn, draw_entity
 from voronoi_tiles.formats.dxf.loading import REMEDY, LoadedDxf, load_dxf, reason_of
@@ -125,7 +126,7 @@ class _DxfWalk:
         layouts = [layout for layout in self._document.layouts if layout.is_any_paperspace]
         count = sum(entity.dxftype() in _DRAWN for layout in layouts for entity in layout)
         if count and empty and self._element is None:
-            self._remarks.append(f"all lies in paper space, which is not read: {count:,} object{'s' * (count != 1)}")
+            self._remarks.append(f"all lies in paper space, which is not read: {counted(count, 'object')}")
 
     def _entities(self) -> Iterator[_DxfVisit]:
         """Every visible entity, blocks replaced by what they hold."""
