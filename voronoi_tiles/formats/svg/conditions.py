@@ -5,9 +5,9 @@ The reader's language is English, whatever the machine's is: a file is read alik
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Final
 
+from voronoi_tiles.formats.svg.elements import is_svg
 from voronoi_tiles.formats.svg.xml_tree import Node
 
 LANGUAGE: Final = "en"
@@ -30,6 +30,6 @@ def applies(node: Node) -> bool:
     return extensions is None or (bool(extensions.split()) and _EXTENSIONS.issuperset(extensions.split()))
 
 
-def first_that_applies(node: Node, is_svg: Callable[[Node], bool]) -> list[Node]:
+def first_that_applies(node: Node) -> list[Node]:
     """The child that a switch draws, if any: the first element of SVG that applies."""
     return next(([child] for child in node.children if is_svg(child) and applies(child)), [])

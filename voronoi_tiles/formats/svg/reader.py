@@ -29,7 +29,6 @@ from voronoi_tiles.formats.svg.elements import (
     SIZED,
     SVG,
     XLINK,
-    is_svg,
     source_of,
     tag_of,
 )
@@ -251,7 +250,7 @@ class _SvgWalk:
         else:
             if node.attributes.get(f"{INKSCAPE}groupmode") == "layer":
                 visit = visit._replace(layer=node.attributes.get(f"{INKSCAPE}label", node.attributes.get("id", "")))
-            self._push(visit, first_that_applies(node, is_svg) if tag == "switch" else node.children)
+            self._push(visit, first_that_applies(node) if tag == "switch" else node.children)
 
     def _note_effects(self, visit: _SvgVisit, said: Declarations) -> None:
         """Count the effects of an element, which are not followed."""
