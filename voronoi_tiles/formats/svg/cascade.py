@@ -44,16 +44,19 @@ Note = Callable[[str], None]
 
 
 class Cascade:
-    """What is declared for elements; `unread` counts rules that are not read."""
+    """What is declared for elements."""
 
     def __init__(self, root: Node) -> None:
         self._sheets = StyleSheets(root)
-        self.unread = 0
+
+    @property
+    def unread(self) -> int:
+        """How many rules of style sheets are not read."""
+        return self._sheets.unread
 
     def add_sheet(self, node: Node) -> None:
         """Read a style element."""
         self._sheets.add(node.text, node.attributes.get("media", ""))
-        self.unread = self._sheets.unread
 
     def declared(self, node: Node) -> Declarations:
         """All that is declared for an element. Raises DrawingError for styles beyond the limits."""

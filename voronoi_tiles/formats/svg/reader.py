@@ -121,8 +121,7 @@ class _SvgWalk:
             except DrawingError as error:
                 raise _at(error, visit.node, self._file) from None
         shapes, dots = self._shapes()
-        if self._cascade.unread:
-            self._ignored["style rule"] += self._cascade.unread
+        self._ignored["style rule"] += self._cascade.unread
         return ReadDrawing(
             format="svg",
             width=page.width,
