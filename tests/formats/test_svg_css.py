@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 from collections.abc import Callable
 
 import pytest
@@ -56,6 +58,18 @@ def test_paint_is_read_in_all_notations(said: str) -> None:
     drawing = svg(f'<g stroke="#00ff00">{LINE.format(said)}</g>')
     assert [shape.stroke for shape in drawing.shapes] == [STROKES[said]]
     assert not drawing.ignored
+
+
+def test_hexadecimal_colours_need_no_library() -> None:
+    """The library of colours is loaded for names and functions alone: that takes as long as all else of the reader."""
+    file = "<svg xmlns='http://www.w3.org/2000/svg'><path d='M0 0h1' stroke='{}'/></svg>"
+    code = (
+        "import sys; from voronoi_tiles.formats.svg.reader import svg_drawing;"
+        f"read = lambda stroke: svg_drawing({file!r}.format(stroke).encode(), 't.svg').shapes[0].stroke;"
+        "assert (read('#F00'), 'coloraide' in sys.modules) == ('#ff0000', False);"
+        "assert (read('red'), 'coloraide' in sys.modules) == ('#ff0000', True)"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True)
 
 
 @pytest.mark.parametrize(

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from functools import lru_cache
-from typing import Final, NamedTuple
-
-from coloraide import Color
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 from voronoi_tiles.formats.svg.css_text import arguments_of, function_of
+
+if TYPE_CHECKING:
+    from coloraide import Color
 
 LENGTH_MAX: Final = 400
 """Longest text that is looked at as a colour; characters. Mixtures of mixtures would be longer."""
@@ -74,6 +75,8 @@ def _parsed(word: str, current: Colour, dark: bool) -> Colour | None:
 
 def _written(word: str) -> Colour | None:
     """The colour of a name, or of a function that says its channels; None where it is none."""
+    from coloraide import Color
+
     try:
         found = Color.match(word, fullmatch=True)
         return None if found is None else _shown(found.color)
@@ -97,6 +100,8 @@ def _shown(colour: Color) -> Colour:
 
 def _mixed(parts: list[str], current: Colour, dark: bool) -> Colour | None:
     """The mixture that color-mix(in space, colour share, colour share) stands for."""
+    from coloraide import Color
+
     space, hue = "oklab", "shorter"
     if parts and parts[0].startswith("in "):
         space, _, rest = parts[0].removeprefix("in ").strip().partition(" ")
