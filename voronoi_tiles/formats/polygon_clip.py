@@ -40,14 +40,13 @@ def clipped_by(paths: Paths, corners: Complexes) -> tuple[Paths, Ints]:
     return _runs(paths, parts, segment, kept)
 
 
-def dots_within(points: Complexes, corners: Complexes) -> Complexes:
-    """The points that lie within a polygon or on its sides."""
+def dots_within(points: Complexes, corners: Complexes) -> Bools:
+    """Which points lie within a polygon or on its sides."""
     import shapely
 
     area = shapely.Polygon(np.column_stack((corners.real, corners.imag)))
     slack = _SLACK * float(np.abs(corners).max())
-    within = np.asarray(shapely.dwithin(area, shapely.points(points.real, points.imag), slack), np.bool_)
-    return points[within]
+    return np.asarray(shapely.dwithin(area, shapely.points(points.real, points.imag), slack), np.bool_)
 
 
 def _crossing_shares(paths: Paths, corners: Complexes, slack: float) -> Iterator[tuple[Ints, Floats]]:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from itertools import groupby
+from itertools import groupby, pairwise
 from typing import Any, Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.base.arrays import Complexes, offsets_of
 from voronoi_tiles.formats.polygon_clip import CLIP_MAX, clipped_by, dots_within
 from voronoi_tiles.formats.shapes import DrawingError
 from voronoi_tiles.paths.paths import Paths
@@ -67,11 +67,12 @@ def clipped_shapes(
                     "too much is clipped by XCLIP", remedy="Explode the blocks, and trim what they draw."
                 )
             whole, owner = clipped_by(Paths.concatenate([paths for paths, _ in parts]), corners)
-            ends = np.cumsum([len(paths) for paths, _ in parts])
-            bounds = np.searchsorted(owner, [0, *ends.tolist()])
+            bounds = np.searchsorted(owner, offsets_of([len(paths) for paths, _ in parts])).tolist()
+            within = dots_within(np.concatenate([dots for _, dots in parts]), corners)
+            places = offsets_of([len(dots) for _, dots in parts]).tolist()
             parts = [
-                (whole.part(int(low), int(high)), dots_within(dots, corners))
-                for low, high, (_, dots) in zip(bounds, bounds[1:], parts, strict=False)
+                (whole.part(low, high), dots[within[first:last]])
+                for (low, high), (first, last), (_, dots) in zip(pairwise(bounds), pairwise(places), parts, strict=True)
             ]
         result += parts
     return result
