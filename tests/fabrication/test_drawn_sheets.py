@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import re
 from itertools import pairwise
 from pathlib import Path
@@ -13,6 +12,7 @@ import numpy as np
 import pytest
 import shapely
 from helpers import sheets as shapes
+from helpers.dxf_text import written
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -53,9 +53,7 @@ def dxf(path: Path, draw: Any, units: int = 4) -> str:
     """Write a DXF file of what a function draws."""
     document = ezdxf.new("R2000", units=units)
     draw(document.modelspace())
-    text = io.StringIO()
-    document.write(text)
-    path.write_text(text.getvalue())
+    path.write_text(written(document))
     return str(path)
 
 

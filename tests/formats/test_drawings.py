@@ -17,6 +17,7 @@ import pytest
 import shapely
 import svgelements
 from ezdxf.entities import Insert
+from helpers.dxf_text import read, written
 from helpers.svg_text import NS, PAGE, svg
 
 from voronoi_tiles.base.errors import DesignError
@@ -33,9 +34,7 @@ def dxf(draw: Any, version: str = "R2000", units: int = 4) -> ReadDrawing:
     document = ezdxf.new(version)
     document.header["$INSUNITS"] = units
     draw(document, document.modelspace())
-    text = io.StringIO()
-    document.write(text)
-    return dxf_drawing(text.getvalue().encode(), "t.dxf")
+    return read(written(document))
 
 
 def sampled(paths: Paths, count: int = 64) -> shapely.MultiLineString:
@@ -382,11 +381,9 @@ def test_dxf_entities_are_counted_before_they_are_parsed(monkeypatch: pytest.Mon
     document = ezdxf.new("R2000")
     for _ in range(50):
         document.modelspace().add_line((0, 0), (0, 10))
-    text = io.StringIO()
-    document.write(text)
-    lines = text.getvalue().splitlines()
-    count = sum(int(code) == 0 for code in lines[::2])
-    data = text.getvalue().encode()
+    text = written(document)
+    count = sum(int(code) == 0 for code in text.splitlines()[::2])
+    data = text.encode()
     assert entity_count(data) == count
     monkeypatch.setattr("voronoi_tiles.formats.dxf.loading.ELEMENTS_MAX", count)
     assert len(dxf_drawing(data, "t.dxf").shapes) == 50
@@ -428,9 +425,7 @@ def test_broken_dxf_gives_one_message(count: int) -> None:
     """Whatever is broken in a file, only DrawingError comes out; most of what is broken is seen."""
     document = ezdxf.new("R2000")
     all_kinds(document, document.modelspace())
-    text = io.StringIO()
-    document.write(text)
-    good = text.getvalue().encode()
+    good = written(document).encode()
     generator = random.Random(7)  # noqa: S311 - random input, not secrets
     refused = 0
     for _ in range(count):

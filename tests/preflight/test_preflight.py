@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import math
 import random
@@ -16,12 +15,12 @@ import numpy as np
 import pytest
 import shapely
 from click.testing import CliRunner
+from helpers.dxf_text import read, written
 from helpers.examples import each_example, tiling
 
 from voronoi_tiles import Design, Job
 from voronoi_tiles.base.errors import ArgumentError, DesignError
 from voronoi_tiles.cli.preflight import preflight as command
-from voronoi_tiles.formats.dxf.reader import dxf_drawing
 from voronoi_tiles.formats.recipe import job_of, tab_width
 from voronoi_tiles.formats.svg.reader import svg_drawing
 from voronoi_tiles.paths.paths import ARC, CUBIC, QUAD, Paths
@@ -272,9 +271,7 @@ def test_units_and_extents() -> None:
     assert [f.kind for f in judged("<path d='M1 1h50v50z'/>", 'width="200" height="100"').findings] == ["unit"]
     document = ezdxf.new("R2000", units=0)
     document.modelspace().add_lwpolyline([(0, 10), (20, 30), (20, 10), (0, 30)], close=True)
-    text = io.StringIO()
-    document.write(text)
-    report = judge(dxf_drawing(text.getvalue().encode(), "t.dxf"), "t.dxf")
+    report = judge(read(written(document)), "t.dxf")
     assert {finding.kind: finding.place for finding in report.findings} == {"unit": None, "crossing": (10, 20)}
     assert report.extents == (0, 10, 20, 30)
 
