@@ -13,6 +13,9 @@ from voronoi_tiles.raster.scene import Pattern, gather
 _SAMPLES = 64 * BLOCK
 """Samples along the cell in whose blocks neighbours are looked for."""
 
+_TABLE = 1 << 26
+"""Most pairs that can be, of which a table is made; a count, a byte each."""
+
 
 def colour(pattern: Pattern) -> PeriodicColouring:
     """Colour the tiles: those that share an edge, or nearly meet, differ."""
@@ -35,15 +38,41 @@ def neighbours(pattern: Pattern) -> tuple[Ints, int]:
     nearest = np.minimum.reduceat(lists.from_centres(), lists.element_start[:-1])
     least = np.minimum.reduceat(nearest, lists.run_start[:-1])
     owning = np.flatnonzero(nearest <= least[lists.run_block] + 2 * lists.radius)
-    label, block = lists.run_label[owning], lists.run_block[owning]
+    block = lists.run_block[owning]
     crowd = int(np.bincount(block).max())
-    found = []
-    for step in range(1, len(owning)):
-        together = np.flatnonzero(block[step:] == block[:-step])
-        if not len(together):
+    return _pairs_in_blocks(scene.copies[lists.run_label[owning]], block, pattern), crowd
+
+
+def _pairs_in_blocks(copies: Ints, block: Ints, pattern: Pattern) -> Ints:
+    """The different pairs of copies that are in one block, rows as of `neighbours`, sorted; blocks ascend.
+
+    A block of a narrow cell holds hundreds of copies, all of them translates: so the pairs are marked in a table of
+    those that can be, and nothing is sorted until they are few.
+    """
+    count = len(pattern.placements)
+    placement = copies[:, 0]
+    # In the reduced basis, where what is near has near coordinates: the table is as small as can be.
+    x, y = (copies[:, 1:] @ np.round(np.linalg.inv(pattern.basis)).astype(np.intp)).T
+    y = y - y.min()
+    width = 2 * int(y.max()) + 1
+    place = (x - x.min()) * width + y  # the differences of two tell (x, y) apart
+    most = int(place.max())
+    size = 2 * most + 1
+    first = placement * (count * size) - place + most
+    second = placement * size + place
+    table = np.zeros(count * count * size, bool) if count * count * size <= _TABLE else None
+    found = [np.zeros(0, np.intp)]
+    for step in range(1, len(block)):
+        together = block[step:] == block[:-step]
+        if not together.any():
             break
-        found.append(np.unique(np.stack((label[together], label[together + step]), axis=1), axis=0))
-    pairs = np.unique(np.concatenate(found), axis=0) if found else np.zeros((0, 2), np.intp)
-    first, second = scene.copies[pairs[:, 0]], scene.copies[pairs[:, 1]]
-    rows = np.concatenate((first[:, :1], second[:, :1], second[:, 1:] - first[:, 1:]), axis=1)
-    return np.unique(rows, axis=0), crowd
+        pairs = first[:-step][together] + second[step:][together]
+        if table is None:
+            found.append(np.unique(pairs))
+        else:
+            table[pairs] = True
+    number, moved = np.divmod(np.unique(np.concatenate(found)) if table is None else np.flatnonzero(table), size)
+    moved -= most
+    x = (moved + width // 2) // width
+    between = np.stack((x, moved - x * width), axis=1) @ pattern.basis
+    return np.unique(np.column_stack((*np.divmod(number, count), between)), axis=0)

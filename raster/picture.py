@@ -12,7 +12,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
 
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.groups.periodic_colouring import PeriodicColouring, palette
@@ -153,8 +152,14 @@ def _borders(colours: Pixels, grow: int) -> NDArray[np.bool_]:
     """Where the Sobel operator finds an edge of colours, grown by so many samples to every side."""
     # As numbers of 24 bits different colours are different; of their brightness that would not be sure.
     values = colours.astype(np.int32) @ np.array([1 << 16, 1 << 8, 1], np.int32)
-    edge = (ndimage.sobel(values, axis=0, mode="nearest") != 0) | (ndimage.sobel(values, axis=1, mode="nearest") != 0)
-    return _grown(edge, grow)
+    return _grown(_sobel(values) | _sobel(values.T).T, grow)
+
+
+def _sobel(values: NDArray[np.int32]) -> NDArray[np.bool_]:
+    """Where the Sobel operator finds a change along the rows; beyond the borders values go on as they are there."""
+    padded = np.pad(values, 1, mode="edge")
+    smooth = padded[:-2] + 2 * padded[1:-1] + padded[2:]
+    return np.asarray(smooth[:, 2:] != smooth[:, :-2])
 
 
 def _grown(mask: NDArray[np.bool_], radius: int) -> NDArray[np.bool_]:

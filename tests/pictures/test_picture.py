@@ -15,12 +15,14 @@ from helpers.examples import each_example, tiling
 from helpers.png import chunks_of, decoded
 from helpers.strategies import Dice, make_design
 from numpy.typing import NDArray
+from scipy import ndimage
 
 import voronoi_tiles as vt
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.designs.starters import starter_text
 from voronoi_tiles.groups.periodic_colouring import palette
 from voronoi_tiles.pictures.rendering import render
+from voronoi_tiles.raster import image_colouring
 from voronoi_tiles.raster import picture as raster_picture
 from voronoi_tiles.raster.frame import Frame, cell_frame, rectangle_frame
 from voronoi_tiles.raster.image_colouring import colour, neighbours
@@ -114,6 +116,27 @@ def test_tiles_that_meet_their_own_translates(group: str, cell: dict[str, float]
     assert len(np.unique(palette(colouring.count), axis=0)) == colouring.count
 
 
+@pytest.mark.parametrize("table", [1 << 26, 0], ids=["table", "sorted"])
+@pytest.mark.parametrize("number", range(8))
+def test_pairs_of_a_block_are_all_of_its_pairs(number: int, table: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whatever copies come together in blocks, of an oblique lattice too: each pair once, and no other."""
+    monkeypatch.setattr(image_colouring, "_TABLE", table)
+    rng = np.random.default_rng([31, number])
+    cell = {"a": 30.0, "b": 50.0, "angle": 2.0 if number % 2 else 80.0}
+    sites = [{"name": str(k), "strokes": [{"point": [9 * k, 0.1]}]} for k in range(3)]
+    pattern = pattern_of(vt.Design.from_dict({"schema": 1, "group": "p2", "cell": cell, "site": sites}))
+    assert len(pattern.placements) == 6
+    copies = np.unique(rng.integers((0, -40, -7), (6, 3, 9), (60, 3)), axis=0)
+    rows, expected = [], set()
+    for block in range(20):
+        inside = copies[np.sort(rng.choice(len(copies), rng.integers(1, 12), replace=False))]
+        rows.append(np.insert(inside, 0, block, axis=1))
+        for first, second in itertools.combinations(inside.tolist(), 2):
+            expected.add((first[0], second[0], second[1] - first[1], second[2] - first[2]))
+    found = image_colouring._pairs_in_blocks(np.concatenate(rows)[:, 1:], np.concatenate(rows)[:, 0], pattern)
+    assert found.tolist() == sorted(map(list, expected))
+
+
 def test_a_wrong_colouring_is_seen() -> None:
     """The judge of colourings is no rubber stamp: two colours do not do for four tiles about a point."""
     pattern = pattern_of(segment_design())
@@ -148,6 +171,17 @@ def test_borders_are_where_owners_change() -> None:
     # Sobel sees nothing where opposite sides are alike, as at the end of a spike.
     assert ink[~uniform].mean() > 0.97
     assert (shown[~ink] == palette(8)[owner[1:91, 1:91][~ink]]).all()
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (1, 9), (7, 2), (40, 50)])
+def test_changes_are_those_of_the_sobel_operator(shape: tuple[int, int]) -> None:
+    """Scipy's operator is the judge, with values of 24 bits."""
+    rng = np.random.default_rng(shape)
+    values = np.array([0, 1, (1 << 24) - 1], np.int32)[rng.integers(0, 3, shape) * (rng.random(shape) < 0.4)]
+    for axis, found in enumerate((raster_picture._sobel(values.T).T, raster_picture._sobel(values))):
+        expected = ndimage.sobel(values, axis=axis, mode="nearest") != 0
+        assert (found == expected).all()
+        assert expected.any() == (shape[axis] > 1)
 
 
 def test_sites_are_drawn_on_top() -> None:
