@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from itertools import product
+from random import Random
 from typing import Any, Literal, NamedTuple, get_args
 
 import numpy as np
@@ -228,8 +229,8 @@ def spot_check(
     the bounds explain.
     """
     count = int(np.clip(_SPOT_WORK // len(scene), 16, 256))
-    chance = np.random.default_rng(frame.width * 1_000_003 + frame.height)
-    i, j = chance.integers(0, frame.width, count), chance.integers(0, frame.height, count)
+    chance = Random(frame.width * 1_000_003 + frame.height)  # noqa: S311 - samples, not secrets
+    i, j = (np.array(chance.choices(range(side), k=count)) for side in (frame.width, frame.height))
     first, second, d1, d2 = (image[j, i] for image in images)
     if min(first.min(), second.min()) < 0 or max(first.max(), second.max()) >= len(scene.copies):
         raise GlError("the spot check found labels of no copy")

@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
-from voronoi_tiles.base.arrays import Complexes, Floats, Ints, counting, plane, starts
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints, counting, starts
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import Isometry
+from voronoi_tiles.base.neighbours import Neighbours
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.base.tolerance import EPSILON, SAME_POINT
 from voronoi_tiles.designs.site import NodedSite
@@ -96,7 +96,7 @@ class Pattern:
         middle = nodes[len(nodes) // 2]
         local = nodes - middle
         centre = complex(local.mean())
-        tree = cKDTree(plane(local))
+        neighbours = Neighbours(local)
         near = SAME_POINT * max(abs(self.lattice.a), abs(self.lattice.b), site.extent) + 8 * EPSILON * self.scale
         segments = {(min(s), max(s)) for s in site.segments.tolist()}
         found = []
@@ -105,7 +105,7 @@ class Pattern:
             moved = operation.translated(round(x), round(y))
             isometry = self.lattice.isometry(moved)
             turned = isometry.a * (local.conj() if isometry.conj else local) + (isometry(complex(middle)) - middle)
-            distance, image = tree.query(plane(turned))
+            distance, image = (nearest[:, 0] for nearest in neighbours.nearest(turned))
             if float(distance.max()) > near or len(np.unique(image)) < len(nodes):
                 continue
             ends = np.sort(image[site.segments], axis=1).tolist()

@@ -6,7 +6,6 @@ import errno
 import io
 import os
 import re
-import secrets
 import stat
 import sys
 from collections.abc import Iterable, Iterator
@@ -221,7 +220,7 @@ class _Replacement:
         old = _status(name)
         if old is not None and not os.access(self._target, os.W_OK):
             raise PermissionError(13, "the file is read-only")
-        self._temporary = self._target.with_name(f".voronoi-tiles-{secrets.token_hex(8)}.tmp")
+        self._temporary = self._target.with_name(f".voronoi-tiles-{os.urandom(8).hex()}.tmp")
         # The mode is what a plain open() asks for: the system takes the umask off.
         self.descriptor = os.open(self._temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o666)
         try:

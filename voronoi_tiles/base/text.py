@@ -8,7 +8,12 @@ from typing import Final
 NUMBER: Final = r"[+-]?+(?:[0-9]++(?:\.[0-9]*+)?+|\.[0-9]++)(?:[eE][+-]?+[0-9]++)?+"
 """A decimal number, as a regular expression without groups; it takes all digits there are, and no second look."""
 
-_NOT_XML: Final = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+# What is not among the characters of XML 1.0, section 2.2: listing the others would take 5 ms to compile.
+_NOT_XML: Final = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+
+_XML_ATTRIBUTE: Final = str.maketrans(
+    {"&": "&amp;", "<": "&lt;", ">": "&gt;", "\t": "&#9;", "\n": "&#10;", "\r": "&#13;"}
+)
 
 
 def printable(text: str) -> str:
@@ -29,3 +34,14 @@ def counted(count: int, one: str, many: str | None = None) -> str:
 def xml_text(text: str) -> str:
     """The text with what XML 1.0 cannot carry replaced."""
     return _NOT_XML.sub("\ufffd", text)
+
+
+def xml_attribute(text: str) -> str:
+    """The text as the value of an attribute of XML, with its quotes; what XML cannot carry is replaced.
+
+    It is what quoteattr of xml.sax.saxutils gives, whose import takes 15 ms: that module opens web addresses too.
+    """
+    value = xml_text(text).translate(_XML_ATTRIBUTE)
+    if '"' in value and "'" not in value:
+        return f"'{value}'"
+    return '"' + value.replace('"', "&quot;") + '"'

@@ -57,6 +57,8 @@ def cli() -> None:
 
 def run() -> Never:
     """Run the command line and exit: the console script."""
+    # Nothing of ours is work for the threads that OpenBLAS starts when numpy is imported: half of that import's time.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     if hasattr(signal, "SIGPIPE"):
         # A reader that has seen enough ends us silently, as it ends other commands in a pipe.
         signal.signal(signal.SIGPIPE, signal.SIG_DFL)

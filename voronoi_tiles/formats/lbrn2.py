@@ -10,12 +10,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import BinaryIO, Final
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes
-from voronoi_tiles.base.text import xml_text
+from voronoi_tiles.base.text import xml_attribute
 from voronoi_tiles.formats.cubics import cubic_blocks
 from voronoi_tiles.formats.decimals import decimal_texts
 from voronoi_tiles.formats.page import Drawing, Layer
@@ -57,7 +56,7 @@ def write_lbrn2(drawing: Drawing, file: BinaryIO) -> None:
             number += len(texts)
             file.write("".join(_grouped(texts, items.tolist(), index)).encode("ascii"))
     notes = "".join(f"{key}: {value}\n" for key, value in {"title": drawing.title, **drawing.recipe}.items() if value)
-    file.write(f'    <Notes ShowOnLoad="0" Notes={_attribute(notes)}/>\n</LightBurnProject>\n'.encode())
+    file.write(f'    <Notes ShowOnLoad="0" Notes={xml_attribute(notes)}/>\n</LightBurnProject>\n'.encode())
 
 
 def layer_numbers(layers: Sequence[Layer]) -> list[int]:
@@ -93,13 +92,8 @@ def _setting(layer: Layer, index: int, priority: int) -> str:
         "speed": "10",
         "priority": str(priority),
     }
-    lines = "".join(f"        <{key} Value={_attribute(value)}/>\n" for key, value in values.items())
+    lines = "".join(f"        <{key} Value={xml_attribute(value)}/>\n" for key, value in values.items())
     return f'    <CutSetting type="{"Scan" if layer.filled else "Cut"}">\n{lines}    </CutSetting>\n'
-
-
-def _attribute(text: str) -> str:
-    """A text as an XML attribute; what XML cannot carry is replaced."""
-    return quoteattr(xml_text(text))
 
 
 # --- shapes -----------------------------------------------------------------------------------------------------

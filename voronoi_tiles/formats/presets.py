@@ -11,7 +11,6 @@ import tomllib
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from functools import cache
-from importlib import resources
 from pathlib import Path
 from typing import Any, Final, Literal, TypeVar, cast, get_args
 
@@ -90,6 +89,8 @@ def load_preset(name_or_path: str) -> Preset:
 @cache
 def _built_in() -> dict[str, Any]:
     """The table of presets."""
+    from importlib import resources
+
     text = resources.files("voronoi_tiles.formats").joinpath("presets.toml").read_text(encoding="utf-8")
     return tomllib.loads(text)
 

@@ -29,7 +29,6 @@ from voronoi_tiles.pictures.clash import clash_marks
 from voronoi_tiles.pictures.coordinate_grid import coordinate_grid
 from voronoi_tiles.pictures.picture_region import fitted_region
 from voronoi_tiles.pictures.rendered import Rendering
-from voronoi_tiles.pictures.wood_colouring import wood_colouring
 from voronoi_tiles.raster.line_coverage import dashed
 from voronoi_tiles.raster.picture import INK, Overlay, Picture, PictureStyle, Pixels, Region, default_region
 from voronoi_tiles.raster.renderer import Choice, Method, Provenance, Renderer
@@ -158,6 +157,11 @@ def paint(
     style = PictureStyle.of_size(width, height)
     if "art" in overlay:
         style = replace(style, site=0.0)
+    colouring = None
+    if scheme != "none" and records is not None:
+        from voronoi_tiles.pictures.wood_colouring import wood_colouring
+
+        colouring = wood_colouring(records[0].tessellation, pattern, scheme)
     picture = Picture(
         pattern,
         region,
@@ -170,9 +174,7 @@ def paint(
             *(clash_marks(touching, design, region, width, height) if touching else []),
         ],
         style=style,
-        colouring=None
-        if scheme == "none" or records is None
-        else wood_colouring(records[0].tessellation, pattern, scheme),
+        colouring=colouring,
         nobody=_PAPER if touching else None,
     )
     text = {

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from html import escape
 from typing import Final
-from xml.sax.saxutils import escape
 
 from voronoi_tiles.base.text import printable
 from voronoi_tiles.formats.svg.path_text import path_data
@@ -44,7 +44,7 @@ def marked_svg(report: PreflightReport) -> str:
         weight = ' font-weight="bold"' if bold else ""
         parts.append(
             f'<text x="{x:.6g}" y="{y + 1.6 * unit * row:.6g}" font-family="sans-serif" font-size="{unit:.6g}" '
-            f'fill="{colour}"{weight}>{escape(printable(text))}</text>\n'
+            f'fill="{colour}"{weight}>{escape(printable(text), quote=False)}</text>\n'
         )
     parts.append("</svg>\n")
     return "".join(parts)

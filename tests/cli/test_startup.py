@@ -1,0 +1,61 @@
+"""What commands load: an import that is not needed is most of what a small design costs."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+HEAVY = {
+    *("numpy", "numpy.random", "scipy", "shapely", "svgwrite", "ezdxf", "moderngl", "rich", "tinycss2", "coloraide"),
+    *("http.client", "importlib.resources", "asyncio", "multiprocessing", "unittest"),
+}
+"""Modules that take more than 3 ms to import."""
+
+DESIGN = """
+schema = 1
+group = "p4"
+cell = { a = 60 }
+site = [{ strokes = [{ bezier = [[6, 9], [30, 2], [30, 20], [13, 25]] }] }]
+"""
+
+
+@pytest.mark.parametrize(
+    ("command", "needed"),
+    [
+        ("export DESIGN -o x.json", "numpy shapely"),
+        ("export DESIGN -o x.svg", "numpy shapely"),
+        ("export DESIGN -o x.svg --sheet 200x100mm", "numpy shapely importlib.resources"),
+        ("export DESIGN -o x.dxf", "numpy shapely importlib.resources ezdxf unittest"),
+        ("info DESIGN --json", "numpy shapely"),
+        ("info DESIGN", "numpy shapely rich"),
+        ("check DESIGN --json --size 64 --renderer cpu", "numpy shapely importlib.resources"),
+        ("render DESIGN -o x.png --size 64 --renderer cpu", "numpy shapely importlib.resources"),
+    ],
+)
+def test_a_command_loads_what_it_needs(command: str, needed: str, tmp_path: Path) -> None:
+    """And nothing else that is heavy."""
+    (tmp_path / "design.toml").write_text(DESIGN, encoding="utf-8")
+    script = (
+        "import sys\nfrom voronoi_tiles.cli.main import run\n"
+        f"sys.argv[1:] = {command.replace('DESIGN', 'design.toml').split()!r}\n"
+        "try:\n    run()\nexcept SystemExit as exit:\n    assert not exit.code, exit.code\n"
+        "print(*sys.modules, file=sys.stderr)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True, cwd=tmp_path)
+    loaded = HEAVY & set(done.stderr.splitlines()[-1].split())
+    assert "numpy" in loaded
+    assert loaded <= set(needed.split()), loaded - set(needed.split())
+
+
+def test_openblas_starts_no_threads() -> None:
+    """Its threads would take half as long as numpy's import; who sets their number is heard."""
+    script = "import os\nfrom voronoi_tiles.cli import main\nmain._run = lambda: print(os.environ['{0}'])\nmain.run()"
+    name = "OPENBLAS_NUM_THREADS"
+    for environment, expected in (({}, "1"), ({name: "3"}, "3")):
+        run = [sys.executable, "-c", script.format(name)]
+        assert (
+            subprocess.run(run, check=True, capture_output=True, text=True, env=environment).stdout == f"{expected}\n"
+        )
