@@ -100,6 +100,7 @@ types: $(INSTALLED_TYPES)
 	cd $(TYPES_VENV) && bin/mypy --config-file $(abspath pyproject.toml) --cache-dir cache $(abspath tests bench docs .ci/pythons.py)
 
 bench: $(INSTALLED_DEV)
+	-$(VENV)/bin/python bench/targets.py --numpy --write
 	$(VENV)/bin/python bench/engine.py --write
 	$(VENV)/bin/python bench/accuracy.py --write
 	$(VENV)/bin/python bench/raster.py --write

@@ -3,7 +3,7 @@
 // Standard input: the numbers of nodes and segments, then those of the base site's, whose nodes and segments come
 // first; two coordinates for each node; two node numbers for each segment. Segments meet at common nodes only.
 //
-// Standard output: the seconds that building and reading back took, then one line for each edge of the cells of the base
+// Standard output: the processor seconds that building and reading back took, then one line for each edge of the cells of the base
 // site's elements: cell, cell beyond, and the two ends with 17 digits, counter-clockwise. Cells are numbered as the
 // elements are: nodes, then segments (open ones: an end point has a cell of its own). An end at infinity is "nan nan".
 //
@@ -20,10 +20,10 @@
 #include <CGAL/spatial_sort.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <numeric>
 #include <random>
 #include <unordered_map>
@@ -133,12 +133,11 @@ std::vector<Edge> read_cells(const Input& input, const Graph& graph, const std::
 
 int main() {
     const Input input = read_input();
-    const auto begin = std::chrono::steady_clock::now();
+    const auto begin = std::clock();
     Graph graph;
     const auto handles = build(input, graph);
     const auto edges = read_cells(input, graph, handles);
-    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
-    std::printf("%.9f\n", taken.count());
+    std::printf("%.9f\n", static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
     for (const auto& edge : edges) {
         std::printf("%d %d %.17g %.17g %.17g %.17g\n", edge.cell, edge.beyond, edge.start.x(), edge.start.y(),
                     edge.end.x(), edge.end.y());

@@ -63,20 +63,21 @@ def run_peer(segments: Sequence[Segment], base: int, scale: float = SCALE) -> tu
 
     Coordinates are rounded to multiples of 1 / `scale`.
 
-    Returns the seconds that the building and the reading took, and what was read. Handing over the segments is not
-    timed. Read are all cells, for there is no other way to find the base site's, and of these the edges and vertices.
+    Returns the processor seconds that the building and the reading took, and what was read. Handing over the segments
+    is not timed. Read are all cells, for there is no other way to find the base site's, and of these the edges and
+    vertices.
     """
     diagram = pyvoronoi.Pyvoronoi(scale)
     for segment in segments:
         diagram.AddSegment(segment)
-    begin = time.perf_counter()
+    begin = time.process_time()
     diagram.Construct()
     cells, owner = [], []
     for number, cell in diagram.EnumerateCells():
         owner.append((cell.site, cell.source_category))
         if cell.site < base:
             cells.append((number, [_edge(diagram, edge) for edge in cell.edges]))
-    return time.perf_counter() - begin, Reading(cells, owner)
+    return time.process_time() - begin, Reading(cells, owner)
 
 
 def _edge(diagram: Any, number: int) -> tuple[complex, complex, bool, int]:

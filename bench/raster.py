@@ -7,6 +7,7 @@ CPU's: the number of samples with another owner is printed, of which none may be
     python bench/raster.py                    everything
     python bench/raster.py --write            the same, into bench/README.md
     python bench/raster.py --only frame       the frame alone, its lists on the device: draw and finish
+    python bench/raster.py --only frame --sizes 512x24 1024x1000
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import argparse
 import resource
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from engine import case_of
@@ -95,7 +96,7 @@ def fits_compute(device: Device, samples: int) -> bool:
     return device.has_compute and 16 * samples**2 <= int(device.info["GL_MAX_SHADER_STORAGE_BLOCK_SIZE"])
 
 
-def frames(device: Device, sizes: tuple[tuple[int, int], ...]) -> None:
+def frames(device: Device, sizes: Sequence[tuple[int, int]]) -> None:
     """The frame alone, once its lists lie on the device."""
     print("\nThe frame alone (milliseconds: draw and finish, lists on the device; then what is done once):\n")
     row("size", "segments", "elements per block", "fragment", "compute", "lists on the host", "upload", "reading back")
@@ -166,15 +167,22 @@ def main() -> None:
     parser.add_argument("--only", choices=("frame", "image", "hoff", "check"), help="one table alone")
     parser.add_argument("--device", type=int, help="the number of OpenGL's device")
     parser.add_argument("--write", action="store_true", help="put the tables into bench/README.md")
+    parser.add_argument("--sizes", nargs="+", type=read_size, default=SIZES, help="samples and segments of the frames")
     options = parser.parse_args()
-    if options.write and options.only:
-        parser.error("--write needs all tables: leave --only out")
+    if options.write and (options.only or options.sizes != SIZES):
+        parser.error("--write needs all tables: leave --only and --sizes out")
     with published("raster", write=options.write):
-        tables(options.only, options.device)
+        tables(options.only, options.device, options.sizes)
 
 
-def tables(only: str | None, number: int | None) -> None:
-    """Print one table, or all, measured on the device of a number."""
+def read_size(text: str) -> tuple[int, int]:
+    """Read "2048x1000": samples along the side, and segments."""
+    samples, _, segments = text.partition("x")
+    return int(samples), int(segments)
+
+
+def tables(only: str | None, number: int | None, sizes: Sequence[tuple[int, int]]) -> None:
+    """Print one table, or all, measured on the device of a number; the frames of these sizes."""
     try:
         device = Device(number)
     except GlError as error:
@@ -182,7 +190,7 @@ def tables(only: str | None, number: int | None) -> None:
         device = None
     print(f"{machine()}; OpenGL: {device.name if device else 'none'}")
     if only in {None, "frame"} and device is not None:
-        frames(device, SIZES)
+        frames(device, sizes)
     if only in {None, "image"}:
         images(device, SIZES[:3], "exact")
     if only in {None, "hoff"}:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import os
 import shutil
+import subprocess
 import sys
+import tomllib
 from dataclasses import replace
 from pathlib import Path
 from random import Random
@@ -19,18 +21,23 @@ sys.path.append(str(Path(__file__).parents[2] / "bench"))
 
 import accuracy
 import against
+import boost
 import cgal
 import chromium
 import drawings
 import engine
 import exact
+import gpu
 import peer
 import report
+import targets
 
+from voronoi_tiles import Design
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.formats.reading import read_drawing
 from voronoi_tiles.groups.wallpaper import GROUPS
+from voronoi_tiles.raster.gl import GlError
 from voronoi_tiles.vector.outline import Outline
 
 SEGMENTS = 5
@@ -254,6 +261,135 @@ def test_the_older_commit_is_timed_in_turns() -> None:
     assert order == ["new", "old", "old", "new", "new", "old"]
 
 
+# --- what was asked ----------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def compiled_boost(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Boost.Polygon, compiled in a hurry, or the reason why a test is left out."""
+    try:
+        boost.version()
+    except boost.MissingError as error:
+        pytest.skip(str(error))
+    monkeypatch.setattr(boost, "FLAGS", ("-std=c++17", "-O0"))
+
+
+@pytest.mark.slow
+@pytest.mark.usefixtures("compiled_boost")
+def test_boost_itself_gives_what_it_gives_through_pyvoronoi() -> None:
+    """The same cells with the same edges, as often timed as asked; a tile of another area is seen."""
+    case = engine.case_of("p4", 3)
+    segments = peer.block_segments(case.site, peer.block_nodes(case.site, case.lattice, peer.neighbours(case.solve())))
+    seconds, reading = boost.run_boost(segments, 3, runs=4)
+    _, other = peer.run_peer(segments, 3)
+    assert len(seconds) == 4
+    assert reading.owner == [(number, min(category, 3)) for number, category in other.owner]
+    assert [(cell, len(edges)) for cell, edges in reading.cells] == [(cell, len(edges)) for cell, edges in other.cells]
+    area = peer.tile_area(reading, segments)
+    assert area == pytest.approx(case.solve().outline.area, rel=targets.AGREEMENT)
+    assert peer.tile_area(boost.run_boost(segments[:5], 3)[1], segments[:5]) != pytest.approx(area, rel=1e-3)
+    with pytest.raises(ValueError, match="32 bits"):
+        boost.run_boost(segments, 3, scale=1e12)
+
+
+def test_missing_boost_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without a compiler the reason is given."""
+    monkeypatch.setattr(shutil, "which", lambda _: None)
+    monkeypatch.setattr(boost, "version", boost.version.__wrapped__)
+    assert "g++ is missing" in boost.described()
+
+
+def test_qhull_gives_the_same_tiles() -> None:
+    """Another area of one of them stops the comparison."""
+    design = Design.from_dict(targets.points(5))
+    areas = [tile.outline.area for tile in design.tessellate()]
+    assert targets.run_qhull(design, areas).median > 0
+    with pytest.raises(AssertionError):
+        targets.run_qhull(design, [*areas[:4], 1.00001 * areas[4]])
+
+
+@pytest.mark.slow
+def test_a_checkout_is_timed_in_a_process(tmp_path: Path) -> None:
+    """The tile of a case, the raster's lists, and a whole command; with variables that are there for it alone."""
+    here = against.Checkout(tmp_path, Path(sys.prefix))
+    for what in ("tile", "lists"):
+        problem = targets.Problem("a", what, targets.curve(1))
+        figure = targets.run_checkout(problem, here, tmp_path, {})
+        assert 0 < figure.median < 5
+        assert figure.megabytes > 20
+    script = "import os; assert os.environ['TIMED'] == 'so'"
+    command = targets.Problem("b", "command", {}, ("python", "-c", script))
+    assert targets.run_checkout(command, here, tmp_path, {"TIMED": "so"}).median > 0
+    assert "TIMED" not in os.environ
+
+
+def test_what_is_slow_runs_once() -> None:
+    """The others run in every round, first one and then the other first."""
+    order = []
+
+    def runner(name: str, seconds: float) -> targets.Figure:
+        order.append(name)
+        return targets.Figure([seconds], len(order))
+
+    found = targets.in_turns({"a": lambda: runner("a", 1.0), "b": lambda: runner("b", 9.0)}, 3)
+    assert order == ["b", "a", "a", "a"]
+    assert found == {"a": targets.Figure([1.0, 1.0, 1.0], 4), "b": targets.Figure([9.0], 1)}
+
+
+def test_targets_are_judged(capsys: pytest.CaptureFixture[str]) -> None:
+    """Each is of cases and columns that there are; it is met on one side of its figure alone, and said so."""
+    names = {problem.name: {targets.NEW, targets.NUMPY, targets.OLD, *problem.peers} for problem in targets.problems()}
+    for target in targets.targets():
+        assert target.over[1] in names[target.over[0]]
+        assert target.under[1] in names[target.under[0]]
+        least, most = target.least, target.most
+        assert target.met(least or most)
+        assert not target.met(0.99 * least if least else 1.01 * most)
+    row = {targets.NEW: targets.Figure([1.0, 2.0, 9.0], 50.0), targets.OLD: targets.Figure([12.0], 49.0)}
+    targets.print_tables({"1 segment": row, "20,000 segments": row})
+    printed = capsys.readouterr().out
+    assert "| yes | 6 | >= 5 | 1 segment, time | old / this |" in printed
+    assert "| **no** | 1.02 | <= 1 | 20,000 segments, memory | this / old |" in printed
+    assert "| 1 segment | 2000 (1e+03 to 9e+03); 50 | 1.2e+04; 49 |" in printed
+
+
+# --- a GPU -------------------------------------------------------------------------------------------------------
+
+GPU = report.REPORT.with_name("gpu.sh")
+
+
+def test_software_is_no_gpu(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    """It is refused by its name, unless it is allowed, and so is a machine without OpenGL."""
+
+    class Software:
+        name, is_software = "llvmpipe, OpenGL 4.5", True
+
+    class Absent:
+        def __init__(self) -> None:
+            raise GlError("libEGL.so not loaded")
+
+    monkeypatch.setattr(gpu, "Device", Software)
+    assert gpu.find_device(allow_software=True).name == Software.name
+    for kind, said in ((Software, "no GPU: llvmpipe"), (Absent, "no OpenGL: libEGL")):
+        monkeypatch.setattr(gpu, "Device", kind)
+        with pytest.raises(SystemExit) as caught:
+            gpu.find_device(allow_software=False)
+        assert caught.value.code == gpu.NO_GPU
+        assert capsys.readouterr().err.startswith(said)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="it is a script of the shell")
+def test_the_list_of_wheels_has_all_that_the_tests_need(tmp_path: Path) -> None:
+    """And without a folder of them there is a message, and no more."""
+    listed = subprocess.run([GPU, "--list"], capture_output=True, text=True, check=True).stdout
+    project = tomllib.loads((GPU.parents[1] / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    for name in ("pip", *project["dependencies"], *project["optional-dependencies"]["test"]):
+        assert f"'{name}'" in listed
+    for arguments in ([], [tmp_path], ["--unknown"]):
+        done = subprocess.run([GPU, *arguments], capture_output=True, text=True, check=False)
+        assert (done.returncode, done.stdout, len(done.stderr.splitlines())) == (2, "", 1)
+
+
 # --- the report ----------------------------------------------------------------------------------------------
 
 
@@ -275,7 +411,7 @@ def test_tables_go_between_their_marks(
 def test_report_has_all_marks() -> None:
     """Every script has its place in the report."""
     text = report.REPORT.read_text(encoding="utf-8")
-    for name in ("engine", "accuracy", "raster", "sheets", "against", "chromium"):
+    for name in ("targets", "engine", "accuracy", "raster", "sheets", "against", "preflight", "chromium"):
         assert text.count(f"<!-- {name} -->") == text.count(f"<!-- end of {name} -->") == 1
 
 
