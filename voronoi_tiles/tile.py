@@ -122,9 +122,12 @@ class Tile:
             for k, (site, operation) in enumerate(outline.neighbours)
         ]
         curved = int(outline.curved.sum())
+        low_x, low_y, high_x, high_y = outline.bounds
         return {
             "site": self.name,
             "elements": len(self.site.elements),
+            "width": high_x - low_x,
+            "height": high_y - low_y,
             "area": self.area,
             "perimeter": self.perimeter,
             "rings": len(outline.ring_offsets) - 1,

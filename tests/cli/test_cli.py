@@ -13,6 +13,7 @@ from pathlib import Path
 from xml.etree import ElementTree as ET
 
 import pytest
+import svgelements
 from helpers.outlines import CommandLine
 
 from voronoi_tiles import __version__
@@ -423,6 +424,10 @@ def test_info_json(voronoi_tiles: CommandLine, design: Path) -> None:
     (tile,) = figures["tiles"]
     assert tile["area"] == pytest.approx(900.0, rel=1e-12)
     assert tile["symmetry"] == ["x,y"]
+    drawn = ET.fromstring(voronoi_tiles("export", design, "-o", "-").stdout).find(".//{*}path")
+    assert drawn is not None
+    left, top, right, bottom = svgelements.Path(drawn.get("d")).bbox()
+    assert (tile["width"], tile["height"]) == pytest.approx((right - left, bottom - top), abs=1e-9)
     assert 0 < tile["curved_share"] < 1
     assert sum(other["edges"] for other in tile["neighbours"]) == sum(tile["edges"].values())
     assert sum(other["length"] for other in tile["neighbours"]) == pytest.approx(tile["perimeter"], rel=1e-12)

@@ -24,10 +24,21 @@ def info_text(figures: dict[str, Any]) -> str:
     )
     page.table(
         "Tiles",
-        ["site", f">area {units}²", f">perimeter {units}", ">lines", ">parabolas", ">curved", ">copies", "symmetry"],
+        [
+            "site",
+            f">size {units}",
+            f">area {units}²",
+            f">perimeter {units}",
+            ">lines",
+            ">parabolas",
+            ">curved",
+            ">copies",
+            "symmetry",
+        ],
         [
             (
                 tile["site"],
+                f"{tile['width']:.4g} x {tile['height']:.4g}",
                 tile["area"],
                 tile["perimeter"],
                 tile["edges"]["line"],
