@@ -57,7 +57,7 @@ fi
 
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-trap 'exit 130' INT TERM
+trap 'exit 130' HUP INT PIPE TERM
 
 # A container may have the driver's library without the file that tells EGL of it.
 if [ -z "${__EGL_VENDOR_LIBRARY_FILENAMES:-}" ] && [ -z "$(find /usr/share/glvnd /etc/glvnd -name '*nvidia*.json' 2> /dev/null)" ] \

@@ -293,7 +293,7 @@ def run_qhull(design: Design, areas: Sequence[float]) -> Figure:
     assert (cell[0] == own).all(), "the points lie in the cell"
     places = np.concatenate([np.concatenate(cell) + i * a + j * b for i, j in product((0, -1, 1), repeat=2)])
     plane = np.stack((places.real, places.imag), axis=1)
-    runs = []
+    runs: list[float] = []
     while len(runs) < 5:
         begun = time.process_time()
         diagram = Voronoi(plane)
