@@ -164,21 +164,17 @@ def _steps(subject: Subject, owned: Owners, judge: Judge, *, down: bool) -> tupl
     """
     frame, window = subject.frame, judge.frame
     x, y = window.column, window.row
-    rows, columns = slice(y, y + window.height), slice(x, x + window.width)
-    here = owned.identity[rows, columns]
+    here = owned.identity[y : y + window.height, x : x + window.width]
+    wraps = y + window.height == frame.height if down else x + window.width == frame.width
+    period = subject.period[1 if down else 0]
+    different = np.ones(here.shape, bool)  # of the last ones, whose next ones lie outside, the codes tell
     if down:
-        next_rows = np.arange(y + 1, y + window.height + 1) % frame.height
-        there = owned.identity[next_rows, columns]
-        wraps, period = y + window.height == frame.height, subject.period[1]
+        np.not_equal(here[1:], here[:-1], out=different[:-1])
     else:
-        next_columns = np.arange(x + 1, x + window.width + 1) % frame.width
-        there = owned.identity[rows, next_columns]
-        wraps, period = x + window.width == frame.width, subject.period[0]
-    different = here != there
-    if wraps:  # the same number is another copy in the next cell
-        different[(-1, slice(None)) if down else (slice(None), -1)] = True
+        np.not_equal(here[:, 1:], here[:, :-1], out=different[:, :-1])
     row, column = np.nonzero(different)
-    before, after = owned.codes[here[row, column]], owned.codes[there[row, column]]
+    there = owned.identity[(y + row + down) % frame.height, (x + column + (not down)) % frame.width]
+    before, after = owned.codes[here[row, column]], owned.codes[there]
     if wraps:
         after = after + period * ((row if down else column) == (window.height if down else window.width) - 1)
     real = before != after
