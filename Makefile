@@ -23,22 +23,25 @@ INSTALLED := $(VENV)/.installed
 INSTALLED_DEV := $(VENV)/.installed-dev
 INSTALLED_DOCS := $(VENV)/.installed-docs
 INSTALLED_TYPES := $(TYPES_VENV)/.installed
+# Compiled into one library at the install: changes of theirs need a new one.
+KERNELS := setup.py $(shell find voronoi_tiles vector raster -name "*.c")
 SOURCES := $(shell find voronoi_tiles vector raster -name "*.py" -o -name "*.glsl" -o -name "*.toml")
 EXAMPLES := $(wildcard examples/*.toml)
 
 help:
 	@sed -n 's/^#  //p' Makefile
 
-# The core alone, editable: changes of the sources need no new installation, those of pyproject.toml do.
-$(INSTALLED): pyproject.toml
+# The core alone, editable: changes of the Python sources need no new installation.
+$(INSTALLED): pyproject.toml $(KERNELS)
 	$(PYTHON) -m venv $(VENV)
 	$(VENV)/bin/python $(PIP) -e .
 	touch $@
 
 # The documentation's scripts are tested as well.
-$(INSTALLED_DEV): $(INSTALLED)
+$(INSTALLED_DEV): pyproject.toml $(KERNELS)
+	$(PYTHON) -m venv $(VENV)
 	$(VENV)/bin/python $(PIP) -e '.[test,dev,docs]'
-	touch $@
+	touch $(INSTALLED) $@
 
 $(INSTALLED_DOCS): $(INSTALLED)
 	$(VENV)/bin/python $(PIP) -e '.[docs]'
@@ -128,4 +131,5 @@ diagrams: $(INSTALLED_DOCS)
 
 clean:
 	rm -rf $(VENV) $(VENV)-3.* $(TYPES_VENV) $(DEMO) docs/_build build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -f voronoi_tiles/base/_kernels.*
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -1,0 +1,98 @@
+"""The compiled kernels: the shared library that the build makes of the C files, where it could.
+
+A kernel does what numpy code beside it does, with the same bits; without the library numpy does the work. The variable
+VORONOI_TILES_KERNELS=numpy in the environment leaves the library aside.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import Any
+from zlib import crc32
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+_VARIABLE = "VORONOI_TILES_KERNELS"
+_SUFFIX = {"darwin": ".dylib", "win32": ".dll"}.get(sys.platform, ".so")
+_ROOT = Path(__file__).parents[2]
+
+
+class Array:
+    """The type of a kernel's argument that is a C-contiguous array of one dtype; ctypes asks `from_param`.
+
+    What a kernel writes into must be writeable, which is for the caller to see to.
+    """
+
+    def __init__(self, dtype: DTypeLike) -> None:
+        self.dtype = np.dtype(dtype)
+
+    def from_param(self, array: NDArray[Any]) -> ctypes.c_void_p:
+        """The array's address. Raises TypeError where it has another dtype, or gaps."""
+        if array.dtype != self.dtype or not array.flags.c_contiguous:
+            raise TypeError(f"the kernel takes contiguous arrays of {self.dtype}, not {array.dtype}")
+        return ctypes.c_void_p(array.ctypes.data)
+
+
+COMPLEXES, FLOATS, INTS = Array(np.complex128), Array(np.float64), Array(np.int64)
+LABELS, BOOLS = Array(np.int32), Array(np.bool_)
+FLOAT, INT = ctypes.c_double, ctypes.c_int64
+
+
+def library() -> ctypes.CDLL | None:
+    """The library of compiled kernels; None where numpy does their work."""
+    return _chosen()[0]
+
+
+def in_use() -> str:
+    """Which kernels are in use, for people: "compiled", or "numpy" with the reason."""
+    loaded, reason = _chosen()
+    return "compiled" if loaded else f"numpy ({reason})"
+
+
+def kernel(name: str, *arguments: Array | type[ctypes.c_double | ctypes.c_int64]) -> Callable[..., int] | None:
+    """A function of the library, which takes such arguments and gives an int64; None where numpy does its work.
+
+    ctypes raises ArgumentError where an argument is of another type.
+    """
+    loaded = library()
+    return None if loaded is None else _bound(loaded, name, arguments)
+
+
+@cache
+def _bound(loaded: ctypes.CDLL, name: str, arguments: tuple[Any, ...]) -> Callable[..., int]:
+    function = loaded[name]
+    function.argtypes = arguments
+    function.restype = ctypes.c_int64
+    return function
+
+
+def _chosen() -> tuple[ctypes.CDLL | None, str]:
+    """The library, or None and why."""
+    if os.environ.get(_VARIABLE) == "numpy":
+        return None, f"{_VARIABLE}=numpy"
+    return _load(Path(__file__).with_name(f"_kernels{_SUFFIX}"), _ROOT)
+
+
+@cache
+def _load(path: Path, root: Path) -> tuple[ctypes.CDLL | None, str]:
+    """The library at a path, or None and why; where its sources are below `root`, it must be made of them."""
+    if not path.exists():
+        return None, "they were not compiled when this was installed"
+    try:
+        loaded = ctypes.CDLL(str(path))
+        loaded.voronoi_tiles_manifest.restype = ctypes.c_char_p
+        manifest = loaded.voronoi_tiles_manifest().decode()
+    except (OSError, AttributeError) as error:
+        return None, f"{path.name} cannot be loaded: {' '.join(str(error).split())}"
+    checksums = dict(entry.rsplit(":", 1) for entry in manifest.split()[1:])
+    if all((root / name).exists() for name in checksums):  # in the checkout, where they may have changed since
+        for name, checksum in checksums.items():
+            if f"{crc32((root / name).read_bytes()):08x}" != checksum:
+                return None, f"{path.name} was compiled from another {name}; install anew"
+    return loaded, ""
