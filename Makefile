@@ -131,5 +131,5 @@ diagrams: $(INSTALLED_DOCS)
 
 clean:
 	rm -rf $(VENV) $(VENV)-3.* $(TYPES_VENV) $(DEMO) docs/_build build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
-	rm -f voronoi_tiles/base/_kernels.*
+	rm -f voronoi_tiles/base/kernels.compiled.*
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -25,6 +25,7 @@ from setuptools.errors import CompileError, OptionError
 
 SOURCES = [
     "voronoi_tiles/base/kernels.c",
+    "raster/block_lists.c",
 ]
 """The C files, each beside what it computes in numpy; a new one is a line here."""
 
@@ -55,7 +56,7 @@ def target() -> Target:
     """What to compile for: what is asked for, or else the platform that this Python runs on."""
     system = {"darwin": "macos", "win32": "windows"}.get(sys.platform, sys.platform)
     name = f"{system}-{platform.machine()}".lower().replace("amd64", "x86_64")
-    if "musl" in str(sysconfig.get_config_var("SOABI")) or sys.maxsize < 2**32:
+    if "musl" in str(sysconfig.get_config_var("SOABI")):
         name = "another"  # than its name says
     asked = os.environ.get("VORONOI_TILES_TARGET")
     if asked:
@@ -75,8 +76,10 @@ def compile_library(library: Path, scratch: Path) -> None:
     manifest = " ".join([target().zig, *(f"{file}:{crc32(Path(file).read_bytes()):08x}" for file in files)])
     if library.exists() and manifest.encode() in library.read_bytes():
         return
-    for old in library.parent.glob("_kernels.*"):
+    for old in library.parent.glob("kernels.compiled.*"):
         old.unlink()
+    if sys.maxsize < 2**32:
+        raise CompileError("they need a Python of 64 bits")
     if importlib.util.find_spec("ziglang") is None:
         raise CompileError("ziglang is not here")
     made = scratch.resolve() / library.name
@@ -96,8 +99,8 @@ class BuildKernels(build_ext):
     """Compiles the one library where setuptools would compile extension modules."""
 
     def get_ext_filename(self, fullname: str) -> str:
-        """The library's place: its name is the same for every Python, as it uses nothing of Python's."""
-        return str(Path(*fullname.split("."))) + target().suffix
+        """The library's place: it uses nothing of Python's, so its name is the same for all, and no module's."""
+        return str(Path(*fullname.split("."))) + f".compiled{target().suffix}"
 
     def run(self) -> None:
         """Compile, in the tree for an editable install; or say in one line that it could not be done."""
@@ -121,6 +124,6 @@ class Wheel(bdist_wheel):
 
 
 setup(
-    ext_modules=[Extension("voronoi_tiles.base._kernels", SOURCES, optional=True)],
+    ext_modules=[Extension("voronoi_tiles.base.kernels", SOURCES, optional=True)],
     cmdclass={"build_ext": BuildKernels, "bdist_wheel": Wheel},
 )

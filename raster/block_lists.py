@@ -13,11 +13,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from voronoi_tiles.base.arrays import Complexes, Floats, Ints, offsets_of, owned_ranges, starts
+from voronoi_tiles.base.kernels import COMPLEXES, FLOAT, FLOATS, INT, INTS, LABELS, kernel
 from voronoi_tiles.raster.frame import BLOCK, Frame
 from voronoi_tiles.raster.scene import Scene, distances, from_feet, lengths
 
@@ -72,86 +74,124 @@ def find_candidates(scene: Scene, frame: Frame, *, looseness: float = 0.0) -> Bl
     level = 0
     while (-(-across >> level) * -(-down >> level)) > _ROOTS and level < 30:
         level += 1
-    columns, rows = -(-across // 2**level), -(-down // 2**level)
-    number = np.arange(columns * rows)
     loose = _SLACK + 4.0 * looseness
-    lists = _roots(scene, frame, number % columns, number // columns, level, loose)
+    grid = _grid(frame, level)
+    lists = _kept(scene, _near(scene, grid, loose), np.arange(len(grid.centre)), grid, loose)
     while level:
         level -= 1
-        lists = _children(scene, frame, lists, level, across, down, loose)
-    order = np.lexsort((lists.column, lists.row))
-    return _in_order(scene, lists, order, across, _radius(frame, 0))
+        finer = _grid(frame, level)
+        lists = _kept(scene, lists, (finer.row // 2) * grid.columns + finer.column // 2, finer, loose)
+        grid = finer
+    return _in_runs(scene, lists, grid)
 
 
 _ROOTS = 16
 """Blocks that the quadtree starts with, at most; a count."""
 
 
-@dataclass(frozen=True, eq=False)
-class _Lists:
-    """Blocks of one level with their lists: `element` in segments from `start` on (one more than blocks)."""
+class _BlockGrid(NamedTuple):
+    """The blocks of one level, row by row: their columns and rows, centres, and the half diagonal of one."""
 
+    columns: int
     column: Ints
     row: Ints
     centre: Complexes
+    radius: float
+
+
+def _grid(frame: Frame, level: int) -> _BlockGrid:
+    """The blocks that cover a frame, of BLOCK 2^level samples a side."""
+    side = BLOCK * 2**level
+    columns, rows = -(-frame.width // side), -(-frame.height // side)
+    row, column = np.divmod(np.arange(columns * rows), columns)
+    centre = frame.offsets((column + 0.5) * side, (row + 0.5) * side)
+    # The far sides of a block are the samples where the next one begins.
+    return _BlockGrid(columns, column, row, centre, frame.half_diagonal(side))
+
+
+class _Lists(NamedTuple):
+    """The lists of the blocks of one level: that of block b is element[start[b]:start[b + 1]], ascending."""
+
     start: Ints
     element: NDArray[np.int32]
 
 
-def _radius(frame: Frame, level: int) -> float:
-    """The half diagonal of a block, whose far sides are the samples where the next block begins."""
-    return frame.half_diagonal(BLOCK * 2**level)
+def _near(scene: Scene, grid: _BlockGrid, loose: float) -> _Lists:
+    """All elements of the copies that can matter in each block, judged by circles about copies."""
+    first = scene.copy_start
+    x, y = scene.middle.real, scene.middle.imag
+    low = np.minimum.reduceat(x, first) + 1j * np.minimum.reduceat(y, first)
+    high = np.maximum.reduceat(x, first) + 1j * np.maximum.reduceat(y, first)
+    centre = (low + high) / 2
+    last = np.append(first[1:], len(scene))
+    away = lengths(scene.middle - np.repeat(centre, last - first)) + scene.length
+    radius = np.maximum.reduceat(away, first)
+    parts = []
+    for z in grid.centre.tolist():
+        distance = lengths(z - centre)
+        second = np.partition(distance + radius, 1)[1]
+        near = distance - radius <= (second + 2 * grid.radius) * loose * _SLACK
+        parts.append(owned_ranges(first[near], last[near])[0])
+    return _Lists(offsets_of([len(part) for part in parts]), np.concatenate(parts).astype(np.int32))
 
 
-def _centres(frame: Frame, column: Ints, row: Ints, level: int) -> Complexes:
-    side = BLOCK * 2**level
-    return frame.offsets((column + 0.5) * side, (row + 0.5) * side)
-
-
-def _roots(scene: Scene, frame: Frame, column: Ints, row: Ints, level: int, loose: float) -> _Lists:
-    """The lists of the first blocks, from all elements, block by block."""
-    centre = _centres(frame, column, row, level)
-    radius = _radius(frame, level)
-    everything = np.arange(len(scene), dtype=np.int32)
-    kept = [
-        everything[_keep(scene.label, from_feet(z, scene.middle, scene.half), np.zeros(1, np.intp), radius, loose)]
-        for z in centre.tolist()
-    ]
-    start = offsets_of([len(part) for part in kept])
-    return _Lists(column, row, centre, start, np.concatenate(kept))
-
-
-def _children(scene: Scene, frame: Frame, parents: _Lists, level: int, across: int, down: int, loose: float) -> _Lists:
-    """The lists of the quarters of blocks, as far as these lie in the image of across x down blocks."""
-    shape = (len(parents.column), 2, 2)
-    column = np.broadcast_to(2 * parents.column[:, None, None] + np.array([0, 1]), shape).ravel()
-    row = np.broadcast_to(2 * parents.row[:, None, None] + np.array([[0], [1]]), shape).ravel()
-    parent = np.repeat(np.arange(len(parents.column)), 4)
-    side = 2**level
-    inside = (column * side < across) & (row * side < down)
-    column, row, parent = column[inside], row[inside], parent[inside]
-    centre = _centres(frame, column, row, level)
-    radius = _radius(frame, level)
-    size = np.diff(parents.start)[parent]
+def _kept(scene: Scene, parents: _Lists, parent: Ints, grid: _BlockGrid, loose: float) -> _Lists:
+    """The lists of the blocks of a level, made of those of their parents."""
+    first, last = parents.start[parent], parents.start[parent + 1]
+    ends = np.cumsum(last - first)
     # In portions, so that the work arrays do not fill the memory.
-    bounds = np.searchsorted(np.cumsum(size), np.arange(_PORTION, int(size.sum()) + _PORTION, _PORTION))
+    bounds = np.searchsorted(ends, np.arange(_PORTION, int(ends[-1]) + _PORTION, _PORTION))
     elements, counts = [], []
-    for first, last in zip(np.append(0, bounds), np.append(bounds, len(parent)), strict=True):
-        if first == last:
-            continue
-        n = size[first:last]
-        start = np.cumsum(n) - n
-        index, _ = owned_ranges(parents.start[parent[first:last]], parents.start[parent[first:last]] + n)
-        element = parents.element[index]
-        away = from_feet(np.repeat(centre[first:last], n), scene.middle[element], scene.half[element])
-        keep = _keep(scene.label[element], away, start, radius, loose)
-        elements.append(element[keep])
-        counts.append(np.add.reduceat(keep, start, dtype=np.intp))
-    return _Lists(column, row, centre, offsets_of(np.concatenate(counts)), np.concatenate(elements))
+    for i, j in zip(np.append(0, bounds), np.append(bounds, len(parent)), strict=True):
+        if i < j:
+            element, count = _kept_portion(
+                scene, parents.element, first[i:j], last[i:j], grid.centre[i:j], grid.radius, loose
+            )
+            elements.append(element)
+            counts.append(count)
+    element = elements[0] if len(elements) == 1 else np.concatenate(elements)
+    return _Lists(offsets_of(np.concatenate(counts)), element)
 
 
 _PORTION = 2_000_000
 """Pairs of blocks and elements that are handled at once; a count."""
+
+
+def _kept_portion(
+    scene: Scene,
+    element: NDArray[np.int32],
+    first: Ints,
+    last: Ints,
+    centre: Complexes,
+    radius: float,
+    loose: float,
+) -> tuple[NDArray[np.int32], Ints]:
+    """Of the elements from first[b] up to last[b], what can matter near centre[b]: all of them, and how many of each b.
+
+    By the compiled kernel where there is one; otherwise by `_keep`, with the same result.
+    """
+    size = last - first
+    keep = kernel("raster_keep", *_BLOCKS, *_ELEMENTS, *_WORK, *_KEPT)
+    if keep is not None:
+        blocks = len(size), first, last, centre, radius, loose
+        elements = element, scene.label, scene.middle, scene.half
+        longest = int(size.max())
+        work = np.empty(4 * longest), np.empty(longest, np.int64)
+        kept, count = np.empty(int(size.sum()), np.int32), np.empty(len(size), np.int64)
+        total = keep(*blocks, *elements, *work, kept, count)
+        return kept[:total], count
+    start = np.cumsum(size) - size
+    element = element[owned_ranges(first, last)[0]]
+    away = from_feet(np.repeat(centre, size), scene.middle[element], scene.half[element])
+    chosen = _keep(scene.label[element], away, start, radius, loose)
+    return element[chosen], np.add.reduceat(chosen, start, dtype=np.intp)
+
+
+# The arguments of raster_keep in block_lists.c.
+_BLOCKS = INT, INTS, INTS, COMPLEXES, FLOAT, FLOAT
+_ELEMENTS = LABELS, LABELS, COMPLEXES, COMPLEXES
+_WORK = FLOATS, INTS
+_KEPT = LABELS, INTS
 
 
 def _keep(label: NDArray[np.int32], away: Complexes, start: Ints, radius: float, loose: float) -> NDArray[np.bool_]:
@@ -171,13 +211,16 @@ def _keep(label: NDArray[np.int32], away: Complexes, start: Ints, radius: float,
     limit = np.where(nearest <= (second + 2 * radius) * loose, 2 * radius, -np.inf)
     # Of each copy, what is farther everywhere than the element that is nearest at the centre.
     winner = _first_of_each(np.flatnonzero(distance == np.repeat(nearest, size)), run_start)
-    gradient = away / np.where(distance > 0.0, distance, 1.0)
+    gradient = away[winner] * (1.0 / np.where(nearest > 0.0, nearest, 1.0))
     with np.errstate(divide="ignore"):
         bend = radius * radius / (2.0 * nearest)
-    turn = lengths(gradient - np.repeat(gradient[winner], size)) * radius
     excess = distance - np.repeat(nearest, size)
     slack = (loose - 1.0) * (distance + radius)
-    return np.asarray(excess <= np.minimum(np.repeat(limit, size), turn + np.repeat(bend, size)) + slack)
+    # Squared, and times the distance: |g - G| r >= d - D - r^2 / 2D, where the right side is positive.
+    turn = away - np.repeat(gradient, size) * distance
+    beyond = np.maximum(excess - np.repeat(bend, size) - slack, 0.0) * distance
+    turned = (turn.real * turn.real + turn.imag * turn.imag) * (radius * radius) - beyond * beyond
+    return np.asarray((excess - slack <= np.repeat(limit, size)) & (turned >= 0.0))
 
 
 def _second_smallest(nearest: Floats, start: Ints, run_start: Ints) -> Floats:
@@ -196,22 +239,15 @@ def _first_of_each(index: Ints, start: Ints) -> Ints:
     return np.asarray(index[starts(np.searchsorted(start, index, side="right"))])
 
 
-def _in_order(scene: Scene, lists: _Lists, order: Ints, columns: int, radius: float) -> BlockLists:
-    """The finished lists, block after block, in runs."""
-    n = np.diff(lists.start)[order]
-    start = np.cumsum(n) - n
-    element = lists.element[owned_ranges(lists.start[order], lists.start[order] + n)[0]]
-    label = scene.label[element]
+def _in_runs(scene: Scene, lists: _Lists, grid: _BlockGrid) -> BlockLists:
+    """The finished lists, in runs."""
+    start = lists.start[:-1]
+    label = scene.label[lists.element]
     fresh = np.append(True, label[1:] != label[:-1])
     fresh[start] = True
     first = np.flatnonzero(fresh)
+    run_start = np.append(np.searchsorted(first, start), len(first))
+    element_start = np.append(first, len(label))
     return BlockLists(
-        scene,
-        columns,
-        radius,
-        lists.centre[order],
-        np.append(np.searchsorted(first, start), len(first)),
-        label[first],
-        np.append(first, len(element)),
-        element,
+        scene, grid.columns, grid.radius, grid.centre, run_start, label[first], element_start, lists.element
     )

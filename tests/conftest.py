@@ -14,6 +14,7 @@ from helpers.forking import ForkServer
 from helpers.outlines import ABOVE, RIGHT, CommandLine, polygon
 from hypothesis import settings
 
+from voronoi_tiles.base import kernels
 from voronoi_tiles.raster import gl
 from voronoi_tiles.vector.arcs import ParabolaArc
 from voronoi_tiles.vector.outline import Outline
@@ -112,6 +113,16 @@ def device(opengl: None) -> Iterator[gl.Device]:  # noqa: ARG001  (it only has t
     with found.current():
         yield found
         found.check()
+
+
+@pytest.fixture(scope="session")
+def compiled() -> None:
+    """The compiled kernels, or the reason why a test is left out; VORONOI_TILES_REQUIRE_KERNELS=1 makes it an error."""
+    if kernels.library() is None:
+        reason = f"no compiled kernels: {kernels.in_use()}"
+        if os.environ.get("VORONOI_TILES_REQUIRE_KERNELS") == "1":
+            pytest.fail(reason)
+        pytest.skip(reason)
 
 
 @pytest.fixture(scope="session")

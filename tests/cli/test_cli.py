@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import os
+import platform
 import shutil
 import signal
 import subprocess
 import sys
 import time
+from importlib.metadata import version
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -17,6 +19,7 @@ import svgelements
 from helpers.outlines import CommandLine
 
 from voronoi_tiles import __version__
+from voronoi_tiles.base import kernels
 from voronoi_tiles.designs.starters import GROUP_NAMES, starter_text
 
 SEGMENT = """\
@@ -53,6 +56,23 @@ def test_version(voronoi_tiles: CommandLine) -> None:
     """The version is the package's."""
     result = voronoi_tiles("--version")
     assert (result.returncode, result.stdout) == (0, f"voronoi-tiles, version {__version__}\n")
+
+
+@pytest.mark.parametrize("arguments", [["--version", "--verbose"], ["--verbose", "--version"]])
+def test_version_says_what_it_runs_on(voronoi_tiles: CommandLine, arguments: list[str]) -> None:
+    """The kernels in use, Python and the libraries, for reports of problems."""
+    result = voronoi_tiles(*arguments)
+    first, used, *others = result.stdout.splitlines()
+    assert (result.returncode, first) == (0, f"voronoi-tiles, version {__version__}")
+    assert used == f"kernels: {kernels.in_use()}"
+    assert others[0].startswith(f"Python {platform.python_version()} on ")
+    assert {f"numpy {version('numpy')}", f"shapely {version('shapely')}"} < {*others}
+    assert not any(line.startswith("pytest") for line in others)
+
+
+def test_verbose_goes_with_version(voronoi_tiles: CommandLine) -> None:
+    """Elsewhere it would be taken and do nothing."""
+    assert "--verbose goes with --version" in complaint(voronoi_tiles("--verbose", "new", "p4"))
 
 
 def test_the_module_runs_too(command: str) -> None:

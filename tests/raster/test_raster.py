@@ -15,6 +15,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from voronoi_tiles.base import kernels
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.base.tolerance import EPSILON
@@ -579,6 +580,42 @@ def test_lists_in_portions_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None
     assert (flat.centre == whole.centre).all()
     images = [cpu.render(lists, frame) for lists in (whole, flat)]
     assert all((one == other).all() for one, other in zip(*images, strict=True))
+
+
+@pytest.mark.usefixtures("compiled")
+@pytest.mark.parametrize("looseness", [0.0, hoff.cone_error(4)])
+@GROUP
+def test_the_kernel_makes_the_same_lists(group: str, looseness: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every array has the same bits, with the compiled kernel and with numpy; the lists are no empty ones."""
+    for pattern, rng in random_patterns(12, group, "plain", "grid", "points", "special", "several", "near"):
+        frame = random_frame(pattern, rng)
+        frame = replace(frame, width=frame.width + 60, height=frame.height + 60, u=frame.u / 3, v=frame.v / 3)
+        both = []
+        for variable in ("", "numpy"):
+            monkeypatch.setenv("VORONOI_TILES_KERNELS", variable)
+            assert (kernels.library() is None) == bool(variable)
+            both.append(lists_of(pattern, frame, looseness))
+        for name in ("centre", "run_start", "run_label", "element_start", "element"):
+            one, other = (getattr(lists, name) for lists in both)
+            assert one.dtype == other.dtype
+            assert one.tobytes() == other.tobytes(), name
+        assert len(both[0].element) >= 2 * len(both[0])
+
+
+def test_copies_that_are_far_from_a_block_are_left_out_at_once() -> None:
+    """Of a wide picture the first lists hold what lies about their blocks; nothing is lost that `_keep` would keep."""
+    pattern = one("p4", {"circle": [16, 13], "radius": 10}, {"point": [40, 41]})
+    frame = rectangle_frame((-500.0, -500.0, 500.0, 500.0), 800, 800)
+    scene = gather(pattern, frame.origin, frame.middle, frame.radius)
+    grid = candidates._grid(frame, 4)
+    near = candidates._near(scene, grid, 1.0)
+    assert len(near.element) < 0.5 * len(scene) * len(grid.centre)
+    everything = candidates._Lists(np.array([0, len(scene)]), np.arange(len(scene), dtype=np.int32))
+    parent = np.arange(len(grid.centre))
+    some = candidates._kept(scene, near, parent, grid, 1.0)
+    whole = candidates._kept(scene, everything, np.zeros_like(parent), grid, 1.0)
+    assert (some.start == whole.start).all()
+    assert (some.element == whole.element).all()
 
 
 @pytest.mark.parametrize("kind", ["plain", "grid", "several", "long", "wild", "skew"])

@@ -20,6 +20,7 @@ from numpy.typing import DTypeLike, NDArray
 
 _VARIABLE = "VORONOI_TILES_KERNELS"
 _SUFFIX = {"darwin": ".dylib", "win32": ".dll"}.get(sys.platform, ".so")
+_LIBRARY = Path(__file__).with_suffix(f".compiled{_SUFFIX}")  # the second dot keeps it from being taken for a module
 _ROOT = Path(__file__).parents[2]
 
 
@@ -76,7 +77,7 @@ def _chosen() -> tuple[ctypes.CDLL | None, str]:
     """The library, or None and why."""
     if os.environ.get(_VARIABLE) == "numpy":
         return None, f"{_VARIABLE}=numpy"
-    return _load(Path(__file__).with_name(f"_kernels{_SUFFIX}"), _ROOT)
+    return _load(_LIBRARY, _ROOT)
 
 
 @cache

@@ -49,8 +49,38 @@ class _Commands(click.Group):
         return command
 
 
+_VERBOSE = "voronoi_tiles.verbose"
+"""Whether --verbose was given, in the meta of click's context."""
+
+
+def _note_verbose(context: click.Context, _: click.Parameter, verbose: bool) -> None:
+    context.meta[_VERBOSE] = verbose
+
+
+def _say_version(context: click.Context, _: click.Parameter, asked: bool) -> None:
+    """Print the version and exit, where it was asked for."""
+    verbose = context.meta[_VERBOSE]
+    if context.resilient_parsing or not (asked or verbose):
+        return
+    if not asked:
+        raise click.UsageError("--verbose goes with --version.")
+    click.echo(f"{PROGRAM}, version {__version__}")
+    if verbose:
+        from voronoi_tiles.cli.environment import environment
+
+        click.echo(environment())
+    context.exit()
+
+
 @click.group(cls=_Commands, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
-@click.version_option(__version__, prog_name=PROGRAM)
+@click.option(
+    "--version",
+    is_flag=True,
+    expose_value=False,
+    callback=_say_version,
+    help="Show the version and exit; with --verbose also what it runs on.",
+)
+@click.option("--verbose", is_flag=True, is_eager=True, expose_value=False, callback=_note_verbose, hidden=True)
 def cli() -> None:
     """Exact tiles that fill the plane: Voronoi cells of strokes, repeated by a wallpaper group."""
 
