@@ -5,10 +5,11 @@
 #   make bench   speed and accuracy, beside peers    make fuzz N=10000
 #   make format  rewrite the sources' layout         make clean   remove all that was made here
 #   make docs    the documentation, in docs/_build   make paper   docs/paper.md: the paper, reproduced and measured
+#   make wheels  what a release is made of: the source and a wheel for each platform, in dist
 #   make gallery the pictures of docs/gallery.md     make diagrams  the drawings of the other pages
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-slow test-pythons lint format types bench fuzz docs paper gallery diagrams clean
+.PHONY: help demo test test-slow test-pythons lint format types bench fuzz docs paper gallery diagrams wheels clean
 .DELETE_ON_ERROR:
 
 PYTHON ?= python3
@@ -100,7 +101,7 @@ $(INSTALLED_TYPES): $(TYPES_VENV)/.created $(SOURCES)
 # From inside the environment, where the folder voronoi_tiles/ of the checkout cannot shadow the installed package.
 types: $(INSTALLED_TYPES)
 	cd $(TYPES_VENV) && bin/mypy --config-file $(abspath pyproject.toml) --cache-dir cache -p voronoi_tiles
-	cd $(TYPES_VENV) && bin/mypy --config-file $(abspath pyproject.toml) --cache-dir cache $(abspath tests bench docs .ci/pythons.py)
+	cd $(TYPES_VENV) && bin/mypy --config-file $(abspath pyproject.toml) --cache-dir cache $(abspath tests bench docs setup.py .ci/pythons.py)
 
 bench: $(INSTALLED_DEV)
 	-$(VENV)/bin/python bench/targets.py --numpy --write
@@ -128,6 +129,16 @@ gallery: $(INSTALLED_DOCS)
 
 diagrams: $(INSTALLED_DOCS)
 	$(VENV)/bin/python docs/generate/diagrams.py
+
+# Each wheel is built from the source distribution, so that this holds all; compiled here for platforms that are elsewhere.
+wheels: $(INSTALLED_DEV)
+	rm -rf dist
+	$(VENV)/bin/python -c 'from setuptools.build_meta import build_sdist; build_sdist("dist")' > /dev/null
+	for target in $$($(VENV)/bin/python -c 'import setup; print(*setup.TARGETS)'); do \
+	    VORONOI_TILES_REQUIRE_KERNELS=1 VORONOI_TILES_TARGET=$$target \
+	        $(VENV)/bin/python -m pip wheel --quiet --no-deps --wheel-dir dist dist/*.tar.gz || exit 1; \
+	done
+	@ls -l dist
 
 clean:
 	rm -rf $(VENV) $(VENV)-3.* $(TYPES_VENV) $(DEMO) docs/_build build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

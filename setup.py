@@ -3,7 +3,7 @@
 All C files become one shared library beside voronoi_tiles/base/kernels.py, which loads it. The compiler is zig, which
 pip fetches for the time of the build; it needs neither another compiler nor headers, and compiles for other platforms
 as well: VORONOI_TILES_TARGET names one of TARGETS. Where there is no zig, or it fails, the build goes on without the
-library, and numpy does the work; with VORONOI_TILES_REQUIRE_KERNELS=1 that is an error.
+library, and numpy does the work; with VORONOI_TILES_REQUIRE_KERNELS=1 that is an error. `make wheels` builds them all.
 """
 
 from __future__ import annotations
@@ -110,7 +110,7 @@ class BuildKernels(build_ext):
         except CompileError as error:
             if os.environ.get("VORONOI_TILES_REQUIRE_KERNELS") == "1":
                 raise
-            self.announce(f"voronoi_tiles: no compiled kernels, numpy does their work: {error}.", level=4)
+            self.warn(f"no compiled kernels, numpy does their work: {error}")
 
 
 class Wheel(bdist_wheel):
@@ -123,7 +123,8 @@ class Wheel(bdist_wheel):
         return "py3", "none", (target().tag or native) if Path(library).exists() else "any"
 
 
-setup(
-    ext_modules=[Extension("voronoi_tiles.base.kernels", SOURCES, optional=True)],
-    cmdclass={"build_ext": BuildKernels, "bdist_wheel": Wheel},
-)
+if __name__ == "__main__":
+    setup(
+        ext_modules=[Extension("voronoi_tiles.base.kernels", SOURCES, optional=True)],
+        cmdclass={"build_ext": BuildKernels, "bdist_wheel": Wheel},
+    )
