@@ -40,7 +40,7 @@ def test_a_library_that_cannot_be_loaded_is_passed_over(
 
 def test_another_librarys_functions_are_not_ours(monkeypatch: pytest.MonkeyPatch) -> None:
     """A shared library that is none of ours has no manifest."""
-    other = np.linalg._umath_linalg.__file__  # type: ignore[attr-defined]
+    other = np.linalg._umath_linalg.__file__
     monkeypatch.delenv("VORONOI_TILES_KERNELS", raising=False)
     monkeypatch.setattr(kernels, "_LIBRARY", Path(other))
     assert kernels.library() is None

@@ -57,9 +57,14 @@ class Wheel(NamedTuple):
 def build(source: Path, target: Path, *options: str, **environment: str) -> subprocess.CompletedProcess[str]:
     """Build a wheel, whether it succeeds or not."""
     inherited = {name: value for name, value in os.environ.items() if not name.startswith("VORONOI_TILES_")}
-    command = [sys.executable, "-m", "pip", "wheel", "--verbose", "--no-deps", *options, "--wheel-dir", target, source]
+    command = [sys.executable, "-m", "pip", "wheel", "--verbose", "--no-deps", *options, "--wheel-dir"]
     return subprocess.run(
-        command, env=inherited | environment, check=False, capture_output=True, text=True, timeout=600
+        [*command, str(target), str(source)],
+        env=inherited | environment,
+        check=False,
+        capture_output=True,
+        text=True,
+        timeout=600,
     )
 
 
