@@ -11,6 +11,7 @@ from __future__ import annotations
 import importlib.util
 import os
 import platform
+import shutil
 import subprocess
 import sys
 import sysconfig
@@ -42,7 +43,7 @@ class Target(NamedTuple):
     suffix: str
 
 
-# The oldest glibc and macOS that numpy's wheels ran on when this was written.
+# As old a glibc and macOS as those who have our Python and numpy may have.
 TARGETS = {
     "linux-x86_64": Target("x86_64-linux-gnu.2.17", "manylinux_2_17_x86_64", ".so"),
     "linux-aarch64": Target("aarch64-linux-gnu.2.17", "manylinux_2_17_aarch64", ".so"),
@@ -89,10 +90,12 @@ def compile_library(library: Path, scratch: Path) -> None:
     command = [sys.executable, "-m", "ziglang", "cc", *FLAGS, *where, f'-DMANIFEST="{manifest}"', *SOURCES, "-lm"]
     try:
         subprocess.run([*command, "-o", str(made)], check=True, env=caches | os.environ)
+        # Whole or not at all: another process may be loading it.
+        library.parent.mkdir(parents=True, exist_ok=True)
+        beside = Path(shutil.copy(made, library.with_suffix(".new")))
+        beside.replace(library)
     except (OSError, subprocess.CalledProcessError) as error:
         raise CompileError(f"zig could not compile them: {error}") from error
-    library.parent.mkdir(parents=True, exist_ok=True)
-    made.replace(library)  # whole or not at all: another process may be loading it
 
 
 class BuildKernels(build_ext):

@@ -63,7 +63,7 @@ int64_t raster_keep(int64_t blocks, const int64_t *first, const int64_t *last, c
             if (!(d <= reach)) continue;
             for (int64_t j = start; j < end; j++) distance[j] = sqrt(distance[j]);
             int64_t w = start;
-            while (distance[w] != d) w++;
+            while (w < end - 1 && distance[w] != d) w++;
             const double bend = radius * radius / (2.0 * d), scale = 1.0 / (d > 0.0 ? d : 1.0);
             const double gradient_x = x[w] * scale, gradient_y = y[w] * scale;
             for (int64_t j = start; j < end; j++) { /* without branches: the compiler takes two at once */

@@ -131,8 +131,8 @@ def _near(scene: Scene, grid: _BlockGrid, loose: float) -> _Lists:
         distance = lengths(z - centre)
         second = np.partition(distance + radius, 1)[1]
         near = distance - radius <= (second + 2 * grid.radius) * loose * _SLACK
-        parts.append(owned_ranges(first[near], last[near])[0])
-    return _Lists(offsets_of([len(part) for part in parts]), np.concatenate(parts).astype(np.int32))
+        parts.append(owned_ranges(first[near], last[near])[0].astype(np.int32))
+    return _Lists(offsets_of([len(part) for part in parts]), np.concatenate(parts))
 
 
 def _kept(scene: Scene, parents: _Lists, parent: Ints, grid: _BlockGrid, loose: float) -> _Lists:
