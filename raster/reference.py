@@ -24,8 +24,12 @@ _PLACEMENTS = 1 << 14
 _PORTION = 2_000_000
 """Pairs of points and elements that are handled at once; a count."""
 
-_STEPS = 100
-"""Most halvings or better of an interval; a count. Float64 is at its end after about 60 halvings."""
+_CHORDS = 40
+"""After so many steps on an interval only halvings; a count. Chords do no good where the distances' difference is flat
+but for a jump, as beside two copies that are nearly the same. Enough for all else."""
+
+_STEPS = _CHORDS + 60
+"""Most steps on an interval; a count. Float64 is at its end after less than 60 halvings."""
 
 
 def encode(copies: Ints) -> NDArray[np.int64]:
@@ -62,7 +66,9 @@ class BisectorPoints(NamedTuple):
 
     `step` (n,) is the number of the step, `place` complex128 the point, from the frame's origin, `before` and `after`
     the codes of the copies on the step's sides. `slope` is the length of the gradient of the distances' difference:
-    an error e of the distances moves the point's edge by at most e / slope.
+    an error e of the distances moves the point's edge by at most e / slope. Where a third copy is as near, as far as
+    rounding tells, the edge may end before the point; then it is the slope of that difference along the edge if that is
+    less.
     """
 
     step: Ints
@@ -175,14 +181,18 @@ class Judge:
             mine = first_least(np.where(owned_by_before, distance, np.inf), of, len(number))
             theirs = first_least(np.where(owned_by_after, distance, np.inf), of, len(number))
             third = distance[nearest] < np.minimum(distance[mine], distance[theirs]) - 4 * self.rounding
-            gradients = (
-                away[mine] / np.maximum(distance[mine], 1e-300),
-                away[theirs] / np.maximum(distance[theirs], 1e-300),
-            )
+            gradient = away / np.maximum(distance, 1e-300)
+            across = gradient[mine] - gradient[theirs]
+            slope = np.abs(across)
+            # A third copy as near, as far as rounding tells, may own the point: the two cease to meet where it falls
+            # behind them, along their bisector.
+            tied = distance < (np.minimum(distance[mine], distance[theirs]) + 4 * self.rounding)[of]
+            tied = np.flatnonzero(tied & ~owned_by_before & ~owned_by_after)
+            turn, falling = 1j * across[of[tied]], gradient[tied] - gradient[mine[of[tied]]]
+            along = np.abs((turn.conj() * falling).real) / np.maximum(np.abs(turn), 1e-300)
+            np.minimum.at(slope, of[tied], along)
             good = ~third
-            found.append(
-                (number[good], place[good], before[good], after[good], np.abs(gradients[0] - gradients[1])[good])
-            )
+            found.append((number[good], place[good], before[good], after[good], slope[good]))
             between = copy[index[nearest]][third]
             number = np.concatenate((number[third], number[third]))
             low, high = np.concatenate((low[third], t[third])), np.concatenate((t[third], high[third]))
@@ -201,7 +211,7 @@ class Judge:
         """Where on start + t stride, low <= t <= high, two copies are equally far; (n,).
 
         By the rule of Anderson and Bjorck, which keeps the root between two values of unlike sign and meets it faster
-        than any power of halves does; a step that does too little is a halving.
+        than any power of halves does; one step of four is a halving, and all are where that has not met it.
         """
 
         def difference(t: Floats, active: Ints) -> Floats:
@@ -224,7 +234,7 @@ class Judge:
             if not len(active):
                 break
             a, b, fa, fb = low[active], high[active], at_low[active], at_high[active]
-            t = np.where(count % 4 == 3, (a + b) / 2, b - fb * ((b - a) / (fb - fa)))
+            t = np.where(count % 4 == 3 or count >= _CHORDS, (a + b) / 2, b - fb * ((b - a) / (fb - fa)))
             t = np.clip(t, a, b)
             f = difference(t, active)
             closer = np.abs(f) < value[active]

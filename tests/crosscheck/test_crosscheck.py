@@ -19,7 +19,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from voronoi_tiles.base.errors import TouchingCopiesError
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.base.tolerance import EPSILON, PROOF_LIMIT
-from voronoi_tiles.crosscheck import CheckReport, crosscheck
+from voronoi_tiles.crosscheck import CheckReport, comparison, crosscheck
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.designs.starters import starter_text
 from voronoi_tiles.groups.wallpaper import GROUPS
@@ -152,6 +152,42 @@ def test_drawn_designs_agree(design: dict[str, Any]) -> None:
         assume(False)
         raise
     assert_sound(check(tiling, samples=64))
+
+
+@pytest.mark.parametrize("exponent", [-9, -6, -4])
+@pytest.mark.parametrize("twist", [1e-1, 1e-6, 1e-8, 1e-9, 1e-10])
+def test_samples_near_corners_agree(twist: float, exponent: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A sample beside a corner, whatever meets there: also copies that nearly are the same, far from which none tells.
+
+    The site is a pair of strokes that a rotation maps onto each other, but for this twist, relative to the cell. The
+    sample is 10 to the power of the exponent from the corner, on the same scale.
+    """
+    rng = np.random.default_rng([round(-np.log10(twist)), -exponent])
+    compared = 0
+    for number in range(2):
+        first, second = (complex(p, q) for p, q in rng.uniform([4, -8], [16, 8], (2, 2)).tolist())
+        away = 60.0 * twist * np.exp(1j * rng.uniform(0.0, 6.0))
+        strokes = [
+            {"segment": [[z.real, z.imag] for z in ends]} for ends in ((first, second), (away - first, away - second))
+        ]
+        group = ("p2", "pgg")[number % 2]
+        cell = {"a": 60.0, "b": 50.0} | ({"angle": 80.0} if group == "p2" else {})
+        try:
+            tiling = Design.from_dict(
+                {"schema": 1, "group": group, "cell": cell, "site": [{"strokes": strokes}]}
+            ).tessellate()
+        except TouchingCopiesError:
+            continue
+        outline = tiling.tiles[0].outline
+        still = cell_frame(tiling.design.lattice, 12)
+        corners = np.flatnonzero(outline.neighbour != np.roll(outline.neighbour, 1))
+        for corner in rng.permutation(outline.start[corners])[:3].tolist():
+            beside = corner + 60.0 * 10.0**exponent * np.exp(1j * rng.uniform(0.0, 6.0))
+            frame = replace(still, origin=still.origin + beside - complex(still.points(6, 6)))
+            monkeypatch.setattr(comparison, "cell_frame", lambda *_, frame=frame, **__: frame)
+            assert_sound(check(tiling, samples=12))
+            compared += 1
+    assert compared >= 3
 
 
 @pytest.mark.usefixtures("opengl")

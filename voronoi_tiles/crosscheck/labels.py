@@ -38,9 +38,10 @@ def compare_labels(subject: Subject) -> tuple[Owners, list[Figure]]:
     # A sample that no outline, or more than one, covers has the label -1: the last entry.
     vector: NDArray[np.int32] = np.append(names[len(image.copies) :], np.int32(-1))[scanned.label]
 
+    limit = 2 * (subject.accuracy + subject.rounding) + 2 * QUANTUM * (abs(subject.frame.u) + abs(subject.frame.v))
     bound = 2 * image.error(image.d2)
     gap = image.d2 - image.d1
-    open_question = gap <= bound
+    open_question = gap <= np.maximum(bound, limit)
     row, column = np.nonzero(open_question | (raster != vector))
     undecided = open_question[row, column]
     wrong = raster[row, column] != vector[row, column]
@@ -49,7 +50,6 @@ def compare_labels(subject: Subject) -> tuple[Owners, list[Figure]]:
     settled, behind = _settle(subject, column, row, codes, vector[row, column])
     raster[row, column] = settled
     excess[undecided] = behind[undecided]
-    limit = 2 * (subject.accuracy + subject.rounding) + 2 * QUANTUM * (abs(subject.frame.u) + abs(subject.frame.v))
     wrong[undecided] = behind[undecided] > limit
 
     labels = Figure(
@@ -60,8 +60,8 @@ def compare_labels(subject: Subject) -> tuple[Owners, list[Figure]]:
         float(excess[np.isfinite(excess)].max(initial=0.0)),
         limit,
         subject.units,
-        "2 (accuracy + rounding), and 2^-23 of a sample for the scan; where the image's two distances are within twice "
-        f"its error ({float(np.max(bound)):.2g} at most) float64 decides: {int(undecided.sum()):,} times",
+        "2 (accuracy + rounding), and 2^-23 of a sample for the scan; where the image's distances are within this, or "
+        f"twice its error ({float(np.max(bound)):.2g} at most), float64 decides: {int(undecided.sum()):,} times",
         _marks(subject, column[wrong], row[wrong], excess[wrong]),
     )
     strays = np.flatnonzero((scanned.count != 1).ravel() | (scanned.label < 0).ravel())
