@@ -62,13 +62,13 @@ class Near(NamedTuple):
 
 
 class BisectorPoints(NamedTuple):
-    """Points that are equally far from two copies and farther from all others, on steps between samples.
+    """Points that are equally far from two copies and from no other nearer, on steps between samples.
 
     `step` (n,) is the number of the step, `place` complex128 the point, from the frame's origin, `before` and `after`
     the codes of the copies on the step's sides. `slope` is the length of the gradient of the distances' difference:
     an error e of the distances moves the point's edge by at most e / slope. Where a third copy is as near, as far as
-    rounding tells, the edge may end before the point; then it is the slope of that difference along the edge if that is
-    less.
+    rounding tells, the point is not `alone` (bool): the edge may end before it, even in another point, and the slope is
+    that along the edge, if less.
     """
 
     step: Ints
@@ -76,6 +76,7 @@ class BisectorPoints(NamedTuple):
     before: NDArray[np.int64]
     after: NDArray[np.int64]
     slope: Floats
+    alone: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,13 +128,14 @@ class Judge:
         lists = self.candidates
         first, last = lists.element_start[lists.run_start[block]], lists.element_start[lists.run_start[block + 1]]
         for part in _portions(last - first):
-            step, place, one, other, slope = self._certify(
+            found = self._certify(
                 column[part], row[part], down[part], before[part], after[part], first[part], last[part]
             )
-            parts.append((step + part.start, place, one, other, slope))
+            parts.append(found._replace(step=found.step + part.start))
         if not parts:
-            none = np.zeros(0, np.int64)
-            return BisectorPoints(none.astype(np.intp), none.astype(complex), none, none, none.astype(float))
+            none = np.zeros(0)
+            codes = none.astype(np.int64)
+            return BisectorPoints(none.astype(np.intp), none.astype(complex), codes, codes, none, none.astype(bool))
         return BisectorPoints(*(np.concatenate(column) for column in zip(*parts, strict=True)))
 
     def _certify(
@@ -191,8 +193,10 @@ class Judge:
             turn, falling = 1j * across[of[tied]], gradient[tied] - gradient[mine[of[tied]]]
             along = np.abs((turn.conj() * falling).real) / np.maximum(np.abs(turn), 1e-300)
             np.minimum.at(slope, of[tied], along)
+            alone = np.ones(len(number), bool)
+            alone[of[tied]] = False
             good = ~third
-            found.append((number[good], place[good], before[good], after[good], slope[good]))
+            found.append((number[good], place[good], before[good], after[good], slope[good], alone[good]))
             between = copy[index[nearest]][third]
             number = np.concatenate((number[third], number[third]))
             low, high = np.concatenate((low[third], t[third])), np.concatenate((t[third], high[third]))

@@ -178,16 +178,42 @@ def test_samples_near_corners_agree(twist: float, exponent: int, monkeypatch: py
             ).tessellate()
         except TouchingCopiesError:
             continue
-        outline = tiling.tiles[0].outline
-        still = cell_frame(tiling.design.lattice, 12)
-        corners = np.flatnonzero(outline.neighbour != np.roll(outline.neighbour, 1))
-        for corner in rng.permutation(outline.start[corners])[:3].tolist():
-            beside = corner + 60.0 * 10.0**exponent * np.exp(1j * rng.uniform(0.0, 6.0))
-            frame = replace(still, origin=still.origin + beside - complex(still.points(6, 6)))
-            monkeypatch.setattr(comparison, "cell_frame", lambda *_, frame=frame, **__: frame)
-            assert_sound(check(tiling, samples=12))
-            compared += 1
+        compared += check_beside_corners(tiling, 60.0 * 10.0**exponent, rng, monkeypatch)
     assert compared >= 3
+
+
+@pytest.mark.parametrize("group", ["p3m1", "p4m", "p31m"])
+def test_samples_near_centres_agree(group: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where six or eight tiles meet, far from two that nearly touch, and so also from their images.
+
+    The last tie with the first, as far as rounding tells, though they share no edge.
+    """
+    compared = 0
+    for number in range(8):
+        rng = np.random.default_rng(number)
+        design = strategies.make_design(strategies.Dice(rng), "beside a mirror", group)[1]
+        try:
+            tiling = Design.from_dict(design).tessellate()
+        except TouchingCopiesError:
+            continue
+        compared += check_beside_corners(tiling, 10.0 ** rng.uniform(-6, -2), rng, monkeypatch)
+    assert compared >= 3
+
+
+def check_beside_corners(
+    tiling: Tiling, distance: float, rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+) -> int:
+    """Cross-check with a sample at a distance from a corner, for three corners of the first tile; their number."""
+    outline = tiling.tiles[0].outline
+    still = cell_frame(tiling.design.lattice, 12)
+    corners = np.flatnonzero(outline.neighbour != np.roll(outline.neighbour, 1))
+    chosen = rng.permutation(outline.start[corners])[:3]
+    for corner in chosen.tolist():
+        beside = corner + distance * np.exp(1j * rng.uniform(0.0, 6.0))
+        frame = replace(still, origin=still.origin + beside - complex(still.points(6, 6)))
+        monkeypatch.setattr(comparison, "cell_frame", lambda *_, frame=frame, **__: frame)
+        assert_sound(check(tiling, samples=12))
+    return len(chosen)
 
 
 @pytest.mark.usefixtures("opengl")

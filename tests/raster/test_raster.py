@@ -952,6 +952,7 @@ def test_crossings_are_equidistant_and_nothing_is_nearer(group: str) -> None:
         smooth = np.abs(difference[:, 1:].sum(axis=1)) / away <= 1e-3 + 8 * slack / away
         assert smooth.mean() > 0.8
         # Where a third copy is as near the edge may end: never is the slope greater for that.
+        assert not (found.alone & ~alone).any()
         assert np.abs(slope - found.slope)[smooth & alone].max() <= 1e-3 + 8 * slack / away
         assert (found.slope - slope)[smooth].max() <= 1e-3 + 8 * slack / away
     assert through > 0
@@ -985,7 +986,7 @@ def test_nothing_asked_nothing_answered() -> None:
     none = np.zeros(0)
     assert [len(column) for column in asked.near(none, none)] == [0, 0, 0]
     ints, codes = none.astype(np.intp), none.astype(np.int64)
-    assert [len(column) for column in asked.certify(ints, ints, none.astype(bool), codes, codes)] == [0] * 5
+    assert [len(column) for column in asked.certify(ints, ints, none.astype(bool), codes, codes)] == [0] * 6
 
 
 def test_judging_in_portions_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -46,10 +46,12 @@ def compare_crossings(subject: Subject, owned: Owners) -> list[Figure]:
             outline, subject.beyond[number], home[chosen], beyond[chosen], reach
         )
     lost = nearest > limit
-    renamed = ~lost & (named > limit)
+    unnamed = ~lost & (named > limit)
+    # Where a third copy is as near, as far as rounding tells, its edge may be there instead.
+    renamed = unnamed & np.tile(found.alone, 2)
     _measure(subject, lost, site, home, nearest)
-    sound = ~(lost | renamed)
-    measured = np.where(lost, nearest, named)
+    sound = ~(lost | unnamed)
+    measured = np.where(sound, named, nearest)
     worst = int(np.argmax(np.where(np.isfinite(measured), measured, 0.0) / limit)) if len(limit) else 0
     count = len(own)
     positions = Figure(
