@@ -188,8 +188,8 @@ class Judge:
             slope = np.abs(across)
             # A third copy as near, as far as rounding tells, may own the point: the two cease to meet where it falls
             # behind them, along their bisector.
-            tied = distance < (np.minimum(distance[mine], distance[theirs]) + 4 * self.rounding)[of]
-            tied = np.flatnonzero(tied & ~owned_by_before & ~owned_by_after)
+            close = distance < (np.minimum(distance[mine], distance[theirs]) + 4 * self.rounding)[of]
+            tied = np.flatnonzero(close & ~owned_by_before & ~owned_by_after)
             turn, falling = 1j * across[of[tied]], gradient[tied] - gradient[mine[of[tied]]]
             along = np.abs((turn.conj() * falling).real) / np.maximum(np.abs(turn), 1e-300)
             np.minimum.at(slope, of[tied], along)
