@@ -112,18 +112,26 @@ def _maps_onto_itself(images: Complexes, nodes: Complexes, segments: Ints, close
 
 @dataclass(frozen=True, slots=True)
 class Copies:
-    """Copies of a site: copy k is unit[k] z + shift[k], or where `conj[k]` (bool) unit[k] conj(z) + shift[k].
+    """Copies of bundles of sites: unit[k] z + shift[k], or where `conj[k]` (bool) unit[k] conj(z) + shift[k].
 
-    `unit` and `shift` are complex128 (n,); `motions` (int64, n x 6) are the same as exact motions.
+    A bundle is the sites that are copied by the same motions; copy k is one of all sites of the bundle `bundle[k]`
+    (intp, n). `unit` and `shift` are complex128 (n,); `motions` (int64, n x 6) are the same as exact motions. Where the
+    copies are those of several bundles, the first are the identities: copy k is the bundle k where it was placed.
     """
 
     motions: npt.NDArray[np.int64]
     unit: Complexes
     shift: Complexes
     conj: Bools
+    bundle: Ints
 
     def __len__(self) -> int:
         return len(self.unit)
+
+    @property
+    def bundles(self) -> int:
+        """The number of bundles."""
+        return int(self.bundle.max()) + 1
 
 
 def copies_near(action: Action, base: Placed, other: Placed) -> Copies:
@@ -166,4 +174,6 @@ def copies_near(action: Action, base: Placed, other: Placed) -> Copies:
         order = np.concatenate((identity, np.delete(np.arange(len(motions)), identity)))
         motions, which = motions[order], which[order]
     shift = action.cartesian(motions[:, 4] / 2, motions[:, 5] / 2)
-    return Copies(motions=motions, unit=unit[which], shift=shift, conj=conj[which])
+    return Copies(
+        motions=motions, unit=unit[which], shift=shift, conj=conj[which], bundle=np.zeros(len(motions), np.intp)
+    )

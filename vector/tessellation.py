@@ -13,19 +13,18 @@ from functools import cached_property
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, Ints
+from voronoi_tiles.base.arrays import Complexes, Ints, offsets_of
 from voronoi_tiles.base.errors import ProofError
+from voronoi_tiles.base.maps import move
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.base.tolerance import SAME_POINT
 from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.vector.arcs import Neighbour
 from voronoi_tiles.vector.cells.bisectors import TouchingElementsError
-from voronoi_tiles.vector.cells.candidates import build_hierarchy
-from voronoi_tiles.vector.cells.cells import UnboundedCellError, bound_cells
+from voronoi_tiles.vector.cells.cells import Parts, UnboundedCellError, bound_cells
 from voronoi_tiles.vector.cells.half_edges import Contour, enclosed, trace_contour
-from voronoi_tiles.vector.cells.images import surround
-from voronoi_tiles.vector.cells.pencils import make_rows
+from voronoi_tiles.vector.cells.pencils import Rows, make_rows
 from voronoi_tiles.vector.cells.touching import refuse_touching
 from voronoi_tiles.vector.cells.trace import OpenBoundaryError, trace_boundary
 from voronoi_tiles.vector.complex.boundary import TileBoundary
@@ -33,7 +32,7 @@ from voronoi_tiles.vector.complex.edges import UnpairedEdgeError, find_edges
 from voronoi_tiles.vector.complex.period import Period, make_period
 from voronoi_tiles.vector.complex.quotient import Quotient, build_quotient
 from voronoi_tiles.vector.complex.traced import Traced, clearance, with_curves
-from voronoi_tiles.vector.copies import Placed, copies_near, place, translation
+from voronoi_tiles.vector.copies import Copies, Placed, copies_near, place, translation
 from voronoi_tiles.vector.motions import (
     IDENTITY,
     Action,
@@ -203,16 +202,79 @@ def _trace(action: Action, placed: list[Placed], contours: list[Contour], tile: 
     """The boundary of one tile, and the site's distance from the nearest of its vertices."""
     contour = contours[tile]
     copies = [copies_near(action, placed[tile], other) for other in placed]
-    targets = [
-        (surround(other, near, own=t == tile), build_hierarchy(other, near))
-        for t, (other, near) in enumerate(zip(contours, copies, strict=True))
+    images = [
+        move(other.nodes, near.unit[:, None], near.shift[:, None], near.conj[:, None])
+        for other, near in zip(contours, copies, strict=True)
     ]
-    strangers = [around.node.reshape(-1) for t, (around, _) in enumerate(targets) if t != tile]
-    siblings = targets[tile][0].node[1:].reshape(-1)
+    strangers = [nodes.reshape(-1) for t, nodes in enumerate(images) if t != tile]
+    siblings = images[tile][1:].reshape(-1)
     inside = enclosed(contour, np.concatenate([np.zeros(0, complex), *strangers]), siblings)
     rows = make_rows(contour, action.covering_radius, inside)
-    parts = bound_cells(rows, contour, targets, action.covering_radius)
+    parts = _bound_cells_of_one(action, placed, contours, tile, copies, rows)
     inner = (parts.target == tile) & (parts.copy == 0)
     # Beside the shorter vector of the cell: an edge as long as the longer one may turn about what is left out.
     boundary = trace_boundary(rows, contour, parts, inner, SAME_POINT * abs(action.lattice.reduced_basis[0]))
     return with_curves(boundary, rows, contours, tile, parts, copies), clearance(boundary, rows, parts)
+
+
+@dataclass(frozen=True, slots=True)
+class _PartsOfOne(Parts):
+    """Parts of one site's rows: beyond part k lies the item `item[k]` of the copy `copy[k]` of the site `target[k]`."""
+
+    target: Ints
+
+
+def _bound_cells_of_one(
+    action: Action, placed: list[Placed], contours: list[Contour], tile: int, near: list[Copies], rows: Rows
+) -> _PartsOfOne:
+    """What bounds the cells of one site, by the search of all sites: each site is a bundle of its own."""
+    counts = np.array([len(p.segments) for p in placed])
+    half_edges, nodes = offsets_of(2 * counts), offsets_of([len(p.nodes) for p in placed])
+    lone = offsets_of([len(c.corner_node) - len(c.source) for c in contours])
+    everything = trace_contour(
+        np.concatenate([p.nodes for p in placed]),
+        np.concatenate([p.segments + first for p, first in zip(placed, nodes, strict=False)]),
+    )
+    node_bundle = np.repeat(np.arange(len(placed)), np.diff(nodes))
+    # The copies near the site that are not where they were placed, behind the identities.
+    others = [np.flatnonzero((copies.motions != IDENTITY).any(axis=1)) for copies in near]
+    bundle = np.repeat(np.arange(len(near)), [len(index) for index in others])
+    still = np.ones(len(near), bool)
+    copies = Copies(
+        motions=np.concatenate(
+            [np.tile(IDENTITY, (len(near), 1)), *(c.motions[i] for c, i in zip(near, others, strict=True))]
+        ),
+        unit=np.concatenate([still.astype(complex), *(c.unit[i] for c, i in zip(near, others, strict=True))]),
+        shift=np.concatenate([0j * still, *(c.shift[i] for c, i in zip(near, others, strict=True))]),
+        conj=np.concatenate([~still, *(c.conj[i] for c, i in zip(near, others, strict=True))]),
+        bundle=np.append(np.arange(len(near)), bundle),
+    )
+    split, count = 2 * len(placed[tile].segments), half_edges[-1]
+    shifted = replace(
+        rows,
+        half_edge=np.where(rows.half_edge >= 0, rows.half_edge + half_edges[tile], -1),
+        corner=np.where(
+            rows.corner >= split,
+            rows.corner - split + count + lone[tile],
+            np.where(rows.corner >= 0, rows.corner + half_edges[tile], -1),
+        ),
+    )
+    parts = bound_cells(shifted, everything, copies, node_bundle, action.covering_radius)
+    item = parts.item
+    corner = np.where(item >= count, item - count, item)
+    target = node_bundle[
+        np.concatenate((everything.corner_node, everything.source))[
+            corner + (item < count) * len(everything.corner_node)
+        ]
+    ]
+    there = 2 * counts[target]
+    local = np.where(corner >= count, corner - count - lone[target] + there, corner - half_edges[target])
+    # Back to the numbers of the copies near the site.
+    number = np.zeros(len(copies), np.intp)
+    number[len(near) :] = np.concatenate(others)
+    for t, known in enumerate(near):
+        own = np.flatnonzero((known.motions == IDENTITY).all(axis=1))
+        number[t] = own[0] if len(own) else 0
+    return _PartsOfOne(
+        parts.row, number[parts.copy], np.where(item >= count, there + local, local), parts.begin, parts.end, target
+    )

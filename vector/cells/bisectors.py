@@ -28,14 +28,11 @@ are the same expression, and must come out as the same bits wherever they stand 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TypeVar
 
 import numpy as np
-import numpy.typing as npt
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
 from voronoi_tiles.vector.cells.candidates import Bounds, Candidates
-from voronoi_tiles.vector.cells.half_edges import Contour
 from voronoi_tiles.vector.cells.images import Surroundings
 from voronoi_tiles.vector.cells.partial_quadratics import PartialQuadratics, Quadratics
 from voronoi_tiles.vector.cells.pencils import Rows
@@ -51,37 +48,32 @@ _TINY = 1e-6
 _SLACK = 1e-9
 
 
-_Scalar = TypeVar("_Scalar", bound=np.generic)
-
-
 class TouchingElementsError(ArithmeticError):
     """A node of one copy lies on another copy."""
 
 
-def find_bisectors(
-    rows: Rows, contour: Contour, targets: list[tuple[Surroundings, Candidates]], bounds: Bounds
-) -> PartialQuadratics:
-    """All bisectors that may shape the cells of a site's rows, sorted by row.
+def find_bisectors(rows: Rows, around: Surroundings, candidates: Candidates, bounds: Bounds) -> PartialQuadratics:
+    """All bisectors that may shape the cells of rows, sorted by row.
 
-    `targets` has for each site its copies and the pairs to look at; `bounds` are the rows', and what lies above them is
-    left out. Raises TouchingElementsError where a node lies, but for rounding, on an element of another copy.
+    `around` are all copies, `candidates` the pairs to look at; `bounds` are the rows', and what lies above them is left
+    out. Raises TouchingElementsError where a node lies, but for rounding, on an element of another copy.
     """
+    segments = len(around.contour.source) // 2
+    row, copy, item = _items(candidates, segments)
+    pairs = _RowPairs(rows, around, bounds.rounding, row, copy, item)
+    of_half_edge = rows.straight[row]
+    of_corner = ~of_half_edge
+    half_edge, corner = item < 2 * segments, around.contour.bounding[item]
     found: list[PartialQuadratics] = []
-    for target, (around, candidates) in enumerate(targets):
-        row, copy, item = _items(candidates, around.segments)
-        pairs = _RowPairs(rows, contour, target, around, bounds.rounding, row, copy, item)
-        of_half_edge = rows.straight[row]
-        of_corner = ~of_half_edge
-        half_edge, corner = item < 2 * around.segments, around.bounding[item]
-        for chosen, bisectors in (
-            (of_half_edge & half_edge, _half_edge_with_half_edge),
-            (of_half_edge & corner, _half_edge_with_corner),
-            (of_corner & half_edge, _corner_with_half_edge),
-            (of_corner & corner, _corner_with_corner),
-        ):
-            index = np.flatnonzero(chosen)
-            if len(index):
-                found.append(bisectors(pairs.take(index)))
+    for chosen, bisectors in (
+        (of_half_edge & half_edge, _half_edge_with_half_edge),
+        (of_half_edge & corner, _half_edge_with_corner),
+        (of_corner & half_edge, _corner_with_half_edge),
+        (of_corner & corner, _corner_with_corner),
+    ):
+        index = np.flatnonzero(chosen)
+        if len(index):
+            found.append(bisectors(pairs.take(index)))
     functions = PartialQuadratics.concatenate(found)
     kept = _below_bounds(rows, bounds, functions)
     return functions.take(kept[np.argsort(functions.row[kept], kind="stable")])
@@ -102,13 +94,10 @@ def _items(candidates: Candidates, segments: int) -> tuple[Ints, Ints, Ints]:
 class _RowPairs:
     """Pairs of a row and an element beyond: half-edge or corner `item` of a copy (`row`, `copy`, `item`: intp, k).
 
-    `rows` and `contour` are of the base site, `around` are the copies of the site with the number `target`;
-    coordinates may be off by `rounding`.
+    `around` are all copies; coordinates may be off by `rounding`.
     """
 
     rows: Rows
-    contour: Contour
-    target: int
     around: Surroundings
     rounding: float
     row: Ints
@@ -117,13 +106,21 @@ class _RowPairs:
 
     def take(self, index: Ints) -> _RowPairs:
         """The pairs at the given indices."""
-        some = self.row[index], self.copy[index], self.item[index]
-        return _RowPairs(self.rows, self.contour, self.target, self.around, self.rounding, *some)
+        return _RowPairs(self.rows, self.around, self.rounding, self.row[index], self.copy[index], self.item[index])
 
-    def of(self, values: npt.NDArray[_Scalar], index: Ints) -> npt.NDArray[_Scalar]:
-        """What each pair's copy has at an index, among the values of all copies, (copies, n)."""
-        result: npt.NDArray[_Scalar] = values.reshape(-1)[self.copy * values.shape[1] + index]
-        return result
+    @property
+    def own(self) -> Bools:
+        """Where what lies beyond is where it was placed: there it may be the row's element, or one that it meets."""
+        return self.copy < self.around.copies.bundles
+
+    def direction(self) -> Complexes:
+        """The unit vectors of the half-edges beyond."""
+        return self.around.direction[self.around.half_edges.place(self.copy, self.item)]
+
+    def beside(self) -> tuple[Complexes, Complexes]:
+        """The unit vectors of the half-edges before and after the corners beyond."""
+        place = self.around.corners.place(self.copy, self.item)
+        return self.around.arriving[place], self.around.leaving[place]
 
     def functions(
         self, item: Ints, low: Floats, high: Floats, quadratics: Quadratics, tiny: Bools | None = None
@@ -145,8 +142,7 @@ class _RowPairs:
             a, b, c, m = a[index], b[index], c[index], m[index]
         low, high = np.maximum(low, self.rows.low[row]), np.minimum(high, self.rows.high[row])
         i = np.flatnonzero(low < high)
-        target = np.full(len(i), self.target)
-        return PartialQuadratics(row[i], low[i], high[i], a[i], b[i], c[i], m[i], target, copy[i], item[i])
+        return PartialQuadratics(row[i], low[i], high[i], a[i], b[i], c[i], m[i], copy[i], item[i])
 
 
 def _half_edge_with_half_edge(pairs: _RowPairs) -> PartialQuadratics:
@@ -157,23 +153,21 @@ def _half_edge_with_half_edge(pairs: _RowPairs) -> PartialQuadratics:
     along the other half-edge at speed 1, s falls at speed 1 and h at speed k: so k is the slope, and the interval is as
     long as the other half-edge.
     """
-    rows, contour, around = pairs.rows, pairs.contour, pairs.around
+    rows, around, contour = pairs.rows, pairs.around, pairs.around.contour
     row, item = pairs.row, pairs.item
     axis, origin = rows.axis[row], rows.origin[row]
-    start, end = pairs.of(around.start, item), pairs.of(around.end, item)
-    p1, q1 = _coordinates(axis, pairs.of(around.node, start) - origin)
-    p2, q2 = _coordinates(axis, pairs.of(around.node, end) - origin)
-    k = _bisecting_slope(*_coordinates(axis, pairs.of(around.direction, item)), _INFINITE)
-    other = np.ones(len(row), bool)
-    if around.own:
-        own, half_edge = pairs.copy == 0, rows.half_edge[row]
-        # The end of the row's half-edge lies on its line and at its length, exactly.
-        last, length = contour.target[half_edge], contour.length[half_edge]
-        for node, p, q in ((start, p1, q1), (end, p2, q2)):
-            here = own & (node == last)
-            q[here] = 0.0
-            p[here] = length[here]
-        other = ~(own & (item >> 1 == half_edge >> 1))
+    start, end = around.ends(pairs.copy, item)
+    p1, q1 = _coordinates(axis, around.position(pairs.copy, start) - origin)
+    p2, q2 = _coordinates(axis, around.position(pairs.copy, end) - origin)
+    k = _bisecting_slope(*_coordinates(axis, pairs.direction()), _INFINITE)
+    own, half_edge = pairs.own, rows.half_edge[row]
+    # The end of the row's half-edge lies on its line and at its length, exactly.
+    last, length = contour.target[half_edge], contour.length[half_edge]
+    for node, p, q in ((start, p1, q1), (end, p2, q2)):
+        here = own & (node == last)
+        q[here] = 0.0
+        p[here] = length[here]
+    other = ~(own & (item >> 1 == half_edge >> 1))
     s1, s2 = p1 + q1 * k, p2 + q2 * k
     valid = other & (np.maximum(q1, q2) > 0.0) & (np.abs(k) < _STEEPEST) & (s1 > rows.low[row]) & (s2 < rows.high[row])
     v = np.flatnonzero(valid)
@@ -196,15 +190,12 @@ def _half_edge_with_corner(pairs: _RowPairs) -> PartialQuadratics:
     the corner turns right, from its arriving to its leaving line, the angle a of the line falls, and s with it. Raises
     TouchingElementsError where a corner lies on the row's half-edge.
     """
-    rows, contour, around = pairs.rows, pairs.contour, pairs.around
+    rows, around, contour = pairs.rows, pairs.around, pairs.around.contour
     row = pairs.row
-    node = around.corner[pairs.item]
-    p, q = _coordinates(rows.axis[row], pairs.of(around.node, node) - rows.origin[row])
+    node = contour.corner_node[pairs.item]
+    p, q = _coordinates(rows.axis[row], around.position(pairs.copy, node) - rows.origin[row])
     half_edge = rows.half_edge[row]
-    other = np.ones(len(row), bool)
-    if around.own:
-        own_end = (node == contour.source[half_edge]) | (node == contour.target[half_edge])
-        other = ~((pairs.copy == 0) & own_end)
+    other = ~(pairs.own & ((node == contour.source[half_edge]) | (node == contour.target[half_edge])))
     on_line = np.flatnonzero(other & (np.abs(q) <= pairs.rounding))
     half_length = contour.length[half_edge[on_line]] / 2
     if (np.abs(p[on_line] - half_length) <= half_length + pairs.rounding).any():
@@ -212,11 +203,12 @@ def _half_edge_with_corner(pairs: _RowPairs) -> PartialQuadratics:
     v = np.flatnonzero(other & (q > 0.0))
     pairs, p, q = pairs.take(v), p[v], q[v]
     corner, axis = pairs.item, rows.axis[pairs.row]
-    leaving = _bisecting_slope(*_coordinates(axis, pairs.of(around.leaving, corner)), -_INFINITE)
-    arriving = _bisecting_slope(*_coordinates(axis, pairs.of(around.arriving, corner)), _INFINITE)
-    tiny = around.turn[corner] <= _TINY
+    before, after = pairs.beside()
+    leaving = _bisecting_slope(*_coordinates(axis, after), -_INFINITE)
+    arriving = _bisecting_slope(*_coordinates(axis, before), _INFINITE)
+    tiny = contour.turn[corner] <= _TINY
     low, high = p + q * leaving, p + q * _unswapped(leaving, arriving, tiny)
-    return pairs.functions(2 * around.segments + corner, low, high, _height_of_corner(p, q), tiny)
+    return pairs.functions(len(contour.source) + corner, low, high, _height_of_corner(p, q), tiny)
 
 
 def _corner_with_half_edge(pairs: _RowPairs) -> PartialQuadratics:
@@ -227,21 +219,19 @@ def _corner_with_half_edge(pairs: _RowPairs) -> PartialQuadratics:
 
     The corner sees a half-edge only from its left, and each point of it on one ray: x rises from start to end.
     """
-    rows, contour, around = pairs.rows, pairs.contour, pairs.around
+    rows, around, contour = pairs.rows, pairs.around, pairs.around.contour
     row, item = pairs.row, pairs.item
     origin = rows.origin[row]
-    start, end = pairs.of(around.start, item), pairs.of(around.end, item)
-    to1, to2 = pairs.of(around.node, start) - origin, pairs.of(around.node, end) - origin
-    direction = pairs.of(around.direction, item)
+    start, end = around.ends(pairs.copy, item)
+    to1, to2 = around.position(pairs.copy, start) - origin, around.position(pairs.copy, end) - origin
+    direction = pairs.direction()
     along1, left1 = _coordinates(direction, to1)
     along2, left2 = _coordinates(direction, to2)
     square1, square2 = to1.real**2 + to1.imag**2, to2.real**2 + to2.imag**2
     # The distance of the line, positive where the corner lies on its left; the nearer end has the smaller error.
     distance = -np.where(square1 < square2, left1, left2)
-    valid = distance > 0.0
-    if around.own:
-        here = contour.corner_node[rows.corner[row]]
-        valid &= ~((pairs.copy == 0) & ((start == here) | (end == here)))
+    here = contour.corner_node[rows.corner[row]]
+    valid = (distance > 0.0) & ~(pairs.own & ((start == here) | (end == here)))
     v = np.flatnonzero(valid)
     pairs, direction, distance = pairs.take(v), direction[v], distance[v]
     row, axis = pairs.row, rows.axis[pairs.row]
@@ -269,24 +259,23 @@ def _corner_with_corner(pairs: _RowPairs) -> PartialQuadratics:
     On a ray in direction t the perpendicular bisector is at r cos(t - f) = d / 2, so 1 / r = 2 cos(t - f) / d; and
     (1 + x^2) cos t = 1 - x^2, (1 + x^2) sin t = 2 x. Raises TouchingElementsError where corners of two copies coincide.
     """
-    rows, contour, around = pairs.rows, pairs.contour, pairs.around
-    node = around.corner[pairs.item]
-    away = pairs.of(around.node, node) - rows.origin[pairs.row]
+    rows, around, contour = pairs.rows, pairs.around, pairs.around.contour
+    node = contour.corner_node[pairs.item]
+    away = around.position(pairs.copy, node) - rows.origin[pairs.row]
     square = away.real**2 + away.imag**2
-    other = np.ones(len(node), bool)
-    if around.own:
-        other = ~((pairs.copy == 0) & (node == contour.corner_node[rows.corner[pairs.row]]))
+    other = ~(pairs.own & (node == contour.corner_node[rows.corner[pairs.row]]))
     if (square[other] <= pairs.rounding**2).any():
         raise TouchingElementsError
     v = np.flatnonzero(other)
     pairs, away, square = pairs.take(v), away[v], square[v]
     corner, axis = pairs.item, rows.axis[pairs.row]
-    low = _touching_ray(pairs.of(around.arriving, corner), axis, away, square, -_INFINITE)
-    high = _touching_ray(pairs.of(around.leaving, corner), axis, away, square, _INFINITE)
-    tiny = around.turn[corner] <= _TINY
+    before, after = pairs.beside()
+    low = _touching_ray(before, axis, away, square, -_INFINITE)
+    high = _touching_ray(after, axis, away, square, _INFINITE)
+    tiny = contour.turn[corner] <= _TINY
     high = _unswapped(low, high, tiny)
     quadratics = _distance_of_corner(*_coordinates(axis, away), square)
-    return pairs.functions(2 * around.segments + corner, low, high, quadratics, tiny)
+    return pairs.functions(len(contour.source) + corner, low, high, quadratics, tiny)
 
 
 def _height_of_corner(p: Floats, q: Floats) -> Quadratics:

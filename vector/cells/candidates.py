@@ -6,90 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
-from voronoi_tiles.base.box_join import z_order
-from voronoi_tiles.base.maps import move
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
 from voronoi_tiles.base.tolerance import EPSILON
-from voronoi_tiles.vector.cells.half_edges import Contour
+from voronoi_tiles.vector.cells.hierarchy import Hierarchy, Level
 from voronoi_tiles.vector.cells.pencils import Rows
-from voronoi_tiles.vector.copies import Copies
 
-# Children of an inner capsule: eight keeps the levels few.
-_BRANCH = 8
 # Relative slack of the pruning tests, far above their rounding errors.
 _SLACK = 1e-9
-
-
-@dataclass(frozen=True, slots=True)
-class Level:
-    """Capsules of all copies that together hold all elements.
-
-    A capsule is all that is within a radius of a segment; it fits a run of a smooth curve's chords far better than a
-    disc. Its segment runs from `start` to `end` (complex128, copies x k) and its radius is `radius` (float64, k);
-    `anchor_start` and `anchor_end` (complex128, copies x k) are the ends of one element in it. Capsule j holds the
-    capsules 8 j to 8 j + 7 of the next level.
-    """
-
-    start: Complexes
-    end: Complexes
-    radius: Floats
-    anchor_start: Complexes
-    anchor_end: Complexes
-
-
-@dataclass(frozen=True, slots=True)
-class Hierarchy:
-    """The elements of a site's copies in nested capsules.
-
-    `levels` go from one capsule around each copy to the elements themselves; `order` (intp, k) is the element of each
-    capsule of the last level, numbered segments first, then isolated nodes.
-    """
-
-    levels: tuple[Level, ...]
-    order: Ints
-
-
-def build_hierarchy(contour: Contour, copies: Copies) -> Hierarchy:
-    """The hierarchy of a site's elements, neighbours in the plane being neighbours in the order."""
-    start, end = contour.nodes[contour.source[::2]], contour.nodes[contour.target[::2]]
-    isolated = contour.nodes[contour.corner_node[len(contour.source) :: 4]]
-    if len(isolated):
-        start, end = np.concatenate((start, isolated)), np.concatenate((end, isolated))
-    middle = (start + end) / 2
-    order = z_order(middle) if len(middle) > _BRANCH else np.arange(len(middle))
-    start, end = start[order], end[order]
-    unit, shift, conj = copies.unit[:, None], copies.shift[:, None], copies.conj[:, None]
-    starts, ends = move(start, unit, shift, conj), move(end, unit, shift, conj)
-    levels = [Level(starts, ends, np.zeros(len(order)), starts, ends)]
-    size = _BRANCH
-    while len(levels[0].radius) > 1:
-        first = np.arange(0, len(order), size)
-        from_, to, radius = _capsules(start, end, first)
-        anchor = np.minimum(first + size // 2, len(order) - 1)
-        from_, to = move(from_, unit, shift, conj), move(to, unit, shift, conj)
-        levels.insert(0, Level(from_, to, radius, starts[:, anchor], ends[:, anchor]))
-        size *= _BRANCH
-    return Hierarchy(tuple(levels), order)
-
-
-def _capsules(start: Complexes, end: Complexes, first: Ints) -> tuple[Complexes, Complexes, Floats]:
-    """The ends and radii of capsules along the principal axes of runs of segments, which start at `first`."""
-    count = np.diff(np.append(first, len(start)))
-    middle = np.add.reduceat(start + end, first) / (2 * count)
-    which = np.repeat(np.arange(len(first)), count)
-    a, b = start - middle[which], end - middle[which]
-    # The square of a complex number has twice its angle: the sum's half angle is the principal axis.
-    moment = np.add.reduceat(a * a + b * b, first)
-    axis = np.exp(0.5j * np.angle(moment))
-    turned = axis.conj()[which]
-    a, b = a * turned, b * turned
-    low = np.minimum.reduceat(np.minimum(a.real, b.real), first)
-    high = np.maximum.reduceat(np.maximum(a.real, b.real), first)
-    right = np.minimum.reduceat(np.minimum(a.imag, b.imag), first)
-    left = np.maximum.reduceat(np.maximum(a.imag, b.imag), first)
-    across = 1j * (right + left) / 2
-    radius = (left - right) / 2 * (1.0 + _SLACK) + _SLACK * (high - low)
-    return middle + axis * (low + across), middle + axis * (high + across), radius
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,10 +43,8 @@ class TooManyPairsError(Exception):
     """So many rows at once would take too much memory."""
 
 
-def find_candidates(
-    rows: Rows, targets: list[Hierarchy], covering_radius: float, most: float
-) -> tuple[list[Candidates], Bounds]:
-    """For each target, a superset of the pairs in which the element shapes the row's cell; and bounds of the cells.
+def find_candidates(rows: Rows, hierarchy: Hierarchy, covering_radius: float, most: float) -> tuple[Candidates, Bounds]:
+    """A superset of the pairs in which the element shapes the row's cell; and bounds of the cells.
 
     An element matters only if, for some point of the row's cell, it meets the disc about that point that just reaches
     the row's element. The row's bisector with a point z, its champion, bounds the cell. The discs about the points of
@@ -134,51 +55,36 @@ def find_candidates(
     Each anchor may become the champion: bisectors with a point or a segment are highest at the ends of a row. So the
     bounds tighten while the capsules shrink, and the number of pairs per row stays small at each level.
 
-    `targets` are the copies of each site. Raises TooManyPairsError where more than `most` pairs, or four times as many
-    before they are narrowed, would be held at once.
+    Raises TooManyPairsError where more than `most` pairs, or four times as many before they are narrowed, would be held
+    at once.
     """
+    top = hierarchy.levels[0]
     none = np.full(len(rows), np.nan, complex)
     infinite = np.full(len(rows), np.inf)
-    rounding = 16.0 * EPSILON * float(max(np.abs(hierarchy.levels[0].start).max() for hierarchy in targets))
+    rounding = 16.0 * EPSILON * float(np.abs(top.start).max())
     bounds = Bounds(rounding, height=np.full(len(rows), covering_radius), by_point=infinite, champion=none)
-    pairs: list[tuple[Ints, Ints, Ints]] = []
-    for hierarchy in targets:
-        count = len(hierarchy.levels[0].start)
-        if len(rows) * count > most:
-            raise TooManyPairsError
-        row = np.repeat(np.arange(len(rows)), count)
-        pairs.append((row, np.tile(np.arange(count), len(rows)), np.zeros(len(row), np.intp)))
-    for depth in range(max(len(hierarchy.levels) for hierarchy in targets)):
-        for t, hierarchy in enumerate(targets):
-            if depth < len(hierarchy.levels):
-                level = hierarchy.levels[depth]
-                if depth and len(pairs[t][0]) * _BRANCH > 4 * most:
-                    raise TooManyPairsError
-                row, copy, place = pairs[t] if depth == 0 else _children(*pairs[t], len(level.radius))
-                pairs[t] = _narrow(rows, row, copy, place, level, bounds)
-    found = [
-        Candidates(row, copy, hierarchy.order[place])
-        for (row, copy, place), hierarchy in zip(pairs, targets, strict=True)
-    ]
-    return found, bounds
-
-
-def _children(row: Ints, copy: Ints, place: Ints, count: int) -> tuple[Ints, Ints, Ints]:
-    """The pairs with each capsule replaced by its children on the next level, which has `count` capsules."""
-    child = (place[:, None] * _BRANCH + np.arange(_BRANCH)).reshape(-1)
-    row, copy = np.repeat(row, _BRANCH), np.repeat(copy, _BRANCH)
-    exists = child < count
-    if exists.all():
-        return row, copy, child
-    return row[exists], copy[exists], child[exists]
+    if len(rows) * len(top.start) > most:
+        raise TooManyPairsError
+    row = np.repeat(np.arange(len(rows)), len(top.start))
+    copy, place = np.tile(top.images.copy, len(rows)), np.tile(top.images.thing, len(rows))
+    above: Level | None = None
+    for level in hierarchy.levels:
+        if above is not None:
+            count = above.child[place + 1] - above.child[place]
+            if int(count.sum()) > 4 * most:
+                raise TooManyPairsError
+            row, copy, place = np.repeat(row, count), np.repeat(copy, count), ranges(above.child[place], count)
+        row, copy, place = _narrow(rows, row, copy, place, level, bounds)
+        above = level
+    return Candidates(row, copy, hierarchy.order[place]), bounds
 
 
 def _narrow(rows: Rows, row: Ints, copy: Ints, place: Ints, level: Level, bounds: Bounds) -> tuple[Ints, Ints, Ints]:
     """The pairs whose capsules can matter, after their anchors have tightened the bounds."""
-    kept = _in_reach(rows, row, copy * len(level.radius) + place, level.radius[place], level, bounds)
-    row, copy, place = row[kept], copy[kept], place[kept]
-    flat = copy * len(level.radius) + place
-    anchor = level.anchor_start.reshape(-1)[flat]
+    flat = level.images.place(copy, place)
+    kept = _in_reach(rows, row, flat, level.radius[place], level, bounds)
+    row, copy, place, flat = row[kept], copy[kept], place[kept], flat[kept]
+    anchor = level.anchor_start[flat]
     height = np.maximum(
         _bisector(rows.base0[row], rows.ray0[row], anchor, bounds.rounding),
         _bisector(rows.base1[row], rows.ray1[row], anchor, bounds.rounding),
@@ -191,7 +97,7 @@ def _narrow(rows: Rows, row: Ints, copy: Ints, place: Ints, level: Level, bounds
     wide = np.flatnonzero(_wide(rows, bounds)[row])
     if len(wide):
         at, by = row[wide], flat[wide]
-        start, end = level.anchor_start.reshape(-1)[by], level.anchor_end.reshape(-1)[by]
+        start, end = level.anchor_start[by], level.anchor_end[by]
         height = _bisector_of_segment(rows.base0[at], rows.ray0[at], start, end, bounds.rounding)
         height = np.maximum(height, _bisector_of_segment(rows.base1[at], rows.ray1[at], start, end, bounds.rounding))
         _lower(bounds.height, at, height)
@@ -214,7 +120,7 @@ def _lower(bound: Floats, row: Ints, height: Floats) -> None:
 
 def _in_reach(rows: Rows, row: Ints, flat: Ints, radius: Floats, level: Level, bounds: Bounds) -> Ints:
     """The pairs whose capsule may hold an element that matters."""
-    start, end = level.start.reshape(-1)[flat], level.end.reshape(-1)[flat]
+    start, end = level.start[flat], level.end[flat]
     chord = end - start
     square = chord.real**2 + chord.imag**2
     square[square == 0.0] = 1.0

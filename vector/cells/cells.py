@@ -10,12 +10,14 @@ import numpy as np
 from voronoi_tiles.base.arrays import Complexes, Floats, Ints
 from voronoi_tiles.base.tolerance import EPSILON
 from voronoi_tiles.vector.cells.bisectors import find_bisectors
-from voronoi_tiles.vector.cells.candidates import Hierarchy, TooManyPairsError, find_candidates
+from voronoi_tiles.vector.cells.candidates import TooManyPairsError, find_candidates
 from voronoi_tiles.vector.cells.envelope import lower_envelope
 from voronoi_tiles.vector.cells.half_edges import Contour
-from voronoi_tiles.vector.cells.images import Surroundings
+from voronoi_tiles.vector.cells.hierarchy import build_hierarchy
+from voronoi_tiles.vector.cells.images import surround
 from voronoi_tiles.vector.cells.partial_quadratics import PartialQuadratics
 from voronoi_tiles.vector.cells.pencils import Rows
+from voronoi_tiles.vector.copies import Copies
 
 # Rows that are worked on at once: enough for numpy's overhead to vanish, few enough for some 100 MB.
 _CHUNK = 1024
@@ -27,14 +29,12 @@ _PAIRS = 1_000_000
 class Parts:
     """What bounds the rows' cells: the parts of their lower envelopes, by row and along each row's variable.
 
-    Part k belongs to the row `row[k]` (intp). Beyond it lies an element of the copy `copy[k]` (intp) of the site
-    `target[k]` (intp): `item[k]` (intp) is its half-edge i, or its corner c as h + c, where the site has h half-edges.
-    It runs from `begin[k]` to `end[k]` (complex128). No part is empty, and consecutive ones of a row share their ends,
-    bit for bit.
+    Part k belongs to the row `row[k]` (intp). Beyond it lies an element of the copy `copy[k]` (intp): `item[k]` (intp)
+    is its half-edge i, or its corner c as h + c, where there are h half-edges. It runs from `begin[k]` to `end[k]`
+    (complex128). No part is empty, and consecutive ones of a row share their ends, bit for bit.
     """
 
     row: Ints
-    target: Ints
     copy: Ints
     item: Ints
     begin: Complexes
@@ -45,34 +45,29 @@ class UnboundedCellError(ArithmeticError):
     """A cell came out unbounded, which happens only where copies touch or cross."""
 
 
-def bound_cells(
-    rows: Rows,
-    contour: Contour,
-    targets: list[tuple[Surroundings, Hierarchy]],
-    covering_radius: float,
-) -> Parts:
-    """What bounds every cell of a site.
+def bound_cells(rows: Rows, contour: Contour, copies: Copies, node_bundle: Ints, covering_radius: float) -> Parts:
+    """What bounds every cell of the sites.
 
-    `targets` has for each site its copies, and the same in nested capsules; `covering_radius` is the lattice's. Raises
-    UnboundedCellError where a cell comes out unbounded, TouchingElementsError where a node lies on another copy.
+    `rows` and `contour` are those of all sites, `copies` of all their bundles; `node_bundle` (intp, m) is the bundle of
+    each of the contour's nodes, `covering_radius` the lattice's. Raises UnboundedCellError where a cell comes out
+    unbounded, TouchingElementsError where a node lies on another copy.
     """
     found = []
-    hierarchies = [hierarchy for _, hierarchy in targets]
+    around, hierarchy = surround(contour, copies, node_bundle), build_hierarchy(contour, copies, node_bundle)
     waiting = [(start, min(start + _CHUNK, len(rows))) for start in range(0, len(rows), _CHUNK)][::-1]
     while waiting:
         start, stop = waiting.pop()
         chunk = rows.slice(start, stop)
         most = _PAIRS if stop - start > 1 else inf
         try:
-            candidates, bounds = find_candidates(chunk, hierarchies, covering_radius, most)
+            candidates, bounds = find_candidates(chunk, hierarchy, covering_radius, most)
         except TooManyPairsError:
             middle = (start + stop) // 2
             waiting += [(middle, stop), (start, middle)]
             continue
-        around = [(copies, pairs) for (copies, _), pairs in zip(targets, candidates, strict=True)]
-        functions = find_bisectors(chunk, contour, around, bounds)
+        functions = find_bisectors(chunk, around, candidates, bounds)
         parts = _locate(chunk, functions, *lower_envelope(functions, chunk.low, chunk.high))
-        found.append(Parts(parts.row + start, parts.target, parts.copy, parts.item, parts.begin, parts.end))
+        found.append(Parts(parts.row + start, parts.copy, parts.item, parts.begin, parts.end))
     if len(found) == 1:
         return found[0]
     return Parts(*(np.concatenate([getattr(parts, name) for parts in found]) for name in Parts.__slots__))
@@ -107,8 +102,7 @@ def _locate(rows: Rows, functions: PartialQuadratics, row: Ints, start: Floats, 
     finish = np.empty(len(row), complex)
     finish[inner] = begin[inner + 1]
     finish[last] = _point(rows, row[last], end[last], functions.value(function[last], end[last]))
-    target, copy, item = functions.target[function], functions.copy[function], functions.item[function]
-    return Parts(row, target, copy, item, begin, finish)
+    return Parts(row, functions.copy[function], functions.item[function], begin, finish)
 
 
 def _point(rows: Rows, row: Ints, x: Floats, value: Floats) -> Complexes:

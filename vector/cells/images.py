@@ -1,4 +1,4 @@
-"""The half-edges and corners of a site's copies, as seen from the site whose cells are sought."""
+"""The half-edges and corners of all copies of the sites, as seen from the sites whose cells are sought."""
 
 from __future__ import annotations
 
@@ -6,54 +6,95 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Complexes, Ints, offsets_of, ranges
 from voronoi_tiles.base.maps import move
 from voronoi_tiles.vector.cells.half_edges import Contour
 from voronoi_tiles.vector.copies import Copies
 
 
 @dataclass(frozen=True, slots=True)
-class Surroundings:
-    """The half-edges and corners of all copies of a site, the face on the left of each.
+class Images:
+    """What each copy has of some things: the images of those in its bundle, copy after copy, flat.
 
-    A copy that is turned over has its half-edges run through backwards. `own` says whether copy 0 is the site whose
-    rows are looked at; the site has `segments` segments, and twice as many half-edges.
-
-    `node` (complex128, copies x m) are positions. A half-edge runs from the node `start` to the node `end` (intp,
-    copies x h) in the direction of the unit vector `direction` (complex128, copies x h). A corner lies at the node
-    `corner` (intp, c) and has the angle `turn` (float64, c) of the site's own; where `bounding` (bool, c) it counts
-    among the elements that bound other cells. `arriving` and `leaving` (complex128, copies x c) are the unit vectors
-    of the half-edges before and after it.
+    Image k is that of the thing `thing[k]` in the copy `copy[k]` (intp, k). In copy c the thing t, of its bundle, has
+    the place `first[c] + rank[t]` (intp; copies and things).
     """
 
-    own: bool
-    segments: int
+    thing: Ints
+    copy: Ints
+    first: Ints
+    rank: Ints
+
+    @classmethod
+    def of(cls, bundle: Ints, copies: Copies) -> Images:
+        """The images of things of these bundles, intp (k,), in the order of the things in each copy."""
+        order = np.argsort(bundle, kind="stable")
+        offsets = offsets_of(np.bincount(bundle, minlength=copies.bundles))
+        count = np.diff(offsets)[copies.bundle]
+        rank = np.empty_like(order)
+        rank[order] = np.arange(len(order)) - np.repeat(offsets[:-1], np.diff(offsets))
+        thing = order[ranges(offsets[copies.bundle], count)]
+        return cls(thing, np.repeat(np.arange(len(copies)), count), offsets_of(count)[:-1], rank)
+
+    def place(self, copy: Ints, thing: Ints) -> Ints:
+        """Where the images of things in copies stand, intp (k,)."""
+        return self.first[copy] + self.rank[thing]
+
+    def moved(self, values: Complexes, copies: Copies) -> Complexes:
+        """The images of points, complex128 (things,), in the plane."""
+        return move(values[self.thing], copies.unit[self.copy], copies.shift[self.copy], copies.conj[self.copy])
+
+    def turned(self, values: Complexes, reversed_values: Complexes, copies: Copies) -> Complexes:
+        """The images of directions of half-edges; copies that are turned over run through `reversed_values` back."""
+        conj, unit = copies.conj[self.copy], copies.unit[self.copy]
+        chosen = np.where(conj, reversed_values[self.thing], values[self.thing])
+        return move(chosen, np.where(conj, -unit, unit), np.zeros(1, complex), conj)
+
+
+@dataclass(frozen=True, slots=True)
+class Surroundings:
+    """The half-edges and corners of all copies, the face on the left of each.
+
+    A copy that is turned over has its half-edges run through backwards: from their `target` to their `source`. `node`,
+    `direction`, `arriving` and `leaving` (complex128, flat over the copies) are the positions of nodes, the unit
+    vectors of half-edges, and those of the half-edges before and after a corner; their places are in `nodes`,
+    `half_edges` and `corners`.
+    """
+
+    contour: Contour
+    copies: Copies
+    nodes: Images
+    half_edges: Images
+    corners: Images
     node: Complexes
-    start: Ints
-    end: Ints
     direction: Complexes
-    corner: Ints
-    turn: Floats
-    bounding: Bools
     arriving: Complexes
     leaving: Complexes
 
+    def ends(self, copy: Ints, half_edge: Ints) -> tuple[Ints, Ints]:
+        """The nodes from and to which half-edges run in copies."""
+        source, target, turned = self.contour.source[half_edge], self.contour.target[half_edge], self.copies.conj[copy]
+        return np.where(turned, target, source), np.where(turned, source, target)
 
-def surround(contour: Contour, copies: Copies, *, own: bool) -> Surroundings:
-    """All copies of a contour; `own` where the first of them is the site whose rows are looked at."""
-    unit, shift, conj = copies.unit[:, None], copies.shift[:, None], copies.conj[:, None]
-    turned, still = np.where(conj, -unit, unit), np.zeros((1, 1), complex)
-    before, after = move(contour.arriving, turned, still, conj), move(contour.leaving, turned, still, conj)
+    def position(self, copy: Ints, node: Ints) -> Complexes:
+        """The positions of nodes in copies."""
+        return self.node[self.nodes.place(copy, node)]
+
+
+def surround(contour: Contour, copies: Copies, node_bundle: Ints) -> Surroundings:
+    """All copies of the sites; `node_bundle` (intp, m) is the bundle of each of the contour's nodes."""
+    half_edge_bundle, corner_bundle = node_bundle[contour.source], node_bundle[contour.corner_node]
+    nodes, corners = Images.of(node_bundle, copies), Images.of(corner_bundle, copies)
+    lone = len(corner_bundle) > len(half_edge_bundle)
+    half_edges = Images.of(half_edge_bundle, copies) if lone else corners
     return Surroundings(
-        own=own,
-        segments=len(contour.source) // 2,
-        node=move(contour.nodes, unit, shift, conj),
-        start=np.where(conj, contour.target, contour.source),
-        end=np.where(conj, contour.source, contour.target),
-        direction=move(contour.direction, turned, still, conj),
-        corner=contour.corner_node,
-        turn=contour.turn,
-        bounding=contour.bounding,
-        arriving=np.where(conj, after, before),
-        leaving=np.where(conj, before, after),
+        contour=contour,
+        copies=copies,
+        nodes=nodes,
+        half_edges=half_edges,
+        corners=corners,
+        node=nodes.moved(contour.nodes, copies),
+        direction=half_edges.turned(contour.direction, contour.direction, copies),
+        arriving=corners.turned(contour.arriving, contour.leaving, copies),
+        leaving=corners.turned(contour.leaving, contour.arriving, copies),
     )

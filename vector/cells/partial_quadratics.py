@@ -18,8 +18,8 @@ class PartialQuadratics:
     """Functions a (x - m)^2 + b (x - m) + c on [low, high], the bisectors of a row's element with another one.
 
     Function k belongs to the row `row[k]` (intp), on the interval from `low[k]` to `high[k]`; `a`, `b`, `c` and `m` are
-    its coefficients (float64, k). The other element is one of the copy `copy[k]` of the site `target[k]`: `item[k]`
-    (intp) is its half-edge i, or its corner c as h + c, where the site has h half-edges.
+    its coefficients (float64, k). The other element is one of the copy `copy[k]`: `item[k]` (intp) is its half-edge i,
+    or its corner c as h + c, where there are h half-edges.
     """
 
     row: Ints
@@ -29,7 +29,6 @@ class PartialQuadratics:
     b: Floats
     c: Floats
     m: Floats
-    target: Ints
     copy: Ints
     item: Ints
 
