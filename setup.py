@@ -26,6 +26,7 @@ from setuptools.errors import CompileError, OptionError
 
 SOURCES = [
     "voronoi_tiles/base/kernels.c",
+    "vector/cells/cells.c",
     "raster/block_lists.c",
 ]
 """The C files, each beside what it computes in numpy; a new one is a line here."""

@@ -120,9 +120,9 @@ def _envelope() -> None:
         for part in np.flatnonzero(scene.row == side).tolist():
             curve = scene.curve(part, 40)
             area = np.concatenate([curve, scene.feet(part)[::-1]])
-            colour = FIELDS[scene.functions.target[scene.lowest[part]]]
+            colour = FIELDS[scene.site[scene.lowest[part]]]
             right.fill(area.real, area.imag, fc=colour, ec="none", alpha=0.55)
-            _draw(right, curve, color=_dark(scene.functions.target[scene.lowest[part]]), lw=2.4)
+            _draw(right, curve, color=_dark(scene.site[scene.lowest[part]]), lw=2.4)
         _draw_sites(right, [(base, _SEGMENT), *others])
 
 
@@ -142,10 +142,10 @@ def _envelope_of(axes: Axes, scene: Scene, row: int) -> None:
     functions = scene.functions
     for k in np.flatnonzero(functions.row == row):
         x = np.linspace(functions.low[k], functions.high[k], 40)
-        axes.plot(x, functions.value(np.full(40, k), x), color=_dark(functions.target[k]), lw=0.9, alpha=0.8)
+        axes.plot(x, functions.value(np.full(40, k), x), color=_dark(scene.site[k]), lw=0.9, alpha=0.8)
     for part in np.flatnonzero(scene.row == row).tolist():
         x = np.linspace(scene.start[part], scene.end[part], 40)
-        colour = _dark(functions.target[scene.lowest[part]])
+        colour = _dark(scene.site[scene.lowest[part]])
         axes.plot(x, functions.value(np.full(40, scene.lowest[part]), x), color=colour, lw=3.0, solid_capstyle="butt")
 
 
@@ -174,10 +174,10 @@ def _fan() -> None:
             _fan_functions(left, scene, row)
             for part in np.flatnonzero(scene.row == row).tolist():
                 curve = scene.curve(part, 40)
-                colour = FIELDS[scene.functions.target[scene.lowest[part]]]
+                colour = FIELDS[scene.site[scene.lowest[part]]]
                 area = np.append(curve, scene.rows.origin[row])
                 right.fill(area.real, area.imag, fc=colour, ec="none", alpha=0.55)
-                _draw(right, curve, color=_dark(scene.functions.target[scene.lowest[part]]), lw=2.4)
+                _draw(right, curve, color=_dark(scene.site[scene.lowest[part]]), lw=2.4)
             ray = np.array([0, 7 * scene.rows.ray0[row]])
             _draw(right, ray, color=GREY, lw=0.6, dashes=(3, 3), zorder=0)
         _draw_sites(right, [(base, _SEGMENT), *others])

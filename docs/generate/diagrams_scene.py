@@ -15,13 +15,15 @@ from diagrams_style import Complexes
 from numpy.typing import NDArray
 
 from voronoi_tiles import Design
+from voronoi_tiles.base.arrays import offsets_of
 from voronoi_tiles.vector.cells.bisectors import find_bisectors
-from voronoi_tiles.vector.cells.candidates import Bounds, Candidates
+from voronoi_tiles.vector.cells.candidates import Candidates
 from voronoi_tiles.vector.cells.envelope import NOTHING, lower_envelope
 from voronoi_tiles.vector.cells.half_edges import Contour, trace_contour
 from voronoi_tiles.vector.cells.images import Surroundings, surround
 from voronoi_tiles.vector.cells.partial_quadratics import PartialQuadratics
 from voronoi_tiles.vector.cells.pencils import Rows, make_rows
+from voronoi_tiles.vector.cells.provisional import Bounds
 from voronoi_tiles.vector.copies import Copies, copies_near, place
 from voronoi_tiles.vector.motions import IDENTITY, Action
 
@@ -35,19 +37,18 @@ _FAR = 1e6  # farther than anything that is drawn
 class Scene:
     """Rows of a site, all bisectors that bound them, and the lower envelope of each row.
 
-    `row`, `start`, `end`, `lowest` are the envelope's parts: `lowest` is -1 where nothing bounds the row. A function's
-    target is the site beyond, its copy that copy's index (0, 0: the site itself). `half_edges` counts those of each
-    site.
+    `row`, `start`, `end`, `lowest` are the envelope's parts: `lowest` is -1 where nothing bounds the row. `contour` is
+    that of all sites; `site` (intp) is the site beyond each function.
     """
 
     contour: Contour
+    site: Ints
     rows: Rows
     functions: PartialQuadratics
     row: Ints
     start: Floats
     end: Floats
     lowest: Ints
-    half_edges: list[int]
 
     def points(self, row: int, x: Floats, value: Floats) -> Complexes:
         """The points of a row at x where its function has this value: h, or -(1 + x^2) / r; NaN at infinity."""
@@ -71,7 +72,7 @@ class Scene:
 
     def parabola(self, part: int) -> bool:
         """Whether a part lies on a parabola: between a point and a segment."""
-        of_segment = self.functions.item[self.lowest[part]] < self.half_edges[self.functions.target[self.lowest[part]]]
+        of_segment = self.functions.item[self.lowest[part]] < len(self.contour.source)
         return bool(self.rows.straight[self.row[part]] != of_segment)
 
     @property
@@ -82,43 +83,44 @@ class Scene:
     def inner(self, part: int) -> bool:
         """Whether the element beyond a part belongs to the site itself."""
         lowest = self.lowest[part]
-        return bool(self.functions.target[lowest] == 0 and self.functions.copy[lowest] == 0)
+        return bool(self.site[lowest] == 0 and self.functions.copy[lowest] == 0)
 
 
 def lone_scene(sites: Sequence[tuple[Complexes, Ints]]) -> Scene:
     """A scene without a group: the first site against the others; the nodes and segments of each are given."""
-    contours = [trace_contour(nodes, segments) for nodes, segments in sites]
-    one = Copies(np.array([IDENTITY]), np.ones(1, complex), np.zeros(1, complex), np.zeros(1, bool))
-    around = [surround(contour, one, own=k == 0) for k, contour in enumerate(contours)]
-    return _scene(contours, around, _FAR)
+    one = Copies(np.array([IDENTITY]), np.ones(1, complex), np.zeros(1, complex), np.zeros(1, bool), np.zeros(1, int))
+    return _scene(sites, one, _FAR)
 
 
 def group_scene(design: Design) -> Scene:
-    """A scene of a design's first site among all copies near it."""
+    """A scene of the first and only site of a design among all its copies near it."""
     action = Action(design.group, design.lattice)
-    placed = [place(action, site.nodes, site.segments) for site in design.noded]
-    contours = [trace_contour(site.nodes, site.segments) for site in placed]
-    around = [
-        surround(contour, copies_near(action, placed[0], other), own=k == 0)
-        for k, (contour, other) in enumerate(zip(contours, placed, strict=True))
-    ]
-    return _scene(contours, around, action.covering_radius)
+    (site,) = (place(action, site.nodes, site.segments) for site in design.noded)
+    return _scene([(site.nodes, site.segments)], copies_near(action, site, site), action.covering_radius)
 
 
-def _scene(contours: list[Contour], around: list[Surroundings], covering_radius: float) -> Scene:
-    contour = contours[0]
-    rows = make_rows(contour, covering_radius, np.zeros(len(contour.source), bool))
-    every = [_all_pairs(len(rows), surroundings) for surroundings in around]
-    none = np.full(len(rows), _FAR)
-    bounds = Bounds(1e-12, none, none.copy(), np.full(len(rows), np.nan, complex))
-    functions = find_bisectors(rows, contour, list(zip(around, every, strict=True)), bounds)
+def _scene(sites: Sequence[tuple[Complexes, Ints]], copies: Copies, covering_radius: float) -> Scene:
+    first = offsets_of([len(nodes) for nodes, _ in sites])
+    node_site = np.repeat(np.arange(len(sites)), np.diff(first))
+    contour = trace_contour(
+        np.concatenate([nodes for nodes, _ in sites]),
+        np.concatenate([segments + k for (_, segments), k in zip(sites, first[:-1], strict=True)]),
+    )
+    around = surround(contour, copies, np.zeros_like(node_site))
+    rows = make_rows(contour, covering_radius, node_site[contour.source] > 0)
+    # Isolated nodes have their corners in any case.
+    node = np.concatenate((contour.source, contour.corner_node))
+    of_first = node_site[node[np.where(rows.straight, rows.half_edge, len(contour.source) + rows.corner)]] == 0
+    rows = Rows(*(getattr(rows, name)[of_first] for name in Rows.__slots__))
+    pairs, elements = _all_pairs(len(rows), around)
+    functions = find_bisectors(rows, around, elements, pairs, Bounds.none(rows, _FAR, 1e-12))
     envelope = lower_envelope(functions, rows.low, rows.high)
-    return Scene(contour, rows, functions, *envelope, [2 * surroundings.segments for surroundings in around])
+    return Scene(contour, node_site[node[functions.item]], rows, functions, *envelope)
 
 
-def _all_pairs(rows: int, around: Surroundings) -> Candidates:
-    """Every row with every element of every copy."""
-    elements = around.segments + (len(around.corner) - 2 * around.segments) // 4
-    shape = (rows, len(around.node), elements)
-    row, copy, element = (index.reshape(-1) for index in np.indices(shape))
-    return Candidates(row, copy, element)
+def _all_pairs(rows: int, around: Surroundings) -> tuple[Candidates, Ints]:
+    """Every row with every element of every copy; and all elements."""
+    half_edges, corners = len(around.contour.source), len(around.contour.corner_node)
+    elements = np.arange(half_edges // 2 + (corners - half_edges) // 4)
+    row, copy, place = (index.reshape(-1) for index in np.indices((rows, len(around.copies), len(elements))))
+    return Candidates(row, copy, place), elements

@@ -32,10 +32,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
-from voronoi_tiles.vector.cells.candidates import Bounds, Candidates
+from voronoi_tiles.vector.cells.candidates import Candidates
 from voronoi_tiles.vector.cells.images import Surroundings
 from voronoi_tiles.vector.cells.partial_quadratics import PartialQuadratics, Quadratics
 from voronoi_tiles.vector.cells.pencils import Rows
+from voronoi_tiles.vector.cells.provisional import Bounds
 
 # Stands for an infinite tangent where a product with it must stay finite.
 _INFINITE = 1e100
@@ -52,14 +53,17 @@ class TouchingElementsError(ArithmeticError):
     """A node of one copy lies on another copy."""
 
 
-def find_bisectors(rows: Rows, around: Surroundings, candidates: Candidates, bounds: Bounds) -> PartialQuadratics:
+def find_bisectors(
+    rows: Rows, around: Surroundings, elements: Ints, candidates: Candidates, bounds: Bounds
+) -> PartialQuadratics:
     """All bisectors that may shape the cells of rows, sorted by row.
 
-    `around` are all copies, `candidates` the pairs to look at; `bounds` are the rows', and what lies above them is left
-    out. Raises TouchingElementsError where a node lies, but for rounding, on an element of another copy.
+    `around` are all copies, `candidates` the pairs to look at, by their places in `elements`; `bounds` are the rows',
+    and what lies above them is left out. Raises TouchingElementsError where a node lies, but for rounding, on an
+    element of another copy.
     """
     segments = len(around.contour.source) // 2
-    row, copy, item = _items(candidates, segments)
+    row, copy, item = _items(candidates, elements, segments)
     pairs = _RowPairs(rows, around, bounds.rounding, row, copy, item)
     of_half_edge = rows.straight[row]
     of_corner = ~of_half_edge
@@ -79,9 +83,9 @@ def find_bisectors(rows: Rows, around: Surroundings, candidates: Candidates, bou
     return functions.take(kept[np.argsort(functions.row[kept], kind="stable")])
 
 
-def _items(candidates: Candidates, segments: int) -> tuple[Ints, Ints, Ints]:
+def _items(candidates: Candidates, elements: Ints, segments: int) -> tuple[Ints, Ints, Ints]:
     """(row, copy, item) of the candidates' half-edges, item i meaning corner i as well, and of lone corners."""
-    row, copy, element = candidates.row, candidates.copy, candidates.element
+    row, copy, element = candidates.row, candidates.copy, elements[candidates.place]
     if not len(element) or element.max() < segments:
         items = (2 * element[:, None] + np.arange(2)).reshape(-1)
         return np.repeat(row, 2), np.repeat(copy, 2), items
@@ -280,13 +284,13 @@ def _corner_with_corner(pairs: _RowPairs) -> PartialQuadratics:
 
 def _height_of_corner(p: Floats, q: Floats) -> Quadratics:
     """h = ((s - p)^2 + q^2) / 2q."""
-    return 0.5 / q, np.zeros(len(q)), q / 2.0, p
+    return 0.5 / q, np.zeros_like(q), q / 2.0, p
 
 
 def _distance_of_corner(along: Floats, across: Floats, square: Floats) -> Quadratics:
     """-(2 / d) ((1 - x^2) cos f + 2 x sin f), where along = d cos f, across = d sin f and square = d^2."""
     a, b = 2.0 * along / square, -4.0 * across / square
-    return a, b, -a, np.zeros(len(a))
+    return a, b, -a, np.zeros_like(a)
 
 
 def _coordinates(axis: Complexes, vector: Complexes) -> tuple[Floats, Floats]:
@@ -339,23 +343,31 @@ def _below_bounds(rows: Rows, bounds: Bounds, functions: PartialQuadratics) -> I
     # The height's: h <= H, or -(1 + x^2) / r <= -(1 + x^2) / H.
     flat = np.where(straight, 0.0, -1.0 / bounds.height)
     zero = np.zeros(len(rows))
-    kept = _below(rows, functions, (flat, zero, np.where(straight, bounds.height, flat), zero), zero)
-    if np.isnan(bounds.champion).any():
-        return kept
-    # The bisector's with the champion, as with a corner.
-    away = bounds.champion - rows.origin
+    limits = flat, zero, np.where(straight, bounds.height, flat), zero
+    index = np.flatnonzero(_below(rows, functions, limits, zero, rows.low, rows.high))
+    # The provisional envelope's, part by part, as with a corner.
+    away = bounds.point - rows.origin
     p, q = _coordinates(rows.axis, away)
     square = away.real**2 + away.imag**2
     of_half_edge, of_corner = _height_of_corner(p, np.where(straight, q, 1.0)), _distance_of_corner(p, q, square)
-    a, b, c, m = (np.where(straight, *either) for either in zip(of_half_edge, of_corner, strict=True))
-    # A champion that is near is known to fewer digits.
+    quadratics = [np.where(straight, *either) for either in zip(of_half_edge, of_corner, strict=True)]
+    # A point that is near is known to fewer digits.
     doubt = 4.0 * bounds.rounding / np.where(straight, q, np.sqrt(square))
-    return np.asarray(kept[_below(rows, functions.take(kept), (a, b, c, m), doubt)])
+    some = functions.take(index)
+    kept = np.isnan(bounds.point[0].real)[some.row]
+    ends = rows.low, *bounds.cut, rows.high
+    for k in range(3):
+        limits = tuple(coefficients[k] for coefficients in quadratics)
+        kept |= _below(rows, some, limits, doubt[k], ends[k], ends[k + 1])
+    return np.asarray(index[kept])
 
 
-def _below(rows: Rows, functions: PartialQuadratics, limits: Quadratics, doubt: Floats) -> Ints:
-    """The indices of the functions that somewhere fall below the limit of their row, give or take its doubt."""
-    row, low, high = functions.row, functions.low, functions.high
+def _below(
+    rows: Rows, functions: PartialQuadratics, limits: Quadratics, doubt: Floats, begin: Floats, end: Floats
+) -> Bools:
+    """Which functions somewhere between the begin and end of their row fall below its limit, give or take a doubt."""
+    row = functions.row
+    low, high = np.maximum(functions.low, begin[row]), np.minimum(functions.high, end[row])
     a0, b0, c0, m0 = (coefficient[row] for coefficient in limits)
     x, y = low - m0, high - m0
     limit_low, limit_high = c0 + x * (b0 + x * a0), c0 + y * (b0 + y * a0)
@@ -371,4 +383,4 @@ def _below(rows: Rows, functions: PartialQuadratics, limits: Quadratics, doubt: 
         dip = np.where(inside, over_low + slope * step / 2.0, over_low)
     least = np.minimum(np.minimum(over_low, over_high), dip)
     terms = np.abs(limit_low) + np.abs(limit_high) + np.where(rows.straight[row], 0.0, np.abs(a0) + np.abs(b0))
-    return np.flatnonzero(least <= (_SLACK + doubt[row]) * terms)
+    return np.asarray((least <= (_SLACK + doubt[row]) * terms) & (low <= high))

@@ -1,113 +1,169 @@
-"""For every row, the elements near enough to shape its cell: branch and bound over a hierarchy of capsules."""
+"""For every row, the elements near enough to shape its cell: branch and bound over a hierarchy of boxes."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
 from voronoi_tiles.base.tolerance import EPSILON
-from voronoi_tiles.vector.cells.hierarchy import Hierarchy, Level
+from voronoi_tiles.vector.cells.half_edges import Contour
+from voronoi_tiles.vector.cells.hierarchy import Hierarchy
+from voronoi_tiles.vector.cells.images import Images
 from voronoi_tiles.vector.cells.pencils import Rows
+from voronoi_tiles.vector.cells.provisional import Bounds, Provisional, bisector
+from voronoi_tiles.vector.copies import Copies
 
 # Relative slack of the pruning tests, far above their rounding errors.
 _SLACK = 1e-9
+# Corners begin with the elements that stand so far beside theirs, where there are more elements than a few.
+_BESIDE = np.array([-2, -1, 1, 2])
+_FEW = 64
+
+
+@dataclass(frozen=True, slots=True)
+class Level:
+    """The images of one level's boxes in all copies.
+
+    What the box `first` + j has in the copy c stands at `images.place(c, j)` in `start`, `end`, `direction` (a unit
+    vector), `anchor_start` and `anchor_end` (complex128, flat over the copies). `length`, `radius` (float64, k) and
+    `child` (intp, k + 1) are the boxes'; `leaf` tells of the level of the elements themselves.
+    """
+
+    first: int
+    leaf: bool
+    images: Images
+    start: Complexes
+    end: Complexes
+    direction: Complexes
+    anchor_start: Complexes
+    anchor_end: Complexes
+    length: Floats
+    radius: Floats
+    child: Ints
+
+
+def move_levels(hierarchy: Hierarchy, copies: Copies) -> list[Level]:
+    """The levels of a hierarchy in all copies, from the top."""
+    result = []
+    for depth, (first, last) in enumerate(pairwise(hierarchy.level.tolist())):
+        images, leaf = Images.of(hierarchy.bundle[first:last], copies), depth == len(hierarchy.level) - 2
+        start = images.moved(hierarchy.start[first:last], copies)
+        end = images.moved(hierarchy.end[first:last], copies)
+        anchor_start = start if leaf else images.moved(hierarchy.anchor_start[first:last], copies)
+        anchor_end = end if leaf else images.moved(hierarchy.anchor_end[first:last], copies)
+        radius, child = hierarchy.radius[first:last], hierarchy.child[first : last + 1] - last
+        # Turned, not found anew between the images: of a short box their rounding would turn it.
+        chord = hierarchy.end[first:last] - hierarchy.start[first:last]
+        length = np.sqrt(chord.real * chord.real + chord.imag * chord.imag)
+        with np.errstate(divide="ignore"):
+            inverse = np.where(length > 0.0, 1.0 / length, 0.0)
+        direction = np.empty(len(chord), complex)
+        direction.real, direction.imag = chord.real * inverse + (length == 0.0), chord.imag * inverse
+        direction = images.moved(direction, replace(copies, shift=np.zeros(len(copies), complex)))
+        found = start, end, direction, anchor_start, anchor_end, length, radius
+        result.append(Level(first, leaf, images, *found, child))
+    return result
+
+
+def uncertainty(hierarchy: Hierarchy, copies: Copies) -> float:
+    """By how much coordinates, and their differences, may be off: 16 ulps of the largest."""
+    top = Images.of(hierarchy.bundle[: hierarchy.level[1]], copies)
+    return 16.0 * EPSILON * float(np.abs(top.moved(hierarchy.start[: hierarchy.level[1]], copies)).max())
 
 
 @dataclass(frozen=True, slots=True)
 class Candidates:
-    """Pairs of a row and an element of a copy, as indices, intp (k,), sorted by row."""
+    """Pairs of a row and an element of a copy, by its place in the hierarchy's `element`: intp (k,), sorted by row."""
 
     row: Ints
     copy: Ints
-    element: Ints
-
-
-@dataclass(frozen=True, slots=True)
-class Bounds:
-    """What bounds each row's cell; tightened in place.
-
-    No point of a row's cell is farther from the row's element than `height` (float64, n). `by_point` (float64, n) is
-    the best such bound by the bisector with a single point, and `champion` (complex128, n) that point, NaN where there
-    is none. `rounding` is by how much coordinates, and their differences, may be off. All are in the design's units.
-    """
-
-    rounding: float
-    height: Floats
-    by_point: Floats
-    champion: Complexes
+    place: Ints
 
 
 class TooManyPairsError(Exception):
     """So many rows at once would take too much memory."""
 
 
-def find_candidates(rows: Rows, hierarchy: Hierarchy, covering_radius: float, most: float) -> tuple[Candidates, Bounds]:
+def seeds_of(rows: Rows, contour: Contour, hierarchy: Hierarchy) -> Complexes:
+    """The ends of elements beside those at corners, in the hierarchy's order: complex128 (rows, k), NaN for half-edges.
+
+    The cell of a corner may be a sliver between its neighbours, in the midst of many: they are known at once. Where all
+    elements are few this does not pay, and there are none.
+    """
+    count = len(hierarchy.element)
+    if count <= _FEW:
+        return np.zeros((len(rows), 0), complex)
+    half_edges = len(contour.source)
+    element = np.where(rows.corner < half_edges, rows.corner >> 1, half_edges // 2 + (rows.corner - half_edges) // 4)
+    place = np.empty_like(hierarchy.element)
+    place[hierarchy.element] = np.arange(count)
+    beside = np.minimum(np.maximum(place[element][:, None] + _BESIDE, 0), count - 1) + hierarchy.level[-2]
+    ends = np.stack((hierarchy.start[beside], hierarchy.end[beside]), axis=-1).reshape(len(rows), -1)
+    return np.where(rows.straight[:, None], np.nan, ends)
+
+
+def find_candidates(
+    rows: Rows, levels: Sequence[Level], seeds: Complexes, covering_radius: float, rounding: float, most: float
+) -> tuple[Candidates, Bounds]:
     """A superset of the pairs in which the element shapes the row's cell; and bounds of the cells.
 
     An element matters only if, for some point of the row's cell, it meets the disc about that point that just reaches
-    the row's element. The row's bisector with a point z, its champion, bounds the cell. The discs about the points of
-    that bisector all pass through z; let h0 and h1 be the radii of those on the outermost rays, a distance w
-    apart. By the powers of points with respect to these circles, every other one lies in the union of these two,
-    their radii enlarged to sqrt(h^2 + w^2 / 4). For a corner's fan, w is 0.
+    the row's element. Each anchor may serve the row's provisional envelope, whose discs hold all of these; so the
+    bounds tighten while the boxes shrink, and the number of pairs per row stays small at each level.
 
-    Each anchor may become the champion: bisectors with a point or a segment are highest at the ends of a row. So the
-    bounds tighten while the capsules shrink, and the number of pairs per row stays small at each level.
+    `seeds` (complex128, rows x k) are points near the rows to begin with, NaN where there are none.
 
     Raises TooManyPairsError where more than `most` pairs, or four times as many before they are narrowed, would be held
     at once.
     """
-    top = hierarchy.levels[0]
-    none = np.full(len(rows), np.nan, complex)
-    infinite = np.full(len(rows), np.inf)
-    rounding = 16.0 * EPSILON * float(np.abs(top.start).max())
-    bounds = Bounds(rounding, height=np.full(len(rows), covering_radius), by_point=infinite, champion=none)
+    top = levels[0]
+    provisional = Provisional(rows, covering_radius, rounding)
+    seeded = np.flatnonzero(~np.isnan(seeds).any(axis=1)) if seeds.size else np.zeros(0, np.intp)
+    if len(seeded):
+        provisional.lower(np.repeat(seeded, seeds.shape[1]), seeds[seeded].reshape(-1))
     if len(rows) * len(top.start) > most:
         raise TooManyPairsError
     row = np.repeat(np.arange(len(rows)), len(top.start))
     copy, place = np.tile(top.images.copy, len(rows)), np.tile(top.images.thing, len(rows))
     above: Level | None = None
-    for level in hierarchy.levels:
+    for level in levels:
         if above is not None:
             count = above.child[place + 1] - above.child[place]
             if int(count.sum()) > 4 * most:
                 raise TooManyPairsError
             row, copy, place = np.repeat(row, count), np.repeat(copy, count), ranges(above.child[place], count)
-        row, copy, place = _narrow(rows, row, copy, place, level, bounds)
+        row, copy, place = _narrow(rows, row, copy, place, level, provisional)
         above = level
-    return Candidates(row, copy, hierarchy.order[place]), bounds
+    return Candidates(row, copy, place), provisional.bounds
 
 
-def _narrow(rows: Rows, row: Ints, copy: Ints, place: Ints, level: Level, bounds: Bounds) -> tuple[Ints, Ints, Ints]:
-    """The pairs whose capsules can matter, after their anchors have tightened the bounds."""
+def _narrow(
+    rows: Rows, row: Ints, copy: Ints, place: Ints, level: Level, provisional: Provisional
+) -> tuple[Ints, Ints, Ints]:
+    """The pairs whose boxes can matter, after their anchors have tightened the bounds."""
+    bounds = provisional.bounds
+    if level.first:
+        kept = _in_reach(rows, row, place, level.images.place(copy, place), level, bounds)
+        row, copy, place = row[kept], copy[kept], place[kept]
     flat = level.images.place(copy, place)
-    kept = _in_reach(rows, row, flat, level.radius[place], level, bounds)
-    row, copy, place, flat = row[kept], copy[kept], place[kept], flat[kept]
-    anchor = level.anchor_start[flat]
-    height = np.maximum(
-        _bisector(rows.base0[row], rows.ray0[row], anchor, bounds.rounding),
-        _bisector(rows.base1[row], rows.ray1[row], anchor, bounds.rounding),
-    )
-    _lower(bounds.by_point, row, height)
-    best = np.flatnonzero((height == bounds.by_point[row]) & (height < np.inf))
-    bounds.champion[row[best]] = anchor[best]
-    np.minimum(bounds.height, bounds.by_point, out=bounds.height)
-    # Points bound rows badly that are long beside their height; segments do it well.
-    wide = np.flatnonzero(_wide(rows, bounds)[row])
+    if level.leaf:
+        provisional.lower(row, level.anchor_start[flat])
+    else:
+        anchors = np.stack((level.anchor_start[flat], level.anchor_end[flat]), axis=1)
+        provisional.lower(np.repeat(row, 2), anchors.reshape(-1))
+    # Segments bound well what points do not.
+    wide = np.flatnonzero(bounds.wide(rows)[row])
     if len(wide):
         at, by = row[wide], flat[wide]
         start, end = level.anchor_start[by], level.anchor_end[by]
-        height = _bisector_of_segment(rows.base0[at], rows.ray0[at], start, end, bounds.rounding)
-        height = np.maximum(height, _bisector_of_segment(rows.base1[at], rows.ray1[at], start, end, bounds.rounding))
-        _lower(bounds.height, at, height)
-    kept = _in_reach(rows, row, flat, level.radius[place], level, bounds)
+        base, ray = np.stack((rows.base0[at], rows.base1[at])), np.stack((rows.ray0[at], rows.ray1[at]))
+        _lower(bounds.height, at, _bisector_of_segment(base, ray, start, end, bounds.rounding).max(axis=0))
+    kept = _in_reach(rows, row, place, flat, level, bounds)
     return row[kept], copy[kept], place[kept]
-
-
-def _wide(rows: Rows, bounds: Bounds) -> Bools:
-    """Which rows are long beside their height."""
-    return rows.spread > bounds.height / 8.0
 
 
 def _lower(bound: Floats, row: Ints, height: Floats) -> None:
@@ -118,33 +174,41 @@ def _lower(bound: Floats, row: Ints, height: Floats) -> None:
         bound[which] = np.minimum(bound[which], np.minimum.reduceat(height, first))
 
 
-def _in_reach(rows: Rows, row: Ints, flat: Ints, radius: Floats, level: Level, bounds: Bounds) -> Ints:
-    """The pairs whose capsule may hold an element that matters."""
-    start, end = level.start[flat], level.end[flat]
-    chord = end - start
-    square = chord.real**2 + chord.imag**2
-    square[square == 0.0] = 1.0
-    lone = np.isnan(bounds.champion)
-    near = lone[row]
-    for base, ray in ((rows.base0, rows.ray0), (rows.base1, rows.ray1)):
-        height = np.where(lone, 0.0, _bisector(base, ray, bounds.champion, bounds.rounding))
-        centre, reach = base + height * ray, np.hypot(height, rows.spread) * (1.0 + _SLACK)
-        away = centre[row] - start
-        along = np.minimum(np.maximum((away.real * chord.real + away.imag * chord.imag) / square, 0.0), 1.0)
-        near |= np.abs(away - along * chord) <= reach[row] + radius
-    kept = np.flatnonzero(near)
-    wide = _wide(rows, bounds)[row[kept]]
+def _in_reach(rows: Rows, row: Ints, place: Ints, flat: Ints, level: Level, bounds: Bounds) -> Ints:
+    """The pairs whose box may hold an element that matters."""
+    start, direction = level.start[flat], level.direction[flat]
+    length, radius = level.length[place], level.radius[place]
+    # One disc holds all four: it spares most boxes the others.
+    some = np.flatnonzero(_meets(bounds.middle[row], bounds.around[row], start, direction, length, radius))
+    near = np.zeros(len(some), bool)
+    at, boxes = row[some], (start[some], direction[some], length[some], radius[some])
+    for centre, reach in zip(bounds.centre, bounds.reach, strict=True):
+        near |= _meets(centre[at], reach[at], *boxes)
+    kept = some[near]
+    wide = bounds.wide(rows)[row[kept]]
     if wide.any():
         # All discs lie in this box on the row's side of its line, which is the sharper test here.
         chosen = kept[wide]
         at, width = row[chosen], radius[chosen] * (1.0 + _SLACK)
         reach = bounds.height[at] * (1.0 + _SLACK)
         x0, y0 = _frame(rows.base[at], rows.ray[at], start[chosen])
-        x1, y1 = _frame(rows.base[at], rows.ray[at], end[chosen])
+        x1, y1 = _frame(rows.base[at], rows.ray[at], level.end[flat[chosen]])
         inside = ~wide
         inside[wide] = _enters_box(x0, y0, x1, y1, rows.spread[at] + reach + width, -width, 2.0 * reach + width)
         kept = kept[inside]
     return kept
+
+
+def _meets(
+    centre: Complexes, reach: Floats, start: Complexes, direction: Complexes, length: Floats, radius: Floats
+) -> Bools:
+    """Which boxes are within reach of centres; they have this radius, and begin at start in a direction."""
+    away = centre - start
+    along = away.real * direction.real + away.imag * direction.imag
+    across = np.abs(away.real * direction.imag - away.imag * direction.real)
+    x = np.maximum(np.maximum(-along, along - length), 0.0)
+    y = np.maximum(across - radius, 0.0)
+    return np.asarray(x * x + y * y <= reach * reach)
 
 
 def _frame(origin: Complexes, ray: Complexes, points: Complexes) -> tuple[Floats, Floats]:
@@ -166,23 +230,12 @@ def _enters_box(x0: Floats, y0: Floats, x1: Floats, y1: Floats, width: Floats, l
     return np.asarray(enter <= leave + _SLACK)
 
 
-def _bisector(base: Complexes, ray: Complexes, points: Complexes, rounding: float) -> Floats:
-    """Bounds on the heights at which rays meet the bisectors of their base and points; infinite if they do not.
-
-    Coordinates are uncertain by `rounding`, which counts where a point is near the base or square to the ray.
-    """
-    away = points - base
-    along = away.real * ray.real + away.imag * ray.imag - rounding
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(along > 0.0, (away.real**2 + away.imag**2) / (2.0 * along), np.inf)
-
-
 def _bisector_of_segment(base: Complexes, ray: Complexes, start: Complexes, end: Complexes, rounding: float) -> Floats:
     """Bounds on the heights at which rays meet the bisectors of their base and segments; infinite if they do not.
 
     Where the base is near a segment's line only its ends count: it may be the row's own.
     """
-    height = np.minimum(_bisector(base, ray, start, rounding), _bisector(base, ray, end, rounding))
+    height = np.minimum(bisector(base, ray, start, rounding), bisector(base, ray, end, rounding))
     chord = end - start
     away = base - start
     square = chord.real**2 + chord.imag**2

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
+from typing import Any
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, Floats, Ints
+from voronoi_tiles.base.kernels import BOOLS, COMPLEXES, FLOAT, FLOATS, INT, INTS, kernel
 from voronoi_tiles.base.tolerance import EPSILON
-from voronoi_tiles.vector.cells.bisectors import find_bisectors
-from voronoi_tiles.vector.cells.candidates import TooManyPairsError, find_candidates
+from voronoi_tiles.vector.cells.bisectors import TouchingElementsError, find_bisectors
+from voronoi_tiles.vector.cells.candidates import TooManyPairsError, find_candidates, move_levels, seeds_of, uncertainty
 from voronoi_tiles.vector.cells.envelope import lower_envelope
 from voronoi_tiles.vector.cells.half_edges import Contour
-from voronoi_tiles.vector.cells.hierarchy import build_hierarchy
+from voronoi_tiles.vector.cells.hierarchy import Hierarchy, build_hierarchy
 from voronoi_tiles.vector.cells.images import surround
 from voronoi_tiles.vector.cells.partial_quadratics import PartialQuadratics
 from voronoi_tiles.vector.cells.pencils import Rows
@@ -23,6 +26,29 @@ from voronoi_tiles.vector.copies import Copies
 _CHUNK = 1024
 # Pairs of rows and elements held at once; where there are more, the rows are halved. A pair takes some 500 bytes.
 _PAIRS = 1_000_000
+# Parts of the first rows for which the compiled kernel has room.
+_ROOM = 1000
+# What the compiled kernel takes of a contour, and of everything, as in cells.c; what it answers.
+_OF_CONTOUR = (
+    "nodes",
+    "source",
+    "target",
+    "direction",
+    "length",
+    "corner_node",
+    "arriving",
+    "leaving",
+    "turn",
+    "bounding",
+)
+_ARGUMENTS: tuple[Any, ...] = (
+    *(INT, INTS, INTS, COMPLEXES, COMPLEXES, FLOATS, FLOATS, *[COMPLEXES] * 6, FLOATS),
+    *(INT, COMPLEXES, INTS, INTS, COMPLEXES, FLOATS, INTS, COMPLEXES, COMPLEXES, FLOATS, BOOLS),
+    *(INT, INT, COMPLEXES, COMPLEXES, BOOLS, INTS),
+    *(INT, COMPLEXES, COMPLEXES, FLOATS, COMPLEXES, COMPLEXES, INTS, INTS, INTS, INTS, FLOAT, FLOAT),
+    *(INT, INT, INTS, INTS, INTS, COMPLEXES, COMPLEXES, INTS),
+)
+_UNBOUNDED, _TOUCHING = -1, -2
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,22 +78,63 @@ def bound_cells(rows: Rows, contour: Contour, copies: Copies, node_bundle: Ints,
     each of the contour's nodes, `covering_radius` the lattice's. Raises UnboundedCellError where a cell comes out
     unbounded, TouchingElementsError where a node lies on another copy.
     """
-    found = []
-    around, hierarchy = surround(contour, copies, node_bundle), build_hierarchy(contour, copies, node_bundle)
+    hierarchy = build_hierarchy(contour, node_bundle)
+    rounding = uncertainty(hierarchy, copies)
+    compiled = kernel("cells_bound", *_ARGUMENTS)
+    if compiled is not None:
+        return _bound_compiled(compiled, rows, contour, copies, hierarchy, covering_radius, rounding)
+    around, levels = surround(contour, copies, node_bundle), move_levels(hierarchy, copies)
+    seeds, found = seeds_of(rows, contour, hierarchy), []
     waiting = [(start, min(start + _CHUNK, len(rows))) for start in range(0, len(rows), _CHUNK)][::-1]
     while waiting:
         start, stop = waiting.pop()
         chunk = rows.slice(start, stop)
         most = _PAIRS if stop - start > 1 else inf
         try:
-            candidates, bounds = find_candidates(chunk, hierarchy, covering_radius, most)
+            candidates, bounds = find_candidates(chunk, levels, seeds[start:stop], covering_radius, rounding, most)
         except TooManyPairsError:
             middle = (start + stop) // 2
             waiting += [(middle, stop), (start, middle)]
             continue
-        functions = find_bisectors(chunk, around, candidates, bounds)
+        functions = find_bisectors(chunk, around, hierarchy.element, candidates, bounds)
         parts = _locate(chunk, functions, *lower_envelope(functions, chunk.low, chunk.high))
         found.append(Parts(parts.row + start, parts.copy, parts.item, parts.begin, parts.end))
+    return _joined(found)
+
+
+def _bound_compiled(
+    compiled: Callable[..., int],
+    rows: Rows,
+    contour: Contour,
+    copies: Copies,
+    hierarchy: Hierarchy,
+    covering_radius: float,
+    rounding: float,
+) -> Parts:
+    """The same by the compiled kernel, row by row."""
+    of_rows = [getattr(rows, name) for name in Rows.__slots__]
+    of_contour = [np.ascontiguousarray(getattr(contour, name)) for name in _OF_CONTOUR]
+    of_copies = copies.bundles, copies.unit, copies.shift, copies.conj, copies.bundle
+    of_hierarchy = [getattr(hierarchy, name) for name in Hierarchy.__slots__]
+    found, first, progress = [], 0, np.zeros(2, np.intp)
+    while first < len(rows):
+        room = 4 * (len(rows) - first) + _ROOM
+        row, copy, item = (np.empty(room, np.intp) for _ in range(3))
+        begin, end = np.empty(room, complex), np.empty(room, complex)
+        status = compiled(
+            *(len(rows), *of_rows, len(contour.source), *of_contour, len(copies), *of_copies),
+            *(len(hierarchy.level) - 1, *of_hierarchy, covering_radius, rounding),
+            *(first, room, row, copy, item, begin, end, progress),
+        )
+        if status:
+            raise {_UNBOUNDED: UnboundedCellError, _TOUCHING: TouchingElementsError}.get(status, MemoryError)
+        first, count = progress.tolist()
+        found.append(Parts(row[:count], copy[:count], item[:count], begin[:count], end[:count]))
+    return _joined(found)
+
+
+def _joined(found: list[Parts]) -> Parts:
+    """All parts of several, in their order."""
     if len(found) == 1:
         return found[0]
     return Parts(*(np.concatenate([getattr(parts, name) for parts in found]) for name in Parts.__slots__))
@@ -114,6 +181,7 @@ def _point(rows: Rows, row: Ints, x: Floats, value: Floats) -> Complexes:
         along = np.where(straight, x, (1.0 - x) * (1.0 + x) / -value)
         # Where two strokes of the site meet, rounding may put the height below 0.
         left = np.where(straight, np.maximum(value, 0.0), 2.0 * x / -value)
-    result = np.empty(len(row), complex)
-    result.real, result.imag = along, left
-    return rows.origin[row] + rows.axis[row] * result
+    axis, result = rows.axis[row], rows.origin[row]
+    result.real += axis.real * along - axis.imag * left
+    result.imag += axis.real * left + axis.imag * along
+    return result

@@ -67,10 +67,7 @@ def _merge(
     last1 = np.maximum.accumulate(np.where(which == 1, place, -1))
     first = np.where(last0 >= opening, lowest[last0], NOTHING)
     second = np.where(last1 >= opening, lowest[last1], NOTHING)
-    end = np.empty(len(group))
-    end[:-1] = start[1:]
-    final = np.append(fresh[1:], True)
-    end[final] = high[group[final] // stride]
+    end = _ends(group, start, high[group // stride])
     winner = np.maximum(first, second)
     wide = end > start
     contested = np.flatnonzero(wide & (first >= 0) & (second >= 0) & (first != second))
@@ -79,9 +76,10 @@ def _merge(
         if extra is not None:
             where, at, who = extra
             group, start = np.concatenate((group, group[where])), np.concatenate((start, at))
-            winner, wide = np.concatenate((winner, who)), np.concatenate((wide, np.ones(len(where), bool)))
+            winner = np.concatenate((winner, who))
             order = np.argsort(np.concatenate((place, where)), kind="stable")
-            group, start, winner, wide = group[order], start[order], winner[order], wide[order]
+            group, start, winner = group[order], start[order], winner[order]
+            wide = _ends(group, start, high[group // stride]) > start
     kept = np.flatnonzero(wide)
     group, start, winner = group[kept], start[kept], winner[kept]
     new = np.empty(len(group), bool)
@@ -90,6 +88,15 @@ def _merge(
     new[1:] |= winner[1:] != winner[:-1]
     kept = np.flatnonzero(new)
     return group[kept], start[kept], winner[kept]
+
+
+def _ends(group: Ints, start: Floats, high: Floats) -> Floats:
+    """Where the parts end that start there: where their group's next one starts, or at the group's high."""
+    end = np.empty(len(start))
+    end[:-1] = start[1:]
+    final = np.append(group[1:] != group[:-1], True)
+    end[final] = high[final]
+    return end
 
 
 def _contest(

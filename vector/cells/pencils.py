@@ -11,8 +11,8 @@ from voronoi_tiles.vector.cells.half_edges import Contour
 
 # A corner's rows span at most this angle, and a half-edge's rows at most this part of the covering radius: within
 # narrow rows one bound on the height holds well.
-_WIDEST_FAN = np.pi / 4
-_LONGEST_PART = 0.5
+_WIDEST_FAN = np.pi / 2
+_LONGEST_PART = 1.0
 
 
 @dataclass(frozen=True, slots=True)
