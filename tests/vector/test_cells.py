@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -132,7 +134,12 @@ def hardly_apart() -> Design:
     return Design.from_dict({"schema": 1, "group": "p1", "cell": cell, "site": [{"strokes": strokes}]})
 
 
-CASES = {
+def in_starter(group: str) -> Case:
+    """The starter of a group."""
+    return in_bundles(starter(group))
+
+
+CASES: dict[str, Callable[[], Case]] = {
     "zigzag": lambda: in_one_bundle(zigzag(150)),
     "points": lambda: in_one_bundle(scattered(60)),
     "spiral": lambda: in_one_bundle(spiral(400)),
@@ -142,7 +149,7 @@ CASES = {
     "hardly-apart": lambda: in_one_bundle(hardly_apart()),
     "near": lambda: in_bundles(beside(1e-7)),
     "nearer": lambda: in_bundles(beside(1e-11)),
-    **{f"starter-{group}": lambda group=group: in_bundles(starter(group)) for group in GROUPS},
+    **{f"starter-{group}": partial(in_starter, group) for group in GROUPS},
 }
 
 
