@@ -1,0 +1,120 @@
+"""Elements of all sites, modulo the lattice, in a tree of oriented boxes: what the proof searches.
+
+It is the proof's own: the engine finds its candidates in another way.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints, counting
+from voronoi_tiles.base.box_join import z_order
+from voronoi_tiles.groups.wallpaper import Lattice
+
+WIDTH = 8
+"""How many boxes of one level a box of the next holds; the last of a level may hold fewer."""
+
+_LONGEST = 0.5  # of a piece, in coordinates of the reduced basis
+_FEW = 64  # elements up to so many are kept in the order in which they were drawn
+
+
+@dataclass(frozen=True, slots=True)
+class Boxes:
+    """One level of the tree: n boxes, box k holds the boxes WIDTH k ... WIDTH k + WIDTH - 1 of the level below.
+
+    Box k is all centre + x axis + y i axis with |x| <= half_length and |y| <= half_width (complex128 and float64, n;
+    |axis| = 1). `inside` (complex128, n) is a point of one of its elements.
+    """
+
+    centre: Complexes
+    axis: Complexes
+    half_length: Floats
+    half_width: Floats
+    inside: Complexes
+
+    def __len__(self) -> int:
+        return len(self.centre)
+
+
+@dataclass(frozen=True, slots=True)
+class BoxTree:
+    """Elements, each moved by a lattice vector so that its middle lies in one cell about 0, and boxes around them.
+
+    Those that are longer than half a cell are there as often as their parts of at most this length have middles in
+    different cells. `start` and `chord` (complex128, n) are the elements in these places, whole; `element` (intp, n)
+    says which of those given they are. `levels[0]` are the elements (their parts) themselves, as boxes without width;
+    the last level has at most WIDTH. No part reaches beyond `reach` from 0 in coordinates of the reduced basis.
+    """
+
+    start: Complexes
+    chord: Complexes
+    element: Ints
+    levels: tuple[Boxes, ...]
+    reach: float
+
+    @classmethod
+    def of(cls, lattice: Lattice, start: Complexes, end: Complexes) -> BoxTree:
+        """The tree of elements from `start` to `end`, complex128 (m,), m > 0; equal ends are a point."""
+        x, y = lattice.reduced.fractional(end - start)
+        share = np.maximum(np.abs(x), np.abs(y))
+        count = np.maximum(np.ceil(share / _LONGEST), 1.0).astype(np.intp)
+        part, element = counting(count)
+        chord = (end - start)[element]
+        low, high = start[element] + part / count[element] * chord, start[element] + (part + 1) / count[element] * chord
+        middle = (low + high) / 2
+        x, y = lattice.reduced.fractional(middle)
+        x, y = np.round(x), np.round(y)
+        p, q = lattice.reduced_basis
+        vector = combination(p, q, x, y)
+        low, high, placed = low - vector, high - vector, start[element] - vector
+        if len(low) > _FEW:
+            order = z_order(middle - vector)
+            low, high, placed = low[order], high[order], placed[order]
+            chord, element = chord[order], element[order]
+        levels = [_segments(low, high)]
+        width = WIDTH
+        while len(levels[-1]) > WIDTH:
+            levels.append(_boxes(low, high, width))
+            width *= WIDTH
+        reach = 0.5 + float((share / count).max()) / 2
+        return cls(placed, chord, element, tuple(levels), reach)
+
+
+def combination(p: complex, q: complex, x: Floats, y: Floats) -> Complexes:
+    """The vectors x p + y q, in real arithmetic: the same bits in an array of any length."""
+    result = np.empty(x.shape, complex)
+    result.real = x * p.real + y * q.real
+    result.imag = x * p.imag + y * q.imag
+    return result
+
+
+def _segments(low: Complexes, high: Complexes) -> Boxes:
+    """Segments as boxes without width."""
+    chord, middle = high - low, (low + high) / 2
+    length = np.abs(chord)
+    axis = np.where(length > 0.0, chord / np.where(length > 0.0, length, 1.0), 1.0)
+    return Boxes(middle, axis, length / 2, np.zeros(len(low)), middle)
+
+
+def _boxes(low: Complexes, high: Complexes, width: int) -> Boxes:
+    """Boxes around every `width` consecutive segments, along the principal axis of their ends."""
+    first = np.arange(0, len(low), width)
+    count = np.diff(np.append(first, len(low)))
+    of = np.repeat(np.arange(len(first)), count)
+    mean = (np.add.reduceat(low, first) + np.add.reduceat(high, first)) / (2 * count)
+    u, v = low - mean[of], high - mean[of]
+    # The square of a direction does not know its sign: that of the principal axis is the sum of all squares.
+    axis = np.sqrt(np.add.reduceat(u * u + v * v, first))
+    length = np.abs(axis)
+    axis = np.where(length > 0.0, axis / np.where(length > 0.0, length, 1.0), 1.0)
+    turned = axis.conj()[of]
+    u, v = u * turned, v * turned
+    left = np.minimum.reduceat(np.minimum(u.real, v.real), first)
+    right = np.maximum.reduceat(np.maximum(u.real, v.real), first)
+    below = np.minimum.reduceat(np.minimum(u.imag, v.imag), first)
+    above = np.maximum.reduceat(np.maximum(u.imag, v.imag), first)
+    centre = mean + axis * ((left + right) / 2 + 1j * (below + above) / 2)
+    inside = low[np.minimum(first + width // 2, len(low) - 1)]
+    return Boxes(centre, axis, (right - left) / 2, (above - below) / 2, inside)

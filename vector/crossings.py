@@ -1,0 +1,206 @@
+"""Where an outline crosses itself.
+
+A run of arcs that all go to the right, or all up, cannot cross itself: only arcs whose boxes meet and that are not of
+one such run are looked at, which are few. Whether chords cross is decided by the exact signs of areas.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from fractions import Fraction
+
+import numpy as np
+import numpy.typing as npt
+
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, counting
+from voronoi_tiles.base.tolerance import EPSILON, PROOF_LIMIT
+from voronoi_tiles.vector.all_arcs import AllArcs
+
+_WIDTH = 8  # consecutive arcs of a group, and groups of a larger group
+_MARGIN = 1e-9  # of boxes, relative to the extent of all
+_PARTS = 8  # of a curve at first
+# Halvings of crossing sub-arcs: after so many a sub-arc's sagitta is below its end points' rounding.
+_DIVISIONS = 24
+# The relative error of the difference of two products of differences; Shewchuk, Adaptive precision floating-point
+# arithmetic and fast robust geometric predicates, 1997.
+_AREA_ERROR = (3 + 8 * EPSILON) * EPSILON / 2
+_RIGHT, _LEFT, _UP, _DOWN = 1, 2, 4, 8
+
+_SubArcs = tuple[Ints, Floats, Floats]
+"""The arc of each, and the range of the curve's parameter."""
+
+
+def count_crossings(arcs: AllArcs, size: float) -> int:
+    """The number of places where an outline crosses itself; where it merely touches itself it does not.
+
+    `size` is the length of the cell's longer vector: crossings nearer to the ends of arcs than PROOF_LIMIT times this
+    are rounding. Chords of curves may cross where the curves do not: where chords cross, these arcs are divided
+    further, until no chords cross or the chords are as good as the curves.
+    """
+    limit = PROOF_LIMIT * size
+    folded = _folded(arcs, limit)
+    i, j = _meeting(arcs)
+    straight = ~(arcs.curved[i] | arcs.curved[j])
+    a, b = i[straight], j[straight]
+    found = int(_cross_far(arcs.start[a], arcs.end[a], arcs.start[b], arcs.end[b], limit).sum())
+    return folded + found + _count_curved(arcs, i[~straight], j[~straight], limit)
+
+
+def _folded(arcs: AllArcs, limit: float) -> int:
+    """The number of curves that turn back upon themselves: their control point lies beyond an end, on its line."""
+    bent = np.flatnonzero(arcs.curved)
+    a, b, c = arcs.start[bent], arcs.control[bent], arcs.end[bent]
+    near = np.minimum(np.abs(b - a), np.abs(c - b)) > 2 * limit
+    turned = (b - a).real * (c - b).real + (b - a).imag * (c - b).imag < 0.0
+    bent = np.flatnonzero(near & turned)
+    return int((areas(a[bent], b[bent], c[bent]) == 0.0).sum())
+
+
+def _count_curved(arcs: AllArcs, i: Ints, j: Ints, limit: float) -> int:
+    """The number of crossings of arcs i and j of which at least one is curved."""
+    if not len(i):
+        return 0
+    parts = [np.where(arcs.curved[k], _PARTS, 1) for k in (i, j)]
+    part, pair = counting(parts[0] * parts[1])
+    one, two = np.divmod(part, parts[1][pair])
+    first, second = ((k[pair], p / n[pair], (p + 1) / n[pair]) for k, p, n in ((i, one, parts[0]), (j, two, parts[1])))
+    for _ in range(_DIVISIONS):
+        ends = (arcs.at(arc, t) for arc, low, high in (first, second) for t in (low, high))
+        meeting = _cross_far(*ends, limit)
+        first, second = tuple(x[meeting] for x in first), tuple(x[meeting] for x in second)
+        bent = np.flatnonzero(arcs.curved[first[0]] | arcs.curved[second[0]])
+        if not len(bent):
+            return 0
+        first, second = _divide(first, second)
+    # Many pairs of tiny sub-arcs may be left of one crossing.
+    return int(np.unique(np.stack((first[0], second[0])), axis=1).shape[1])
+
+
+def _divide(first: _SubArcs, second: _SubArcs) -> tuple[_SubArcs, _SubArcs]:
+    """The four pairs of halves of each pair of sub-arcs."""
+    halves = []
+    for arc, low, high in (first, second):
+        middle = (low + high) / 2
+        halves.append(((arc, low, middle), (arc, middle, high)))
+    pairs = [(one, two) for one in halves[0] for two in halves[1]]
+    ones, twos = ([np.concatenate(x) for x in zip(*half, strict=True)] for half in zip(*pairs, strict=True))
+    return (ones[0], ones[1], ones[2]), (twos[0], twos[1], twos[2])
+
+
+def _cross_far(a: Complexes, b: Complexes, c: Complexes, d: Complexes, limit: float) -> Bools:
+    """Whether segments a b and c d have a point in common that is farther than `limit` from all their ends; bool (n,).
+
+    Of an overlap, as of a spike that turns back upon itself, the middle counts.
+    """
+    result = np.zeros(len(a), bool)
+    at_c, at_d, at_a, at_b = areas(a, b, c), areas(a, b, d), areas(c, d, a), areas(c, d, b)
+    proper = np.flatnonzero((np.sign(at_c) * np.sign(at_d) < 0.0) & (np.sign(at_a) * np.sign(at_b) < 0.0))
+    point = a[proper] + (b - a)[proper] * (at_a[proper] / (at_a[proper] - at_b[proper]))
+    result[proper] = _farthest(point, a[proper], b[proper], c[proper], d[proper]) > limit
+    in_line = np.flatnonzero((at_c == 0.0) & (at_d == 0.0) & (at_a == 0.0) & (at_b == 0.0))
+    if len(in_line):
+        a, b, c, d = a[in_line], b[in_line], c[in_line], d[in_line]
+        along = np.where(np.abs(b - a) >= np.abs(d - c), b - a, d - c)
+        # By the larger coordinate of their direction points in line are in order without any error.
+        flat = np.abs(along.real) >= np.abs(along.imag)
+        place = [np.where(flat, z.real, z.imag) for z in (a, b, c, d)]
+        low = np.maximum(np.minimum(*place[:2]), np.minimum(*place[2:]))
+        high = np.minimum(np.maximum(*place[:2]), np.maximum(*place[2:]))
+        ends = np.stack((a, b, c, d))
+        lower, upper = (
+            ends[np.abs(np.stack(place) - bound).argmin(axis=0), np.arange(len(a))] for bound in (low, high)
+        )
+        result[in_line] = (low <= high) & (_farthest((lower + upper) / 2, a, b, c, d) > limit)
+    return result
+
+
+def _farthest(point: Complexes, *ends: Complexes) -> Floats:
+    """How far points are from the nearest of their ends."""
+    return np.asarray(np.abs(np.stack(ends) - point).min(axis=0))
+
+
+def areas(a: Complexes, b: Complexes, c: Complexes) -> Floats:
+    """Twice the areas of triangles, > 0 where c lies on the left of a b: float64 (n,), the signs exact, 0 as well."""
+    left = (b.real - a.real) * (c.imag - a.imag)
+    right = (b.imag - a.imag) * (c.real - a.real)
+    result = left - right
+    error = _AREA_ERROR * (np.abs(left) + np.abs(right))
+    for k in np.flatnonzero((np.abs(result) <= error) & (error > 0.0)).tolist():
+        (x0, y0), (x1, y1), (x2, y2) = ((Fraction(z[k].real), Fraction(z[k].imag)) for z in (a, b, c))
+        result[k] = float((x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0))
+    return np.asarray(result)
+
+
+@dataclass(frozen=True, slots=True)
+class _Groups:
+    """Groups of consecutive arcs: their boxes (float64, 4 x n: left, bottom, right, top) and where they all go.
+
+    `ways` (uint8, n) has a bit for each direction that all arcs of a group go in, none where they are of several rings;
+    `ring` (intp, n) is that of a group's first arc.
+    """
+
+    boxes: Floats
+    ways: npt.NDArray[np.uint8]
+    ring: Ints
+
+    def __len__(self) -> int:
+        return len(self.ways)
+
+    def larger(self) -> _Groups:
+        """Groups of these groups."""
+        first = np.arange(0, len(self), _WIDTH)
+        last = np.minimum(first + _WIDTH, len(self)) - 1
+        boxes = np.concatenate(
+            (
+                np.minimum.reduceat(self.boxes[:2], first, axis=1),
+                np.maximum.reduceat(self.boxes[2:], first, axis=1),
+            )
+        )
+        ways = np.bitwise_and.reduceat(self.ways, first)
+        ways[self.ring[first] != self.ring[last]] = 0
+        return _Groups(boxes, ways, self.ring[first])
+
+    def possible(self, i: Ints, j: Ints) -> tuple[Ints, Ints]:
+        """The pairs i <= j of groups whose arcs may cross."""
+        left, bottom, right, top = self.boxes
+        meet = (left[i] <= right[j]) & (left[j] <= right[i]) & (bottom[i] <= top[j]) & (bottom[j] <= top[i])
+        i, j = i[meet], j[meet]
+        run = (j - i <= 1) & (self.ring[i] == self.ring[j]) & (self.ways[i] & self.ways[j] != 0)
+        return i[~run], j[~run]
+
+
+def _meeting(arcs: AllArcs) -> tuple[Ints, Ints]:
+    """The pairs i < j of arcs of one outline that may cross: a join of groups of groups of arcs with themselves."""
+    levels = [_single(arcs)]
+    while len(levels[-1]) > _WIDTH:
+        levels.append(levels[-1].larger())
+    i, j = (np.asarray(k, np.intp) for k in np.triu_indices(len(levels[-1])))
+    i, j = levels[-1].possible(i, j)
+    for level in reversed(levels[:-1]):
+        steps = np.arange(_WIDTH)
+        shape = (len(i), _WIDTH, _WIDTH)
+        p = np.broadcast_to((_WIDTH * i[:, None] + steps)[:, :, None], shape).ravel()
+        q = np.broadcast_to((_WIDTH * j[:, None] + steps)[:, None, :], shape).ravel()
+        inside = (p <= q) & (q < len(level))
+        i, j = level.possible(p[inside], q[inside])
+    apart = i != j
+    return i[apart], j[apart]
+
+
+def _single(arcs: AllArcs) -> _Groups:
+    """Each arc as a group of its own; every outline's boxes are pushed to a place of their own."""
+    points = np.stack((arcs.start, np.where(arcs.curved, arcs.control, arcs.start), arcs.end))
+    x, y = points.real, points.imag
+    boxes = np.stack((x.min(axis=0), y.min(axis=0), x.max(axis=0), y.max(axis=0)))
+    extent = float(max(boxes[2].max() - boxes[0].min(), boxes[3].max() - boxes[1].min()))
+    boxes[2:] += _MARGIN * extent
+    boxes[[0, 2]] += 2 * extent * arcs.tile
+    # A straight arc has but one leg; a curve goes where both of its legs go.
+    first = np.where(arcs.curved, arcs.control, arcs.end) - arcs.start
+    second = np.where(arcs.curved, arcs.end - arcs.control, first)
+    ways = np.zeros(len(arcs), np.uint8)
+    for one, two, ahead, back in ((first.real, second.real, _RIGHT, _LEFT), (first.imag, second.imag, _UP, _DOWN)):
+        ways[(one > 0.0) & (two > 0.0)] |= ahead
+        ways[(one < 0.0) & (two < 0.0)] |= back
+    ring = np.repeat(np.arange(len(arcs.ring_offsets) - 1), np.diff(arcs.ring_offsets))
+    return _Groups(boxes, ways, ring)

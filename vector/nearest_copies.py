@@ -1,0 +1,222 @@
+"""The nearest of all copies of all sites, of many points at once: what says that nothing is nearer than an edge claims.
+
+The points, in bundles of neighbouring ones, go down a tree of oriented boxes together. Of each copy of the tree a
+bundle keeps the boxes that can hold the nearest element of one of its points. Two inequalities say which those are, for
+a bundle of radius r about c, a point e of an element at the distance R of c, and a box at the distance D of c:
+
+- no point of the bundle is farther from e than R + r, none is nearer to the box than D - r;
+- with the unit vectors u from e to c and v from the box to c, a point c + d of the bundle is no farther from e than
+  R + u d + r^2 / 2R (a square root lies below its tangents), and no nearer to the box than D + v d (the distance from a
+  convex set lies above its tangents). So the box is out of the question if D > R + |u - v| r + r^2 / 2R.
+
+The second leaves a handful of elements where the first leaves hundreds: the elements beside the nearest of a fine curve
+are hardly farther, but they are so in nearly the same direction. Nothing here is approximate: what is kept are all
+elements that are no farther than the nearest one and `slack`, and rounding is far below the slack.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints, ranges
+from voronoi_tiles.base.maps import Isometry, move
+from voronoi_tiles.groups.wallpaper import Lattice
+from voronoi_tiles.vector.box_tree import WIDTH, Boxes, BoxTree, combination
+
+_BUNDLE = 8  # points of a bundle, and bundles of a large bundle
+_AT_ONCE = 1 << 14  # points whose search goes on at once: a multiple of the large bundles
+# How far the Voronoi cell of a lattice reaches in coordinates of its reduced basis, which is 2/3, with a margin: where
+# its border is only all but reached, either of two copies may be the nearest.
+_CELL_REACH = 0.75
+_TINY = 1e-300
+
+
+class NearestCopies(NamedTuple):
+    """Of n points the distance from the nearest copy of any element, and m pairs of a point and an element.
+
+    `distance` is float64 (n,). The pairs are all those whose element has a copy that is no farther from the point than
+    the nearest one and the slack: `point` and `element`, intp (m,). A pair may be there more than once.
+    """
+
+    distance: Floats
+    point: Ints
+    element: Ints
+
+
+def nearest_copies(
+    lattice: Lattice, motions: Sequence[Isometry], tree: BoxTree, points: Complexes, slack: float
+) -> NearestCopies:
+    """The nearest of all images of the tree's elements: under the inverses of `motions` and all lattice translations.
+
+    `points` is complex128 (n,), best in an order in which points beside each other lie near each other; `slack` > 0 is
+    in units, and above the rounding of coordinates.
+    """
+    found = []
+    for first in range(0, len(points), _AT_ONCE):
+        search = _CopySearch(lattice, motions, tree, points[first : first + _AT_ONCE], slack)
+        distance, point, element = search.run()
+        found.append((distance, point + first, element))
+    return NearestCopies(*(np.concatenate(part) for part in zip(*found, strict=True)))
+
+
+@dataclass(slots=True)
+class _Frontier:
+    """What is left to be looked at: in each of g groups the boxes of one copy of the tree for one bundle.
+
+    `row` (intp, g) is the row of the bundle's centre among the images of all, `shift` (complex128, g) the vector that
+    is taken from it; group after group has `count` (intp, g) of the boxes `box`.
+    """
+
+    row: Ints
+    shift: Complexes
+    count: Ints
+    box: Ints
+
+
+class _CopySearch:
+    """The search of one portion of points."""
+
+    def __init__(
+        self, lattice: Lattice, motions: Sequence[Isometry], tree: BoxTree, points: Complexes, slack: float
+    ) -> None:
+        self.lattice, self.tree, self.slack = lattice, tree, slack
+        self.count = len(points)
+        levels = 2 if len(points) >= _BUNDLE**2 else 1
+        # The last bundle is filled up with its last point.
+        points = np.concatenate((points, np.repeat(points[-1:], -len(points) % _BUNDLE**levels)))
+        self.radii, centres = [np.zeros(len(points))], [points]
+        for level in range(1, levels + 1):
+            bundles = points.reshape(-1, _BUNDLE**level)
+            centres.append(bundles.mean(axis=1))
+            self.radii.append(np.abs(bundles - centres[level][:, None]).max(axis=1))
+        unit, shift, conj = (np.array(part)[:, None] for part in zip(*motions, strict=True))
+        # The images of a bundle under all motions stand side by side: row k m + j is bundle k's under motion j.
+        self.images = [move(centre, unit, shift, conj).T.ravel() for centre in centres]
+        self.motions = len(motions)
+
+    def run(self) -> tuple[Floats, Ints, Ints]:
+        """The distances, and the pairs."""
+        bundle, level = len(self.radii) - 1, len(self.tree.levels) - 1
+        frontier = self._prune(bundle, self.tree.levels[level], self._begin())
+        sizes = [float(np.median(boxes.half_length)) for boxes in self.tree.levels]
+        while level or bundle > 1:
+            # Whichever is larger is divided.
+            if level and (bundle == 1 or sizes[level] >= float(np.median(self.radii[bundle]))):
+                level -= 1
+                self._descend(frontier, len(self.tree.levels[level]))
+            else:
+                bundle -= 1
+                self._divide(frontier)
+            frontier = self._prune(bundle, self.tree.levels[level], frontier)
+        self._divide(frontier)
+        return self._measure(frontier)
+
+    def _begin(self) -> _Frontier:
+        """The largest bundles with all copies of the tree that may hold their nearest element.
+
+        A point's nearest translate of an element lies with its nearest point in the lattice's Voronoi cell about it.
+        """
+        image, top = self.images[-1], len(self.tree.levels[-1])
+        p, q = self.lattice.reduced_basis
+        middle = self.lattice.reduced.fractional(image)
+        away = [np.round(share) for share in middle]
+        # How far points of a bundle are from its middle: they stand motion by motion, as the bundles do.
+        parts = (-1, _BUNDLE ** (len(self.radii) - 1), self.motions)
+        spread = [
+            float(np.abs(share.reshape(parts) - mean.reshape(-1, 1, self.motions)).max())
+            for share, mean in zip(self.lattice.reduced.fractional(self.images[0]), middle, strict=True)
+        ]
+        m, n = (int(0.5 + extent + self.tree.reach + _CELL_REACH) for extent in spread)
+        i, j = np.indices((2 * m + 1, 2 * n + 1)).reshape(2, -1) - np.array([[m], [n]])
+        shift = combination(p, q, away[0][:, None] + i, away[1][:, None] + j).ravel()
+        row = np.repeat(np.arange(len(image)), len(i))
+        return _Frontier(row, shift, np.full(len(row), top), np.tile(np.arange(top), len(row)))
+
+    def _descend(self, frontier: _Frontier, below: int) -> None:
+        """Replace each box by those that it holds; there are so many on the level below."""
+        held = np.minimum(below - WIDTH * frontier.box, WIDTH)
+        frontier.box = ranges(WIDTH * frontier.box, held)
+        frontier.count = np.add.reduceat(held, np.cumsum(frontier.count) - frontier.count)
+
+    def _divide(self, frontier: _Frontier) -> None:
+        """Replace each bundle by those, or the points, that it holds."""
+        first = np.cumsum(frontier.count) - frontier.count
+        frontier.box = frontier.box[ranges(np.repeat(first, _BUNDLE), np.repeat(frontier.count, _BUNDLE))]
+        bundle, motion = np.divmod(frontier.row, self.motions)
+        parts = _BUNDLE * bundle[:, None] + np.arange(_BUNDLE)
+        frontier.row = (parts * self.motions + motion[:, None]).ravel()
+        frontier.shift = np.repeat(frontier.shift, _BUNDLE)
+        frontier.count = np.repeat(frontier.count, _BUNDLE)
+
+    def _prune(self, bundle: int, boxes: Boxes, frontier: _Frontier) -> _Frontier:
+        """The groups without the boxes that can hold the nearest element of no point of their bundles."""
+        of = np.repeat(np.arange(len(frontier.row)), frontier.count)
+        owner = frontier.row // self.motions
+        radius = self.radii[bundle][owner]
+        centre = (self.images[bundle][frontier.row] - frontier.shift)[of]
+        x, y = _from_box(boxes, frontier.box, centre)
+        distance = np.sqrt(x * x + y * y)
+        if boxes is not self.tree.levels[0]:
+            inside = centre - boxes.inside[frontier.box]
+            x_inside, y_inside = inside.real, inside.imag
+            from_inside = np.sqrt(x_inside * x_inside + y_inside * y_inside)
+        else:
+            x_inside, y_inside, from_inside = x, y, distance
+        # Of each group the nearest among the known points of elements.
+        least = np.minimum.reduceat(from_inside, np.cumsum(frontier.count) - frontier.count)
+        best = np.flatnonzero(from_inside == least[of])
+        best = best[np.searchsorted(of[best], np.arange(len(least)))]
+        least_of_all = np.full(len(self.radii[bundle]), np.inf)
+        np.minimum.at(least_of_all, owner, least)
+        keep = np.flatnonzero(distance <= (least_of_all[owner] + 2 * radius + 2 * self.slack)[of])
+        of, distance = of[keep], distance[keep]
+        safe = np.maximum(least, _TINY)
+        u_x, u_y = x_inside[best] / safe, y_inside[best] / safe
+        over = np.maximum(distance, _TINY)
+        apart = (x[keep] / over - u_x[of]) ** 2 + (y[keep] / over - u_y[of]) ** 2
+        bound = least + radius * radius / (2 * safe) + 2 * self.slack
+        possible = distance <= bound[of] + np.sqrt(apart) * radius[of]
+        keep, of = keep[possible], of[possible]
+        count = np.bincount(of, minlength=len(owner))
+        alive = np.flatnonzero(count)
+        return _Frontier(frontier.row[alive], frontier.shift[alive], count[alive], frontier.box[keep])
+
+    def _measure(self, frontier: _Frontier) -> tuple[Floats, Ints, Ints]:
+        """The distances of points from elements, and the pairs that are near enough."""
+        owner = frontier.row // self.motions
+        of = np.repeat(np.arange(len(owner)), frontier.count)
+        where = (self.images[0][frontier.row] - frontier.shift)[of]
+        start, chord = self.tree.start[frontier.box], self.tree.chord[frontier.box]
+        distance = distances(where, start, chord)
+        nearest = np.full(len(self.radii[0]), np.inf)
+        np.minimum.at(nearest, owner, np.minimum.reduceat(distance, np.cumsum(frontier.count) - frontier.count))
+        point = owner[of]
+        # Without the points with which the last bundle was filled up.
+        keep = np.flatnonzero((distance <= nearest[point] + self.slack) & (point < self.count))
+        return nearest[: self.count], point[keep], self.tree.element[frontier.box[keep]]
+
+
+def _from_box(boxes: Boxes, box: Ints, points: Complexes) -> tuple[Floats, Floats]:
+    """The vectors to points from the nearest points of boxes, as x and y."""
+    away, axis = points - boxes.centre[box], boxes.axis[box]
+    along = away.real * axis.real + away.imag * axis.imag
+    across = away.imag * axis.real - away.real * axis.imag
+    length, width = boxes.half_length[box], boxes.half_width[box]
+    along -= np.minimum(np.maximum(along, -length), length)
+    across -= np.minimum(np.maximum(across, -width), width)
+    return along * axis.real - across * axis.imag, along * axis.imag + across * axis.real
+
+
+def distances(points: Complexes, start: Complexes, chord: Complexes) -> Floats:
+    """The distances of points from segments, each from `start` to start + chord, or where that is 0 a point; (n,)."""
+    x, y = points.real - start.real, points.imag - start.imag
+    along, up = chord.real, chord.imag
+    square = along * along + up * up
+    share = (x * along + y * up) / np.where(square > 0.0, square, 1.0)
+    foot = np.minimum(np.maximum(share, 0.0), 1.0)
+    x, y = x - foot * along, y - foot * up
+    return np.asarray(np.sqrt(x * x + y * y))
