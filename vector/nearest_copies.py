@@ -29,9 +29,9 @@ from voronoi_tiles.vector.box_tree import WIDTH, Boxes, BoxTree, combination
 
 _BUNDLE = 8  # points of a bundle, and bundles of a large bundle
 _AT_ONCE = 1 << 14  # points whose search goes on at once: a multiple of the large bundles
-# How far the Voronoi cell of a lattice reaches in coordinates of its reduced basis, which is 2/3, with a margin: where
-# its border is only all but reached, either of two copies may be the nearest.
-_CELL_REACH = 0.75
+# Where the border of the lattice's Voronoi cell is only all but reached, either of two copies may be the nearest; in
+# coordinates of the reduced basis.
+_MARGIN = 0.02
 _TINY = 1e-300
 
 
@@ -130,7 +130,10 @@ class _CopySearch:
             float(np.abs(share.reshape(parts) - mean.reshape(-1, 1, self.motions)).max())
             for share, mean in zip(self.lattice.reduced.fractional(self.images[0]), middle, strict=True)
         ]
-        m, n = (int(0.5 + extent + self.tree.reach + _CELL_REACH) for extent in spread)
+        m, n = (
+            int(0.5 + extent + self.tree.reach + reach + _MARGIN)
+            for extent, reach in zip(spread, cell_reach(self.lattice), strict=True)
+        )
         i, j = np.indices((2 * m + 1, 2 * n + 1)).reshape(2, -1) - np.array([[m], [n]])
         shift = combination(p, q, away[0][:, None] + i, away[1][:, None] + j).ravel()
         row = np.repeat(np.arange(len(image)), len(i))
@@ -198,6 +201,18 @@ class _CopySearch:
         # Without the points with which the last bundle was filled up.
         keep = np.flatnonzero((distance <= nearest[point] + self.slack) & (point < self.count))
         return nearest[: self.count], point[keep], self.tree.element[frontier.box[keep]]
+
+
+def cell_reach(lattice: Lattice) -> tuple[float, float]:
+    """How far the lattice's Voronoi cell about 0 reaches, in coordinates of its reduced basis.
+
+    Its corners are the centre of the circle through 0 and the two vectors at an acute angle, this centre as seen from
+    those two, and what lies opposite.
+    """
+    p, q = lattice.reduced_basis
+    product = abs(p.real * q.real + p.imag * q.imag)
+    first, second, square = abs(p) ** 2, abs(q) ** 2, 2 * lattice.reduced.det**2
+    return 1 - second * (first - product) / square, 1 - first * (second - product) / square
 
 
 def _from_box(boxes: Boxes, box: Ints, points: Complexes) -> tuple[Floats, Floats]:

@@ -291,6 +291,49 @@ def test_a_lost_island_is_a_stroke_that_strayed() -> None:
     assert "strayed strokes" in _failed(_report(partial(_rings, chosen=[0, 1]), design))
 
 
+@dataclass(frozen=True)
+class _WithOneMore(_LocalTampered):
+    """A tile whose site has one more node, of which the engine knew nothing."""
+
+    node: complex
+
+    @property
+    def nodes(self) -> NDArray[np.complex128]:
+        return np.append(self.good.nodes, self.node)
+
+
+@dataclass(frozen=True)
+class _WithOneMoreRecord(_Tampered):
+    node: complex
+
+    def local(self) -> Any:
+        good = self.record.local()
+        return _WithOneMore(good, good.outline, self.node)
+
+
+@pytest.mark.parametrize("nearer", [1e-11, 1e-8, 1e-3])
+def test_a_copy_that_is_a_hair_too_near_is_seen(nearer: float) -> None:
+    """At a vertex the copy that is not beyond the arc is nearer than the arc claims: by so much of the cell."""
+    read = Design.from_dict(DESIGN)
+    records: list[Any] = list(tessellate(read.noded, read.group, read.lattice))
+    outline = records[0].local().outline
+    # Where two arcs with different neighbours meet, the copy beyond the one that ends there is as near as the others.
+    k = int(np.flatnonzero(outline.neighbour[1:] != outline.neighbour[:-1])[0]) + 1
+    name, operation = outline.neighbours[outline.neighbour[k - 1]]
+    other = next(number for number, record in enumerate(records) if record.name == name)
+    site = records[other].local()
+    place = read.lattice.isometry(operation.inverse())(complex(outline.start[k]))
+    feet = site.nodes[site.segments]
+    along = feet[:, 1] - feet[:, 0]
+    share = np.clip(((place - feet[:, 0]) * along.conj()).real / np.abs(along) ** 2, 0.0, 1.0)
+    foot = complex(min(feet[:, 0] + share * along, key=lambda z: abs(z - place)))
+    node = foot + (place - foot) / abs(place - foot) * nearer * UNIT
+    records[other] = _WithOneMoreRecord(records[other], _nothing, node)
+    report = prove(read.group, read.lattice, records)
+    assert report.emptiness == pytest.approx(nearer, rel=1e-3)
+    assert "emptiness" in _failed(report)
+
+
 def test_a_far_site_is_proved_where_it_was_computed() -> None:
     """Thousands of cells away the figures are as small as near the origin."""
     far = {**DESIGN, "site": [{"strokes": [{"circle": [3e5 + 15, 15 - 9e5], "radius": 9}]}]}
