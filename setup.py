@@ -25,6 +25,7 @@ from setuptools.command.build_ext import build_ext
 from setuptools.errors import CompileError, OptionError
 
 SOURCES = [
+    "vector/nearest_copies.c",
     "voronoi_tiles/base/kernels.c",
     "vector/cells/cells.c",
     "raster/block_lists.c",

@@ -16,7 +16,7 @@ from voronoi_tiles.groups.wallpaper import Lattice
 WIDTH = 8
 """How many boxes of one level a box of the next holds; the last of a level may hold fewer."""
 
-_LONGEST = 0.5  # of a piece, in coordinates of the reduced basis
+_LONGEST = 0.5  # of a part, in coordinates of the reduced basis
 _FEW = 64  # elements up to so many are kept in the order in which they were drawn
 
 
@@ -42,10 +42,9 @@ class Boxes:
 class BoxTree:
     """Elements, each moved by a lattice vector so that its middle lies in one cell about 0, and boxes around them.
 
-    Those that are longer than half a cell are there as often as their parts of at most this length have middles in
-    different cells. `start` and `chord` (complex128, n) are the elements in these places, whole; `element` (intp, n)
-    says which of those given they are. `levels[0]` are the elements (their parts) themselves, as boxes without width;
-    the last level has at most WIDTH. No part reaches beyond `reach` from 0 in coordinates of the reduced basis.
+    What is longer than half a cell is cut into parts. `start` and `chord` (complex128, n) are the elements or parts in
+    these places; `element` (intp, n) says of which of those given. `levels[0]` are the same as boxes without width; the
+    last level has at most WIDTH. None reaches beyond `reach` from 0 in coordinates of the reduced basis.
     """
 
     start: Complexes
@@ -68,18 +67,17 @@ class BoxTree:
         x, y = np.round(x), np.round(y)
         p, q = lattice.reduced_basis
         vector = combination(p, q, x, y)
-        low, high, placed = low - vector, high - vector, start[element] - vector
+        low, high = low - vector, high - vector
         if len(low) > _FEW:
             order = z_order(middle - vector)
-            low, high, placed = low[order], high[order], placed[order]
-            chord, element = chord[order], element[order]
+            low, high, element = low[order], high[order], element[order]
         levels = [_segments(low, high)]
         width = WIDTH
         while len(levels[-1]) > WIDTH:
             levels.append(_boxes(low, high, width))
             width *= WIDTH
         reach = 0.5 + float((share / count).max()) / 2
-        return cls(placed, chord, element, tuple(levels), reach)
+        return cls(low, high - low, element, tuple(levels), reach)
 
 
 def combination(p: complex, q: complex, x: Floats, y: Floats) -> Complexes:

@@ -4,24 +4,35 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base import kernels
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, offsets_of
 from voronoi_tiles.base.box_join import z_order
 from voronoi_tiles.base.maps import Isometry, move
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.vector.all_arcs import AllArcs
 from voronoi_tiles.vector.box_tree import BoxTree, combination
-from voronoi_tiles.vector.nearest_copies import NearestCopies, distances, nearest_copies
+from voronoi_tiles.vector.nearest_copies import NearestCopies, distances, nearest_copies, steps_around
 from voronoi_tiles.vector.tessellation import LocalTile
 
 # Where on an arc its points are tested; its end is the next one's start.
 _PARAMETERS = np.array([0.0, 0.25, 0.5, 0.75])
 # So many times the limit of an error an element may be farther than the nearest one and still be taken into account.
 _SLACK = 10.0
+_NEAR = 0.05  # of the cell's width: how far the compiled search moves on before it chooses copies anew
 _AT_ONCE = 1 << 20  # pairs of a point and an element: tens of megabytes
+
+_ARGUMENTS = (
+    *(kernels.INT, kernels.COMPLEXES, kernels.INT, kernels.COMPLEXES, kernels.COMPLEXES, kernels.BOOLS),
+    *(kernels.COMPLEXES, kernels.FLOATS, kernels.INTS, kernels.FLOAT, kernels.FLOAT),
+    *(kernels.INT, kernels.INTS, kernels.COMPLEXES, kernels.COMPLEXES, kernels.FLOATS, kernels.FLOATS),
+    *(kernels.COMPLEXES, kernels.COMPLEXES, kernels.INTS, kernels.INTS, kernels.COMPLEXES, kernels.COMPLEXES),
+    *(kernels.COMPLEXES, kernels.INTS, kernels.FLOATS),
+)
 
 
 def errors_of_distance(
@@ -36,48 +47,100 @@ def errors_of_distance(
     site = np.repeat(np.arange(len(tiles)), [len(start) for start, _ in elements])
     start, end = (np.concatenate(ends) for ends in zip(*elements, strict=True))
     tree = BoxTree.of(lattice, start, end)
+    sites = Sites(site, start, end - start)
     arcs = AllArcs.of([tile.outline for tile in tiles])
     arc = np.repeat(np.arange(len(arcs)), len(_PARAMETERS))
     points = arcs.at(arc, np.tile(_PARAMETERS, len(arcs)))
     x, y = (np.round(share) for share in lattice.reduced.fractional(np.array([tile.nodes[0] for tile in tiles])))
     vector = combination(*lattice.reduced_basis, x, y)
-    inverses = [lattice.isometry(operation.inverse()) for operation in group.operations]
-    found = nearest_copies(lattice, inverses, tree, points - vector[arcs.tile[arc]], _SLACK * limit)
-
-    sites = _Sites(site, start, end - start)
     beyond, unit, shift, conj = (column[arc] for column in _neighbours(lattice, tiles))
-    here = sites.distances(points, arcs.tile[arc], found, _SLACK * limit)
-    there = sites.distances(move(points, unit, shift, conj), beyond, found, _SLACK * limit)
-    return float(np.abs(here - there).max()), float((here - found.distance).max())
+    claims = Claims(
+        near=points - vector[arcs.tile[arc]],
+        places=np.stack((points, move(points, unit, shift, conj))),
+        sites=np.stack((arcs.tile[arc], beyond)),
+    )
+    inverses = [lattice.isometry(operation.inverse()) for operation in group.operations]
+    slack = _SLACK * limit
+    found = distances_of_claims(lattice, inverses, tree, sites, claims, slack)
+    here, there = (
+        sites.complete(distance, found[0] + slack, *side)
+        for distance, *side in zip(found[1:], claims.places, claims.sites, strict=True)
+    )
+    return float(np.abs(here - there).max()), float((here - found[0]).max())
+
+
+class Claims(NamedTuple):
+    """Points of edges, n of them, and which two sites they claim to be as near to as to none.
+
+    `near` are the points, complex128 (n,), those of each tile moved by a lattice vector to where its site is near 0. In
+    `places`, complex128 (2, n), they stand in the places in which the sites `sites` (intp, 2 x n) are where they are.
+    """
+
+    near: Complexes
+    places: Complexes
+    sites: Ints
 
 
 @dataclass(frozen=True, slots=True)
-class _Sites:
+class Sites:
     """The elements of all sites in their places: `site` (intp, m), in order, `start` and `chord` (complex128, m)."""
 
     site: Ints
     start: Complexes
     chord: Complexes
 
-    def distances(self, points: Complexes, site: Ints, found: NearestCopies, slack: float) -> Floats:
-        """The distance of each point from one of the sites, float64 (n,).
-
-        Where the nearest of all copies was found at this distance or less, but for the slack, an element of the pairs
-        found is the nearest of the site as well; from elsewhere one looks at all elements.
-        """
-        result = np.full(len(points), np.inf)
+    def among(self, found: NearestCopies, places: Complexes, site: Ints) -> Floats:
+        """The distances of places from the elements of a site each that are among the pairs found; float64 (n,)."""
+        result = np.full(len(places), np.inf)
         of = self.site[found.element] == site[found.point]
         point, element = found.point[of], found.element[of]
-        np.minimum.at(result, point, distances(points[point], self.start[element], self.chord[element]))
-        missed = np.flatnonzero(result > found.distance + slack)
+        np.minimum.at(result, point, distances(places[point], self.start[element], self.chord[element]))
+        return result
+
+    def complete(self, known: Floats, enough: Floats, places: Complexes, site: Ints) -> Floats:
+        """The distance of each place from a site: as `known` up to `enough`; beyond, of all elements of the site."""
+        result = known.copy()
+        missed = np.flatnonzero(known > enough)
         for number in np.unique(site[missed]).tolist():
             chosen = missed[site[missed] == number]
             elements = slice(*np.searchsorted(self.site, (number, number + 1)).tolist())
             start, chord = self.start[elements], self.chord[elements]
             portion = max(1, _AT_ONCE // len(start))
             for part in np.split(chosen, range(portion, len(chosen), portion)):
-                result[part] = distances(points[part, None], start, chord).min(axis=1)
+                result[part] = distances(places[part, None], start, chord).min(axis=1)
         return result
+
+
+def distances_of_claims(
+    lattice: Lattice, motions: Sequence[Isometry], tree: BoxTree, sites: Sites, claims: Claims, slack: float
+) -> Floats:
+    """The distances of points from what is nearest to them and from the two sites they claim, float64 (3, n).
+
+    Those from sites are right up to that from the nearest and the slack. The copies are the images of the elements
+    under the inverses of `motions` and all lattice translations. A compiled kernel gives the same bits.
+    """
+    compiled = kernels.kernel("proof_nearest", *_ARGUMENTS)
+    if compiled is None:
+        found = nearest_copies(lattice, motions, tree, claims.near, slack)
+        among = (sites.among(found, *side) for side in zip(claims.places, claims.sites, strict=True))
+        return np.stack((found.distance, *among))
+    unit, shift, conj = (np.array(part) for part in zip(*motions, strict=True))
+    near = _NEAR * lattice.reduced.det / max(map(abs, lattice.reduced_basis))
+    levels = tree.levels
+    result = np.empty((3, len(claims.near)))
+    failed = compiled(
+        *(len(claims.near), claims.near, len(motions), unit, shift, conj),
+        *(np.array(lattice.reduced_basis), np.stack(lattice.reduced.fractional(np.array([1, 1j])))),
+        *(np.array(steps_around(lattice, tree, (_NEAR, _NEAR))), near, slack),
+        *(len(levels), offsets_of([len(boxes) for boxes in levels])),
+        *(np.concatenate(column) for column in zip(*((b.centre, b.axis) for b in levels), strict=True)),
+        *(np.concatenate(column) for column in zip(*((b.half_length, b.half_width) for b in levels), strict=True)),
+        *(tree.start, tree.chord, tree.element, sites.site, sites.start, sites.chord),
+        *(claims.places, claims.sites, result),
+    )
+    if failed:
+        raise MemoryError
+    return result
 
 
 def _side_by_side(lattice: Lattice, tiles: Sequence[LocalTile]) -> list[LocalTile]:

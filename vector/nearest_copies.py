@@ -116,24 +116,18 @@ class _CopySearch:
         return self._measure(frontier)
 
     def _begin(self) -> _Frontier:
-        """The largest bundles with all copies of the tree that may hold their nearest element.
-
-        A point's nearest translate of an element lies with its nearest point in the lattice's Voronoi cell about it.
-        """
+        """The largest bundles with all copies of the tree that may hold their nearest elements."""
         image, top = self.images[-1], len(self.tree.levels[-1])
         p, q = self.lattice.reduced_basis
         middle = self.lattice.reduced.fractional(image)
         away = [np.round(share) for share in middle]
         # How far points of a bundle are from its middle: they stand motion by motion, as the bundles do.
         parts = (-1, _BUNDLE ** (len(self.radii) - 1), self.motions)
-        spread = [
+        spread = tuple(
             float(np.abs(share.reshape(parts) - mean.reshape(-1, 1, self.motions)).max())
             for share, mean in zip(self.lattice.reduced.fractional(self.images[0]), middle, strict=True)
-        ]
-        m, n = (
-            int(0.5 + extent + self.tree.reach + reach + _MARGIN)
-            for extent, reach in zip(spread, cell_reach(self.lattice), strict=True)
         )
+        m, n = steps_around(self.lattice, self.tree, spread)
         i, j = np.indices((2 * m + 1, 2 * n + 1)).reshape(2, -1) - np.array([[m], [n]])
         shift = combination(p, q, away[0][:, None] + i, away[1][:, None] + j).ravel()
         row = np.repeat(np.arange(len(image)), len(i))
@@ -201,6 +195,17 @@ class _CopySearch:
         # Without the points with which the last bundle was filled up.
         keep = np.flatnonzero((distance <= nearest[point] + self.slack) & (point < self.count))
         return nearest[: self.count], point[keep], self.tree.element[frontier.box[keep]]
+
+
+def steps_around(lattice: Lattice, tree: BoxTree, spread: Sequence[float]) -> tuple[int, int]:
+    """How many steps along each vector of the reduced basis the copies are away that may hold a nearest element.
+
+    They are counted from the lattice point nearest to a place; the points are up to `spread` beside it, in coordinates
+    of the reduced basis. A point's nearest translate of an element lies with its nearest point in the lattice's Voronoi
+    cell about it.
+    """
+    (x, y), (m, n) = spread, cell_reach(lattice)
+    return int(0.5 + x + tree.reach + m + _MARGIN), int(0.5 + y + tree.reach + n + _MARGIN)
 
 
 def cell_reach(lattice: Lattice) -> tuple[float, float]:

@@ -1,0 +1,279 @@
+/* The nearest of all copies of all elements, for blocks of a few neighbouring points: what nearest_copies.py does.
+
+   The two inequalities that leave boxes out are those that stand there, and the distances are taken by the same
+   operations in the same order: of each point the same pairs are found, all those whose element has a copy that is no
+   farther than the nearest one and the slack. What else is looked at on the way is another matter, and does not show. */
+
+#include <math.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#define WIDTH 8 /* boxes in a box of the next level, as in box_tree.py */
+#define BLOCK 8 /* points of a block */
+
+typedef struct {
+    double x, y;
+} Complex;
+
+typedef struct {
+    int64_t levels;
+    const int64_t *first; /* of each level's boxes, and where the last level's end */
+    const Complex *centre, *axis;
+    const double *half_length, *half_width;
+} Tree;
+
+/* One copy of the tree: the image of a point under a motion, less the shift; no box of it is nearer to the anchor. */
+typedef struct {
+    int64_t motion;
+    Complex shift;
+    double nearest;
+} Copy;
+
+/* An entry of a copy of the tree, and its distance from a point. */
+typedef struct {
+    int64_t motion, entry;
+    Complex shift;
+    double distance;
+} Found;
+
+typedef struct {
+    Found *items;
+    int64_t count, size;
+} List;
+
+/* A box, with the vector that leads from it to a point. */
+typedef struct {
+    int64_t level, box;
+    double distance;
+    Complex away;
+} Seen;
+
+static double from_segment(Complex point, Complex start, Complex chord)
+{
+    double x = point.x - start.x, y = point.y - start.y;
+    double square = chord.x * chord.x + chord.y * chord.y;
+    double share = (x * chord.x + y * chord.y) / (square > 0.0 ? square : 1.0);
+    double foot = share > 0.0 ? share : 0.0;
+    foot = foot < 1.0 ? foot : 1.0;
+    x = x - foot * chord.x;
+    y = y - foot * chord.y;
+    return sqrt(x * x + y * y);
+}
+
+static double beyond(double value, double half)
+{
+    return value > half ? value - half : value < -half ? value + half : 0.0;
+}
+
+static Seen look(const Tree *tree, int64_t level, int64_t box, Complex point)
+{
+    double x = point.x - tree->centre[box].x, y = point.y - tree->centre[box].y;
+    double u = tree->axis[box].x, v = tree->axis[box].y;
+    double along = beyond(x * u + y * v, tree->half_length[box]);
+    double across = beyond(y * u - x * v, tree->half_width[box]);
+    Seen seen = {level, box, sqrt(along * along + across * across), {along * u - across * v, along * v + across * u}};
+    return seen;
+}
+
+static Complex image(Complex point, Complex unit, Complex shift, int conj, Complex less)
+{
+    double y = conj ? -point.y : point.y;
+    Complex result = {unit.x * point.x - unit.y * y + shift.x, unit.y * point.x + unit.x * y + shift.y};
+    result.x = result.x - less.x;
+    result.y = result.y - less.y;
+    return result;
+}
+
+static int by_distance(const void *one, const void *two)
+{
+    double a = ((const Copy *)one)->nearest, b = ((const Copy *)two)->nearest;
+    return (a > b) - (a < b);
+}
+
+static int append(List *list, Found found)
+{
+    if (list->count == list->size) {
+        int64_t size = 2 * list->size + 64;
+        Found *items = realloc(list->items, (size_t)size * sizeof(Found));
+        if (items == NULL)
+            return 0;
+        list->items = items;
+        list->size = size;
+    }
+    list->items[list->count++] = found;
+    return 1;
+}
+
+/* What is known of a block and one copy: what the two inequalities need. */
+typedef struct {
+    double radius, slack;
+    double of_all;      /* the distance of the block's middle from the nearest element of any copy */
+    double of_copy;     /* that from the nearest of this copy */
+    Complex direction;  /* the unit vector from that one */
+} Known;
+
+static int possible(const Known *known, const Seen *seen)
+{
+    double bound = known->of_copy + 2.0 * known->slack;
+    if (seen->distance > known->of_all + 2.0 * (known->radius + known->slack))
+        return 0;
+    if (seen->distance <= bound || !(known->of_copy > 0.0))
+        return 1;
+    double x = seen->away.x / seen->distance - known->direction.x;
+    double y = seen->away.y / seen->distance - known->direction.y;
+    bound = bound + known->radius * known->radius / (2.0 * known->of_copy) + sqrt(x * x + y * y) * known->radius;
+    return seen->distance <= bound;
+}
+
+/* Go down one copy of the tree: the entries that can be nearest to a point of the block are appended to the list. Of
+   each level at most WIDTH boxes wait at once, and no tree has 20 levels. */
+static int descend(const Tree *tree, Complex middle, Known *known, Found found, List *list)
+{
+    Seen stack[WIDTH * 20];
+    int64_t waiting = 0, top = tree->levels - 1, before = list->count;
+    known->of_copy = INFINITY;
+    for (int64_t box = tree->first[top]; box < tree->first[top + 1]; box++)
+        stack[waiting++] = look(tree, top, box, middle);
+    while (waiting > 0) {
+        Seen seen = stack[--waiting];
+        if (!possible(known, &seen))
+            continue;
+        if (seen.level == 0) {
+            if (seen.distance < known->of_copy) {
+                known->of_copy = seen.distance;
+                known->direction.x = seen.away.x / seen.distance;
+                known->direction.y = seen.away.y / seen.distance;
+                if (seen.distance < known->of_all)
+                    known->of_all = seen.distance;
+            }
+            found.entry = seen.box;
+            found.distance = seen.distance;
+            if (!append(list, found))
+                return 0;
+            continue;
+        }
+        int64_t begin = tree->first[seen.level - 1] + WIDTH * (seen.box - tree->first[seen.level]);
+        int64_t end = begin + WIDTH < tree->first[seen.level] ? begin + WIDTH : tree->first[seen.level];
+        int64_t below = waiting;
+        for (int64_t box = begin; box < end; box++) {
+            Seen child = look(tree, seen.level - 1, box, middle);
+            if (!possible(known, &child))
+                continue;
+            /* The nearest is on top. */
+            int64_t place = waiting++;
+            for (; place > below && stack[place - 1].distance < child.distance; place--)
+                stack[place] = stack[place - 1];
+            stack[place] = child;
+        }
+    }
+    /* Those that came before the nearest was known. */
+    int64_t kept = before;
+    for (int64_t k = before; k < list->count; k++)
+        if (list->items[k].distance <= known->of_all + 2.0 * (known->radius + known->slack))
+            list->items[kept++] = list->items[k];
+    list->count = kept;
+    return 1;
+}
+
+/* For `count` points the distance from the nearest copy of any element, and the distances of their `places`, two rows,
+   from the nearest element of their `sites`, two rows, among the pairs found; `result` has three rows. `fractional` is
+   the matrix that gives coordinates of the reduced basis `basis`; copies are chosen anew where points are farther than
+   `near` from the place for which they were chosen, up to `steps` around it. 0 if all went well. */
+int64_t proof_nearest(int64_t count, const Complex *points, int64_t motions, const Complex *unit, const Complex *shift,
+                      const uint8_t *conj, const Complex *basis, const double *fractional, const int64_t *steps,
+                      double near, double slack, int64_t levels, const int64_t *first, const Complex *centre,
+                      const Complex *axis, const double *half_length, const double *half_width, const Complex *start,
+                      const Complex *chord, const int64_t *element, const int64_t *site, const Complex *site_start,
+                      const Complex *site_chord, const Complex *places, const int64_t *sites, double *result)
+{
+    Tree tree = {levels, first, centre, axis, half_length, half_width};
+    List entries = {NULL, 0, 0}, pairs = {NULL, 0, 0};
+    int64_t m = steps[0], n = steps[1], copies = motions * (2 * m + 1) * (2 * n + 1);
+    Copy *copy = malloc((size_t)copies * sizeof(Copy));
+    int64_t failed = copy == NULL, chosen = 0, size;
+    Complex anchor = {0.0, 0.0}, zero = {0.0, 0.0};
+    for (int64_t k = 0; k < count && !failed; k += size) {
+        Known known = {0.0, slack, INFINITY, INFINITY, zero};
+        Complex middle = zero;
+        size = count - k < BLOCK ? count - k : BLOCK;
+        for (int64_t b = 0; b < size; b++) {
+            middle.x += points[k + b].x / (double)size;
+            middle.y += points[k + b].y / (double)size;
+        }
+        for (int64_t b = 0; b < size; b++) {
+            double x = points[k + b].x - middle.x, y = points[k + b].y - middle.y, away = sqrt(x * x + y * y);
+            known.radius = away > known.radius ? away : known.radius;
+        }
+        if (!(known.radius <= near / 2.0)) {
+            size = 1;
+            middle = points[k];
+            known.radius = 0.0;
+        }
+        double x = middle.x - anchor.x, y = middle.y - anchor.y, away = sqrt(x * x + y * y);
+        if (!chosen || !(away + known.radius <= near)) {
+            chosen = 1;
+            anchor = middle;
+            away = 0.0;
+            Copy *next = copy;
+            for (int64_t g = 0; g < motions; g++) {
+                Complex w = image(anchor, unit[g], shift[g], conj[g], zero);
+                double s = rint(fractional[0] * w.x + fractional[1] * w.y);
+                double t = rint(fractional[2] * w.x + fractional[3] * w.y);
+                for (int64_t i = -m; i <= m; i++)
+                    for (int64_t j = -n; j <= n; j++, next++) {
+                        double p = s + (double)i, q = t + (double)j;
+                        next->motion = g;
+                        next->shift.x = p * basis[0].x + q * basis[1].x;
+                        next->shift.y = p * basis[0].y + q * basis[1].y;
+                        next->nearest = INFINITY;
+                        Complex from = {w.x - next->shift.x, w.y - next->shift.y};
+                        for (int64_t box = first[levels - 1]; box < first[levels]; box++) {
+                            double distance = look(&tree, levels - 1, box, from).distance;
+                            next->nearest = distance < next->nearest ? distance : next->nearest;
+                        }
+                    }
+            }
+            qsort(copy, (size_t)copies, sizeof(Copy), by_distance);
+        }
+        entries.count = 0;
+        for (const Copy *next = copy; next < copy + copies && !failed; next++) {
+            if (next->nearest - away > known.of_all + 2.0 * (known.radius + slack))
+                break;
+            Complex from = image(middle, unit[next->motion], shift[next->motion], conj[next->motion], next->shift);
+            Found found = {next->motion, 0, next->shift, 0.0};
+            failed = !descend(&tree, from, &known, found, &entries);
+        }
+        for (int64_t b = k; b < k + size && !failed; b++) {
+            double nearest = INFINITY, least[2] = {INFINITY, INFINITY};
+            pairs.count = 0;
+            for (int64_t e = 0; e < entries.count && !failed; e++) {
+                Found found = entries.items[e];
+                Complex from =
+                    image(points[b], unit[found.motion], shift[found.motion], conj[found.motion], found.shift);
+                found.distance = from_segment(from, start[found.entry], chord[found.entry]);
+                if (found.distance <= nearest + slack) {
+                    nearest = found.distance < nearest ? found.distance : nearest;
+                    failed = !append(&pairs, found);
+                }
+            }
+            for (int64_t e = 0; e < pairs.count; e++) {
+                if (!(pairs.items[e].distance <= nearest + slack))
+                    continue;
+                int64_t which = element[pairs.items[e].entry];
+                for (int64_t side = 0; side < 2; side++)
+                    if (site[which] == sites[side * count + b]) {
+                        double distance =
+                            from_segment(places[side * count + b], site_start[which], site_chord[which]);
+                        least[side] = distance < least[side] ? distance : least[side];
+                    }
+            }
+            result[b] = nearest;
+            result[count + b] = least[0];
+            result[2 * count + b] = least[1];
+        }
+    }
+    free(copy);
+    free(entries.items);
+    free(pairs.items);
+    return failed;
+}
