@@ -125,7 +125,8 @@ def areas(a: Complexes, b: Complexes, c: Complexes) -> Floats:
     right = (b.imag - a.imag) * (c.real - a.real)
     result = left - right
     error = _AREA_ERROR * (np.abs(left) + np.abs(right))
-    for k in np.flatnonzero((np.abs(result) <= error) & (error > 0.0)).tolist():
+    # Where two corners are one, as of neighbouring segments, both products are the same.
+    for k in np.flatnonzero((np.abs(result) <= error) & (error > 0.0) & (c != a) & (c != b)).tolist():
         (x0, y0), (x1, y1), (x2, y2) = ((Fraction(z[k].real), Fraction(z[k].imag)) for z in (a, b, c))
         result[k] = float((x1 - x0) * (y2 - y0) - (y1 - y0) * (x2 - x0))
     return np.asarray(result)
@@ -174,7 +175,8 @@ def _meeting(arcs: AllArcs) -> tuple[Ints, Ints]:
     levels = [_single(arcs)]
     while len(levels[-1]) > _WIDTH:
         levels.append(levels[-1].larger())
-    i, j = (np.asarray(k, np.intp) for k in np.triu_indices(len(levels[-1])))
+    i, j = np.divmod(np.arange(len(levels[-1]) ** 2), len(levels[-1]))
+    i, j = i[i <= j], j[i <= j]
     i, j = levels[-1].possible(i, j)
     for level in reversed(levels[:-1]):
         steps = np.arange(_WIDTH)

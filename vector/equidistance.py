@@ -16,7 +16,14 @@ from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.vector.all_arcs import AllArcs
 from voronoi_tiles.vector.box_tree import BoxTree, combination
-from voronoi_tiles.vector.nearest_copies import NearestCopies, distances, nearest_copies, steps_around
+from voronoi_tiles.vector.nearest_copies import (
+    Motions,
+    NearestCopies,
+    distances,
+    inverses,
+    nearest_copies,
+    steps_around,
+)
 from voronoi_tiles.vector.tessellation import LocalTile
 
 # Where on an arc its points are tested; its end is the next one's start.
@@ -59,9 +66,9 @@ def errors_of_distance(
         places=np.stack((points, move(points, unit, shift, conj))),
         sites=np.stack((arcs.tile[arc], beyond)),
     )
-    inverses = [lattice.isometry(operation.inverse()) for operation in group.operations]
+    motions = inverses([lattice.isometry(operation) for operation in group.operations])
     slack = _SLACK * limit
-    found = distances_of_claims(lattice, inverses, tree, sites, claims, slack)
+    found = distances_of_claims(lattice, motions, tree, sites, claims, slack)
     here, there = (
         sites.complete(distance, found[0] + slack, *side)
         for distance, *side in zip(found[1:], claims.places, claims.sites, strict=True)
@@ -112,24 +119,23 @@ class Sites:
 
 
 def distances_of_claims(
-    lattice: Lattice, motions: Sequence[Isometry], tree: BoxTree, sites: Sites, claims: Claims, slack: float
+    lattice: Lattice, motions: Motions, tree: BoxTree, sites: Sites, claims: Claims, slack: float
 ) -> Floats:
     """The distances of points from what is nearest to them and from the two sites they claim, float64 (3, n).
 
-    Those from sites are right up to that from the nearest and the slack. The copies are the images of the elements
-    under the inverses of `motions` and all lattice translations. A compiled kernel gives the same bits.
+    Those from sites are right up to that from the nearest and the slack. The copies are as in `nearest_copies`. A
+    compiled kernel gives the same bits.
     """
     compiled = kernels.kernel("proof_nearest", *_ARGUMENTS)
     if compiled is None:
         found = nearest_copies(lattice, motions, tree, claims.near, slack)
         among = (sites.among(found, *side) for side in zip(claims.places, claims.sites, strict=True))
         return np.stack((found.distance, *among))
-    unit, shift, conj = (np.array(part) for part in zip(*motions, strict=True))
     near = _NEAR * lattice.reduced.det / max(map(abs, lattice.reduced_basis))
     levels = tree.levels
     result = np.empty((3, len(claims.near)))
     failed = compiled(
-        *(len(claims.near), claims.near, len(motions), unit, shift, conj),
+        *(len(claims.near), claims.near, len(motions[0]), *motions),
         *(np.array(lattice.reduced_basis), np.stack(lattice.reduced.fractional(np.array([1, 1j])))),
         *(np.array(steps_around(lattice, tree, (_NEAR, _NEAR))), near, slack),
         *(len(levels), offsets_of([len(boxes) for boxes in levels])),
@@ -168,14 +174,15 @@ def _neighbours(lattice: Lattice, tiles: Sequence[LocalTile]) -> tuple[Ints, Com
     """
     number = {tile.name: k for k, tile in enumerate(tiles)}
     isometries: dict[Operation, Isometry] = {}
-    rows, sites, which = [], [], 0
+    rows, sites, motions, which = [], [], [], 0
     for tile in tiles:
         rows.append(tile.outline.neighbour + which)
         which += len(tile.outline.neighbours)
         for name, operation in tile.outline.neighbours:
             if operation not in isometries:
-                isometries[operation] = lattice.isometry(operation.inverse())
-            sites.append((number[name], *isometries[operation]))
+                isometries[operation] = lattice.isometry(operation)
+            sites.append(number[name])
+            motions.append(isometries[operation])
     row = np.concatenate(rows)
-    site, unit, shift, conj = (np.array(column)[row] for column in zip(*sites, strict=True))
-    return site, unit, shift, conj
+    unit, shift, conj = inverses(motions)
+    return np.array(sites)[row], unit[row], shift[row], conj[row]

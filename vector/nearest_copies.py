@@ -22,7 +22,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, Floats, Ints, ranges
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
 from voronoi_tiles.base.maps import Isometry, move
 from voronoi_tiles.groups.wallpaper import Lattice
 from voronoi_tiles.vector.box_tree import WIDTH, Boxes, BoxTree, combination
@@ -33,6 +33,10 @@ _AT_ONCE = 1 << 14  # points whose search goes on at once: a multiple of the lar
 # coordinates of the reduced basis.
 _MARGIN = 0.02
 _TINY = 1e-300
+
+
+Motions = tuple[Complexes, Complexes, Bools]
+"""Isometries: z -> unit z + shift, or unit conj(z) + shift where `conj`; unit, shift and conj, (g,) each."""
 
 
 class NearestCopies(NamedTuple):
@@ -47,9 +51,15 @@ class NearestCopies(NamedTuple):
     element: Ints
 
 
-def nearest_copies(
-    lattice: Lattice, motions: Sequence[Isometry], tree: BoxTree, points: Complexes, slack: float
-) -> NearestCopies:
+def inverses(isometries: Sequence[Isometry]) -> Motions:
+    """The isometries that undo others."""
+    units, shifts, conj = zip(*isometries, strict=True)
+    mirrored = np.array(conj)
+    unit = np.where(mirrored, units, np.conj(units))
+    return unit, move(np.array(shifts), -unit, 0j, mirrored), mirrored
+
+
+def nearest_copies(lattice: Lattice, motions: Motions, tree: BoxTree, points: Complexes, slack: float) -> NearestCopies:
     """The nearest of all images of the tree's elements: under the inverses of `motions` and all lattice translations.
 
     `points` is complex128 (n,), best in an order in which points beside each other lie near each other; `slack` > 0 is
@@ -80,9 +90,7 @@ class _Frontier:
 class _CopySearch:
     """The search of one portion of points."""
 
-    def __init__(
-        self, lattice: Lattice, motions: Sequence[Isometry], tree: BoxTree, points: Complexes, slack: float
-    ) -> None:
+    def __init__(self, lattice: Lattice, motions: Motions, tree: BoxTree, points: Complexes, slack: float) -> None:
         self.lattice, self.tree, self.slack = lattice, tree, slack
         self.count = len(points)
         levels = 2 if len(points) >= _BUNDLE**2 else 1
@@ -93,10 +101,10 @@ class _CopySearch:
             bundles = points.reshape(-1, _BUNDLE**level)
             centres.append(bundles.mean(axis=1))
             self.radii.append(np.abs(bundles - centres[level][:, None]).max(axis=1))
-        unit, shift, conj = (np.array(part)[:, None] for part in zip(*motions, strict=True))
+        unit, shift, conj = (part[:, None] for part in motions)
         # The images of a bundle under all motions stand side by side: row k m + j is bundle k's under motion j.
         self.images = [move(centre, unit, shift, conj).T.ravel() for centre in centres]
-        self.motions = len(motions)
+        self.motions = len(motions[0])
 
     def run(self) -> tuple[Floats, Ints, Ints]:
         """The distances, and the pairs."""

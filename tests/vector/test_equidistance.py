@@ -10,11 +10,12 @@ import pytest
 from numpy.typing import NDArray
 
 from voronoi_tiles.base.arrays import Floats
+from voronoi_tiles.base.maps import move
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.groups.wallpaper import GROUPS
 from voronoi_tiles.vector.box_tree import BoxTree
 from voronoi_tiles.vector.equidistance import Claims, Sites, distances_of_claims, errors_of_distance
-from voronoi_tiles.vector.nearest_copies import distances
+from voronoi_tiles.vector.nearest_copies import distances, inverses
 from voronoi_tiles.vector.tessellation import tessellate
 
 SLACK = 1e-9
@@ -43,19 +44,17 @@ def problem(name: str, kind: str, number: int, seed: int) -> tuple[Any, ...]:
     points: NDArray[np.complex128] = np.cumsum(steps)
     if kind == "grid":
         points = np.round(2 * points) / 2
-    inverses = [lattice.isometry(operation.inverse()) for operation in GROUPS[name].operations]
-    places = np.stack((points, inverses[-1](points)))
+    motions = inverses([lattice.isometry(operation) for operation in GROUPS[name].operations])
+    places = np.stack((points, move(points, *(part[-1] for part in motions))))
     claims = Claims(points, places, random.integers(0, 3, (2, len(points))))
-    return lattice, inverses, BoxTree.of(lattice, start, end), Sites(site, start, end - start), claims, SLACK
+    return lattice, motions, BoxTree.of(lattice, start, end), Sites(site, start, end - start), claims, SLACK
 
 
 @pytest.mark.usefixtures("compiled")
 @pytest.mark.parametrize("kind", ["points", "long", "grid", "thin", "chain"])
-@pytest.mark.parametrize("name", ["p1", "cm", "p4", "p6m"])
+@pytest.mark.parametrize("name", ["p1", "cm", "p6m"])
 def test_the_kernel_gives_the_same_bits(name: str, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of all three distances, few elements or many; infinite are those of sites that are not near."""
-    if kind == "thin" and GROUPS[name].fixes_b:
-        pytest.skip("its cell is never thin")
     for number in (1, 5, 70, 600):
         given = problem(name, kind, number, number)
         compiled = distances_of_claims(*given)

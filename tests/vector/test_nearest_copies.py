@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from voronoi_tiles.groups.wallpaper import GROUPS, Lattice, WallpaperGroup
 from voronoi_tiles.vector.box_tree import BoxTree
-from voronoi_tiles.vector.nearest_copies import NearestCopies, cell_reach, distances, nearest_copies
+from voronoi_tiles.vector.nearest_copies import NearestCopies, cell_reach, distances, inverses, nearest_copies
 
 Complexes = NDArray[np.complex128]
 
@@ -74,8 +74,8 @@ def search(
     group: WallpaperGroup, lattice: Lattice, start: Complexes, end: Complexes, points: Complexes
 ) -> NearestCopies:
     """What the proof's search finds."""
-    inverses = [lattice.isometry(operation.inverse()) for operation in group.operations]
-    return nearest_copies(lattice, inverses, BoxTree.of(lattice, start, end), points, SLACK)
+    motions = inverses([lattice.isometry(operation) for operation in group.operations])
+    return nearest_copies(lattice, motions, BoxTree.of(lattice, start, end), points, SLACK)
 
 
 def check(found: NearestCopies, wanted: NDArray[np.float64], tolerance: float) -> None:
