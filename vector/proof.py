@@ -11,8 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import fsum
 from typing import Any
+
+import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, next_in_ring
 from voronoi_tiles.base.errors import ProofError
@@ -104,13 +105,11 @@ def prove(group: WallpaperGroup, lattice: Lattice, records: Sequence[TileRecord]
     """The proof's figures for the tiles of all sites of a design."""
     size = max(abs(lattice.a), abs(lattice.b))
     tiles = [record.local() for record in records]
-    areas = [
-        tile.outline.area * group.order / len(record.symmetry) for tile, record in zip(tiles, records, strict=True)
-    ]
     arcs = AllArcs.of([tile.outline for tile in tiles])
+    copies = np.array([group.order // len(record.symmetry) for record in records])
     equidistance, emptiness = errors_of_distance(group, lattice, tiles, PROOF_LIMIT * size)
     return ProofReport(
-        area=abs(fsum([*areas, -lattice.det])) / lattice.det,
+        area=abs(arcs.area(copies) - lattice.det) / lattice.det,
         equidistance=equidistance / size,
         emptiness=emptiness / size,
         open_joints=int((arcs.end != arcs.start[next_in_ring(arcs.ring_offsets)]).sum()),
