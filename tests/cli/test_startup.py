@@ -25,12 +25,12 @@ site = [{ strokes = [{ bezier = [[6, 9], [30, 2], [30, 20], [13, 25]] }] }]
 @pytest.mark.parametrize(
     ("command", "needed"),
     [
-        ("export DESIGN -o x.json", "numpy shapely"),
-        ("export DESIGN -o x.svg", "numpy shapely"),
-        ("export DESIGN -o x.svg --sheet 200x100mm", "numpy shapely importlib.resources"),
+        ("export DESIGN -o x.json", "numpy"),
+        ("export DESIGN -o x.svg", "numpy svgwrite"),
+        ("export DESIGN -o x.svg --sheet 200x100mm", "numpy shapely svgwrite importlib.resources"),
         ("export DESIGN -o x.dxf", "numpy shapely importlib.resources ezdxf unittest"),
-        ("info DESIGN --json", "numpy shapely"),
-        ("info DESIGN", "numpy shapely rich"),
+        ("info DESIGN --json", "numpy"),
+        ("info DESIGN", "numpy rich"),
         ("check DESIGN --json --size 64 --renderer cpu", "numpy shapely importlib.resources"),
         ("render DESIGN -o x.png --size 64 --renderer cpu", "numpy shapely importlib.resources"),
     ],

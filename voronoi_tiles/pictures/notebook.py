@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.formats.page import page_length
 from voronoi_tiles.formats.svg.path_text import decimal_text, path_data
-from voronoi_tiles.formats.svg.writer import add_element, document_text, new_document
+from voronoi_tiles.formats.svg.writer import document_text, new_document
 from voronoi_tiles.groups.periodic_colouring import palette
 from voronoi_tiles.vector.outline import Outline
 
@@ -33,13 +34,12 @@ class _Canvas:
         self._corner = complex(low_x - margin, high_y + margin)
         sides = (high_x - low_x, high_y - low_y)
         width, height = (decimal_text(page_length((side + 2 * margin) * self._scale)) for side in sides)
-        self._document = new_document(width, height, f"0 0 {width} {height}")
-        add_element(self._document, "defs", {})
+        self._drawing = new_document(width, height, f"0 0 {width} {height}")
 
     def outline(self, outline: Outline, fill: str) -> None:
         """Draw a tile."""
         data = path_data(outline.paths.moved(1.0, -self._corner).moved(self._scale, 0j))
-        self._add({"d": data, "fill": fill, "stroke": _INK, "stroke-width": "1"})
+        self._add(data, fill=fill, stroke=_INK, stroke_width=1)
 
     def segments(self, segments: Complexes, colour: str, width: float) -> None:
         """Draw segments (n, 2), a point as one of no length, which a round cap shows as a dot."""
@@ -49,15 +49,14 @@ class _Canvas:
         ]
         data = " ".join(f"M {a} L {b}" for a, b in ends)
         if data:
-            style = {"fill": "none", "stroke": colour, "stroke-width": str(width), "stroke-linecap": "round"}
-            self._add({"d": data, **style})
+            self._add(data, fill="none", stroke=colour, stroke_width=width, stroke_linecap="round")
 
     def text(self) -> str:
         """The picture."""
-        return document_text(self._document)
+        return document_text(self._drawing)
 
-    def _add(self, attributes: dict[str, str]) -> None:
-        add_element(self._document, "path", attributes)
+    def _add(self, data: str, **style: Any) -> None:
+        self._drawing.add(self._drawing.path(d=data, **style))
 
 
 def tiling_picture(tiles: Sequence[tuple[Outline, Complexes]], copies: Iterable[Outline] = ()) -> str:
