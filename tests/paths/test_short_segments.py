@@ -176,6 +176,16 @@ def test_a_short_arc_about_a_corner_gives_way_to_its_tip() -> None:
         assert stays is given or len(stays.start) == 5
 
 
+@pytest.mark.parametrize("off", [0.0, 1e-9, -1e-9])
+@pytest.mark.parametrize("backwards", [False, True])
+def test_a_short_segment_that_goes_straight_on_goes(off: float, *, backwards: bool) -> None:
+    """From one of what it joins it need not turn at all: rounding does not decide whether it goes."""
+    given = ring(0, 10, 10.1 + 0.1j * off, 20 + 0.99j, 10 + 9j)
+    if backwards:
+        given = given.reversed(np.array([True]))
+    assert len(without_short_segments(given, 0.2, 0.01).start) == 4
+
+
 @pytest.mark.parametrize("bulge", [-0.02, 0.06])
 def test_an_arc_that_is_no_corners_stays(bulge: float) -> None:
     """One that bulges to the other side, and one that bulges out over the tip."""

@@ -27,7 +27,8 @@ from voronoi_tiles.paths.paths import ARC, LINE, Paths
 from voronoi_tiles.paths.segments import Circles, tangent_at
 
 _INSIDE: Final = 1e-6
-"""How far a short arc may stick out of its triangle, radians: it joins edges smoothly but for rounding."""
+"""How far a short segment may stick out of its triangle, radians: it joins edges smoothly but for rounding, and may go
+on straight from one of them."""
 
 _LED: Final = 2.0
 """Half of what an arc may turn by to be led to a tip; radians. Up to 2 pi / 3 no other point of it is as far from the
@@ -105,7 +106,7 @@ def _tips(rings: Paths, before: Ints, short: Ints, after: Ints) -> tuple[Complex
     first, last = side * np.angle(chord * arriving.conj()), side * np.angle(leaving * chord.conj())
     edges = [Circles.of(rings, segments) for segments in (before, short, after)]
     bulge = side * edges[1].half
-    usable = (np.minimum(first, last) > 0) & (first + last < np.pi / 2)
+    usable = (np.minimum(first, last) > -_INSIDE) & (first + last > 0) & (first + last < np.pi / 2)
     usable &= (bulge > -_INSIDE) & (bulge < np.minimum(first, last) + _INSIDE)
     usable &= np.maximum(np.abs(edges[0].half), np.abs(edges[2].half)) <= _LED
     with np.errstate(divide="ignore", invalid="ignore"):
