@@ -13,7 +13,10 @@ Bools = NDArray[np.bool_]
 
 def offsets_of(counts: ArrayLike) -> Ints:
     """Where rows of these lengths begin that stand one after the other, and where the last ends: intp (rows + 1)."""
-    return np.append(0, np.cumsum(np.asarray(counts, np.intp)))
+    counts = np.asarray(counts, np.intp)
+    offsets = np.zeros(len(counts) + 1, np.intp)
+    counts.cumsum(out=offsets[1:])
+    return offsets
 
 
 def plane(points: Complexes) -> Floats:
@@ -23,11 +26,12 @@ def plane(points: Complexes) -> Floats:
 
 def ranges(first: Ints, counts: Ints) -> Ints:
     """The numbers first[0], first[0] + 1, ... (counts[0] of them), then those from first[1], and so on."""
-    total = int(counts.sum())
-    if not total:
+    ends = counts.cumsum()
+    if not len(ends) or not ends[-1]:
         return np.zeros(0, np.intp)
-    before = np.cumsum(counts) - counts
-    return np.asarray(np.arange(total) + np.repeat(first - before, counts), np.intp)
+    numbers: Ints = (first - ends + counts).repeat(counts)
+    numbers += np.arange(ends[-1])
+    return numbers
 
 
 def owned_ranges(first: Ints, last: Ints) -> tuple[Ints, Ints]:
@@ -38,7 +42,8 @@ def owned_ranges(first: Ints, last: Ints) -> tuple[Ints, Ints]:
 
 def counting(counts: Ints) -> tuple[Ints, Ints]:
     """The numbers 0 ... counts[k] - 1, one k after the other; and the k of each."""
-    return owned_ranges(np.zeros_like(counts), counts)
+    owner = np.arange(len(counts)).repeat(counts)
+    return np.arange(len(owner)) - (counts.cumsum() - counts)[owner], owner
 
 
 def next_in_ring(offsets: Ints) -> Ints:

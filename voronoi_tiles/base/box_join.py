@@ -1,11 +1,13 @@
-"""Segments in the order of their places, and the pairs whose bounding boxes meet, by a tree of boxes."""
+"""Segments in the order of their places, the pairs whose bounding boxes meet, and the points that lie in boxes."""
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from voronoi_tiles.base.arrays import Complexes, Ints
+from voronoi_tiles.base.arrays import Complexes, Ints, owned_ranges
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.tolerance import PAIRS_MAX
 
@@ -65,6 +67,36 @@ def _meeting(boxes: NDArray[np.float64], i: Ints, j: Ints) -> tuple[Ints, Ints]:
     x0, y0, x1, y1 = boxes
     meet = (x0[i] <= x1[j]) & (x0[j] <= x1[i]) & (y0[i] <= y1[j]) & (y0[j] <= y1[i])
     return i[meet], j[meet]
+
+
+def points_in_boxes(points: Complexes, low: Complexes, high: Complexes) -> tuple[Ints, Ints]:
+    """Index pairs of a point and a box that holds it, box after box; boxes are closed, with `low` and `high` corners.
+
+    `points` is complex128 (n,), the corners complex128 (m,), m > 0. The points are sorted into a grid of about as many
+    squares as there are boxes.
+    """
+    side = math.isqrt(len(low)) + 1
+    x0, y0, x1, y1 = low.real.min(), low.imag.min(), high.real.max(), high.imag.max()
+    near = (points.real >= x0) & (points.real <= x1) & (points.imag >= y0) & (points.imag <= y1)
+    index = np.flatnonzero(near)
+    # Larger coordinates have larger numbers, even where rounding decides on them.
+    column, left, right = (_numbers(z.real, x0, x1, side) for z in (points[index], low, high))
+    row, bottom, top = (_numbers(z.imag, y0, y1, side) for z in (points[index], low, high))
+    square = row * side + column
+    order = np.argsort(square, kind="stable")
+    row, box = owned_ranges(bottom, top + 1)
+    first = np.searchsorted(square[order], row * side + left[box], "left")
+    last = np.searchsorted(square[order], row * side + right[box], "right")
+    place, run = owned_ranges(first, last)
+    point, box = index[order[place]], box[run]
+    x, y = points.real[point], points.imag[point]
+    inside = (x >= low.real[box]) & (x <= high.real[box]) & (y >= low.imag[box]) & (y <= high.imag[box])
+    return point[inside], box[inside]
+
+
+def _numbers(values: NDArray[np.float64], least: float, most: float, count: int) -> Ints:
+    """The numbers 0 ... count - 1 of the parts of an interval in which values lie."""
+    return np.minimum((values - least) * (count / ((most - least) or 1.0)), count - 1).astype(np.intp)
 
 
 def z_order(points: Complexes) -> Ints:
