@@ -25,10 +25,10 @@ from setuptools.command.build_ext import build_ext
 from setuptools.errors import CompileError, OptionError
 
 SOURCES = [
-    "vector/nearest_copies.c",
     "voronoi_tiles/base/kernels.c",
-    "vector/cells/cells.c",
     "raster/block_lists.c",
+    "vector/cells/cells.c",
+    "vector/nearest_copies.c",
 ]
 """The C files, each beside what it computes in numpy; a new one is a line here."""
 

@@ -74,7 +74,7 @@ class BoxTree:
         levels = [_segments(low, high)]
         width = WIDTH
         while len(levels[-1]) > WIDTH:
-            levels.append(_boxes(low, high, width))
+            levels.append(boxes_around(np.stack((low, high)), width))
             width *= WIDTH
         reach = 0.5 + float((share / count).max()) / 2
         return cls(low, high - low, element, tuple(levels), reach)
@@ -96,23 +96,22 @@ def _segments(low: Complexes, high: Complexes) -> Boxes:
     return Boxes(middle, axis, length / 2, np.zeros(len(low)), middle)
 
 
-def _boxes(low: Complexes, high: Complexes, width: int) -> Boxes:
-    """Boxes around every `width` consecutive segments, along the principal axis of their ends."""
-    first = np.arange(0, len(low), width)
-    count = np.diff(np.append(first, len(low)))
+def boxes_around(points: Complexes, width: int) -> Boxes:
+    """Boxes around every `width` consecutive columns of points, complex128 (k, n), along their principal axes."""
+    first = np.arange(0, points.shape[1], width)
+    count = np.diff(np.append(first, points.shape[1]))
     of = np.repeat(np.arange(len(first)), count)
-    mean = (np.add.reduceat(low, first) + np.add.reduceat(high, first)) / (2 * count)
-    u, v = low - mean[of], high - mean[of]
+    mean = np.add.reduceat(points.sum(axis=0), first) / (len(points) * count)
+    away = points - mean[of]
     # The square of a direction does not know its sign: that of the principal axis is the sum of all squares.
-    axis = np.sqrt(np.add.reduceat(u * u + v * v, first))
+    axis = np.sqrt(np.add.reduceat((away * away).sum(axis=0), first))
     length = np.abs(axis)
     axis = np.where(length > 0.0, axis / np.where(length > 0.0, length, 1.0), 1.0)
-    turned = axis.conj()[of]
-    u, v = u * turned, v * turned
-    left = np.minimum.reduceat(np.minimum(u.real, v.real), first)
-    right = np.maximum.reduceat(np.maximum(u.real, v.real), first)
-    below = np.minimum.reduceat(np.minimum(u.imag, v.imag), first)
-    above = np.maximum.reduceat(np.maximum(u.imag, v.imag), first)
+    away *= axis.conj()[of]
+    left = np.minimum.reduceat(away.real.min(axis=0), first)
+    right = np.maximum.reduceat(away.real.max(axis=0), first)
+    below = np.minimum.reduceat(away.imag.min(axis=0), first)
+    above = np.maximum.reduceat(away.imag.max(axis=0), first)
     centre = mean + axis * ((left + right) / 2 + 1j * (below + above) / 2)
-    inside = low[np.minimum(first + width // 2, len(low) - 1)]
+    inside = points[0, np.minimum(first + width // 2, points.shape[1] - 1)]
     return Boxes(centre, axis, (right - left) / 2, (above - below) / 2, inside)

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import math
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Ints
-from voronoi_tiles.base.maps import move
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, offsets_of
 from voronoi_tiles.base.neighbours import Neighbours
 from voronoi_tiles.base.tolerance import SAME_POINT
-from voronoi_tiles.groups.wallpaper import Lattice
+from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, modulo_lattice
 
 
@@ -21,16 +21,13 @@ class Placed:
     """A base site moved by a lattice vector to near the origin, with what its copies depend on.
 
     `nodes` (complex128, m) and `segments` (intp, n x 2) are as in a site; `shift` are the integer coordinates of the
-    vector that leads back to the site as it was drawn. A circle about `centre` with this `radius` holds all nodes.
-    `stabilizer` are the motions that map the site onto itself, the identity first; `representatives` has one motion for
-    each copy in a cell, modulo translations.
+    vector that leads back to the site as it was drawn. `stabilizer` are the motions that map the site onto itself, the
+    identity first; `representatives` has one motion for each copy in a cell, modulo translations.
     """
 
     nodes: Complexes
     segments: Ints
     shift: tuple[int, int]
-    centre: complex
-    radius: float
     stabilizer: tuple[Motion, ...]
     representatives: tuple[Motion, ...]
 
@@ -43,32 +40,80 @@ class Placed:
         )
 
 
-def place(action: Action, nodes: Complexes, segments: Ints) -> Placed:
-    """A site moved near the origin, with its stabilizer."""
-    box = complex(nodes.real.min(), nodes.imag.min()), complex(nodes.real.max(), nodes.imag.max())
-    x, y = action.fractional((box[0] + box[1]) / 2)
+@dataclass(frozen=True, slots=True)
+class SiteUnion:
+    """All sites in one: the nodes of one after those of the other, and so the segments.
+
+    `nodes` (complex128, m) are positions, `segments` (intp, n x 2) indices of them. The nodes of site k, all with the
+    number k in `node_site` (intp, m), are those from `first[k]` up to, not including, `first[k + 1]` (intp, sites + 1).
+    """
+
+    nodes: Complexes
+    segments: Ints
+    node_site: Ints
+    first: Ints
+
+    @classmethod
+    def of(cls, sites: Sequence[NodedSite] | Sequence[Placed]) -> SiteUnion:
+        """The union of some sites."""
+        counts = [len(site.nodes) for site in sites]
+        first, nodes = offsets_of(counts), np.concatenate([site.nodes for site in sites])
+        segments = np.concatenate([site.segments for site in sites])
+        if len(sites) > 1:
+            segments = segments + np.repeat(first[:-1], [len(site.segments) for site in sites])[:, None]
+        return cls(nodes, segments, np.repeat(np.arange(len(sites)), counts), first)
+
+
+def place(action: Action, sites: Sequence[NodedSite]) -> list[Placed]:
+    """Sites moved near the origin, each with its stabilizer."""
+    union = SiteUnion.of(sites)
+    nodes, first = union.nodes, union.first[:-1]
+    sides = nodes.real, nodes.imag
+    (left, low), (right, high) = ([bound.reduceat(side, first) for side in sides] for bound in (np.minimum, np.maximum))
+    x, y = action.lattice.fractional((left + right) / 2 + (low + high) * 0.5j)
     # A site within a cell of the origin stays where it was drawn.
-    shift = (0, 0) if abs(x) <= 2 and abs(y) <= 2 else (round(x), round(y))
-    if shift != (0, 0):
-        nodes = nodes - action.cartesian(*shift)
-        box = complex(nodes.real.min(), nodes.imag.min()), complex(nodes.real.max(), nodes.imag.max())
-    centre = (box[0] + box[1]) / 2
-    stabilizer = _stabilizer(action, nodes, segments)
+    far = np.maximum(np.abs(x), np.abs(y)) > 2
+    shifts = [(0, 0)] * len(sites)
+    if far.any():
+        shifts = [(round(s), round(t)) if moved else (0, 0) for s, t, moved in zip(x, y, far, strict=True)]
+        nodes = np.where(far[union.node_site], nodes - action.cartesian(*np.transpose(shifts))[union.node_site], nodes)
+    own = [nodes[begin:end] for begin, end in pairwise(union.first.tolist())]
+    scale = max(action.size, float((right - left).max()), float((high - low).max()))
+    centroid = np.asarray(np.add.reduceat(nodes, first) / np.diff(union.first), complex)
+    stabilizers: list[tuple[Motion, ...]] = [(IDENTITY,)] * len(sites)
+    for k in _nearly_fixed(action, centroid, 4 * SAME_POINT * scale):
+        stabilizers[k] = _stabilizer(action, own[k], sites[k].segments)
+    representatives = {stabilizer: _representatives(action, stabilizer) for stabilizer in set(stabilizers)}
+    return [
+        Placed(own[k], site.segments, shifts[k], stabilizers[k], representatives[stabilizers[k]])
+        for k, site in enumerate(sites)
+    ]
+
+
+def _nearly_fixed(action: Action, points: Complexes, within: float) -> list[int]:
+    """The numbers of all points that some motion and a translation of the lattice may leave within a distance."""
+    x, y = action.lattice.fractional(points[:, None])
+    a, b, c, d, s, t = np.array(action.motions).T
+    steps = (a - 1) * x + b * y + s / 2, c * x + (d - 1) * y + t / 2
+    i, j = (np.abs(step - np.round(step)) for step in steps)
+    # How far the distance is at most in fractional coordinates.
+    u, v = abs(action.lattice.b), abs(action.lattice.a)
+    limit = within / abs(action.lattice.det)
+    near = (i <= limit * u) & (j <= limit * v)
+    return np.flatnonzero(near[:, 1:].any(axis=1)).tolist()
+
+
+def _representatives(action: Action, stabilizer: tuple[Motion, ...]) -> tuple[Motion, ...]:
+    """One motion for each copy in a cell, modulo translations, of a site with this stabilizer."""
+    if len(stabilizer) == 1:
+        return action.motions
     representatives: list[Motion] = []
     covered: set[Motion] = set()
     for motion in action.motions:
         if motion not in covered:
             representatives.append(motion)
             covered |= {modulo_lattice(compose(motion, element)) for element in stabilizer}
-    return Placed(
-        nodes=nodes,
-        segments=segments,
-        shift=shift,
-        centre=centre,
-        radius=float(np.abs(nodes - centre).max()),
-        stabilizer=stabilizer,
-        representatives=tuple(representatives),
-    )
+    return tuple(representatives)
 
 
 def translation(placed: Placed, sign: int) -> Motion:
@@ -115,8 +160,8 @@ class Copies:
     """Copies of bundles of sites: unit[k] z + shift[k], or where `conj[k]` (bool) unit[k] conj(z) + shift[k].
 
     A bundle is the sites that are copied by the same motions; copy k is one of all sites of the bundle `bundle[k]`
-    (intp, n). `unit` and `shift` are complex128 (n,); `motions` (int64, n x 6) are the same as exact motions. Where the
-    copies are those of several bundles, the first are the identities: copy k is the bundle k where it was placed.
+    (intp, n). `unit` and `shift` are complex128 (n,); `motions` (int64, n x 6) are the same as exact motions. The first
+    copies are the identities: copy k is the bundle k where it was placed.
     """
 
     motions: npt.NDArray[np.int64]
@@ -134,46 +179,65 @@ class Copies:
         return int(self.bundle.max()) + 1
 
 
-def copies_near(action: Action, base: Placed, other: Placed) -> Copies:
-    """Every copy of `other` that can shape the tile of `base`; where they are the same site, itself first.
+def bundles(placed: list[Placed]) -> Ints:
+    """The bundle of each site, numbered in the order of their first sites: intp (sites,)."""
+    known: dict[tuple[Motion, ...], int] = {}
+    return np.array([known.setdefault(site.representatives, len(known)) for site in placed], np.intp)
 
-    A point x of the tile, its nearest point y of the base site and its nearest point z of any copy satisfy
-    x - y and x - z in V, the Voronoi cell of the lattice about 0: otherwise a translated copy would be nearer.
-    So z - y lies in 2 V: few copies are left, however long or skew the cell.
+
+def copies_near(action: Action, placed: list[Placed], bundle: Ints) -> Copies:
+    """Every copy that can shape the tile of any of the sites: the identities, then bundle after bundle.
+
+    `bundle` (intp, sites) is the bundle of each site. A point x of a tile, its nearest point y of the base site and its
+    nearest point z of any copy satisfy x - y and x - z in V, the Voronoi cell of the lattice about 0: otherwise a
+    translated copy would be nearer. So z - y lies in 2 V: few copies are left, however long or skew the cell. It is
+    asked of what sites and copies extend over across the sides of V.
     """
-    p, q = (complex(action.cartesian(*v)) for v in action.reduced)
-    (p0, p1), (q0, q1) = action.reduced
-    relevant = np.array([p, q, p + q if (p.conjugate() * q).real < 0 else p - q])
-    reach = base.radius + other.radius
-    bound = np.abs(relevant) ** 2 * (1 + 1e-9) + reach * np.abs(relevant)
-    # How many steps along p and q: by the inverse of the Gram matrix, without signs.
-    first, second, product = float(bound[0]), float(bound[1]), p.conjugate() * q
-    n = math.ceil((abs(q) ** 2 * first + abs(product.real) * second) / product.imag**2) + 1
-    m = math.ceil((abs(product.real) * first + abs(p) ** 2 * second) / product.imag**2) + 1
-    steps = np.indices((2 * n + 1, 2 * m + 1)).reshape(2, -1).T - (n, m)
-    base_motions = np.array(other.representatives)
-    linear = [action.linear[m[:4]] for m in other.representatives]
+    p, q = action.lattice.reduced_basis
+    across = np.array([p, q, p + q if (p.conjugate() * q).real < 0 else p - q])[:, None]
+    numbers = bundle.tolist()
+    named = [placed[numbers.index(number)].representatives for number in range(max(numbers) + 1)]
+    of = np.repeat(np.arange(len(named)), [len(some) for some in named])
+    motions = np.array([motion for some in named for motion in some])
+    linear = [action.linear[motion[:4]] for some in named for motion in some]
     unit, conj = np.array([u for u, _ in linear]), np.array([c for _, c in linear])
-    origin = move(
-        np.asarray(other.centre), unit, action.cartesian(base_motions[:, 4] / 2, base_motions[:, 5] / 2), conj
-    )
-    away = origin - base.centre
-    near = np.round(np.stack(Lattice(p, q).fractional(away), axis=1))
-    grid = steps[None, :, :] - near[:, None, :].astype(int)
-    vector = away[:, None] + grid[..., 0] * p + grid[..., 1] * q
-    inside = np.ones(vector.shape, bool)
-    for r, limit in zip(relevant, bound, strict=True):
-        inside &= np.abs(vector.real * r.real + vector.imag * r.imag) <= limit
-    which, step = np.nonzero(inside)
-    i, j = grid[which, step].T
-    motions = base_motions[which]
-    motions[:, 4] += 2 * (i * p0 + j * q0)
-    motions[:, 5] += 2 * (i * p1 + j * q1)
-    if base is other:
-        identity = np.flatnonzero((motions == IDENTITY).all(axis=1))
-        order = np.concatenate((identity, np.delete(np.arange(len(motions)), identity)))
-        motions, which = motions[order], which[order]
+    # A moved point is along r where the point itself is along r moved back: r / unit, or its mirror image.
+    along = across * unit.conj()
+    along.imag[:, conj] *= -1.0
+    low, high = np.empty((2, *along.shape))
+    for number in range(len(named)):
+        chosen = of == number
+        nodes = np.concatenate([site.nodes for site, own in zip(placed, numbers, strict=True) if own == number])
+        low[:, chosen], high[:, chosen] = _extents(nodes, along[:, chosen])
+    still = np.searchsorted(of, np.arange(len(named)))  # the first motion of every bundle is the identity
+    least, most = low[:, still].min(axis=1, keepdims=True), high[:, still].max(axis=1, keepdims=True)
+    bound = np.abs(across) ** 2 * (1 + 1e-9) + (high - low + most - least) / 2
     shift = action.cartesian(motions[:, 4] / 2, motions[:, 5] / 2)
-    return Copies(
-        motions=motions, unit=unit[which], shift=shift, conj=conj[which], bundle=np.zeros(len(motions), np.intp)
-    )
+    away = _inner(across, shift) + (low + high - least - most) / 2
+    # By the inverse of the Gram matrix: how many steps along p and q lead near, and how many there are to try.
+    product = p.conjugate() * q
+    inverse = np.array([[abs(q) ** 2, -product.real], [-product.real, abs(p) ** 2]]) / product.imag**2
+    near = np.round(inverse @ away[:2])
+    i, j = np.ceil(np.abs(inverse) @ bound[:2].max(axis=1)).astype(int) + 1
+    steps = np.stack(np.divmod(np.arange((2 * i + 1) * (2 * j + 1)), 2 * j + 1)) - [[i], [j]]
+    vectors = _inner(across, across[:2, 0])
+    offset = (away - vectors @ near)[:, :, None] + (vectors @ steps)[:, None]
+    which, step = np.nonzero((np.abs(offset) <= bound[:, :, None]).all(axis=0))
+    steps = np.array(action.reduced).T @ (steps[:, step] - near[:, which].astype(int))
+    motions = motions[which]
+    motions[:, 4:] += 2 * steps.T
+    order = np.argsort((motions != IDENTITY).any(axis=1), kind="stable")
+    motions, which = motions[order], which[order]
+    shift = action.cartesian(motions[:, 4] / 2, motions[:, 5] / 2)
+    return Copies(motions, unit[which], shift, conj[which], of[which])
+
+
+def _inner(one: Complexes, other: Complexes) -> Floats:
+    """The inner products of vectors in the plane."""
+    return one.real * other.real + one.imag * other.imag
+
+
+def _extents(points: Complexes, along: Complexes) -> tuple[Floats, Floats]:
+    """The least and the greatest inner product of some points with each vector of an array, of that array's shape."""
+    product = _inner(along[..., None], points)
+    return product.min(axis=-1), product.max(axis=-1)

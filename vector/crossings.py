@@ -15,9 +15,11 @@ import numpy.typing as npt
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, counting
 from voronoi_tiles.base.tolerance import EPSILON, PROOF_LIMIT
 from voronoi_tiles.vector.all_arcs import AllArcs
+from voronoi_tiles.vector.box_tree import Boxes, boxes_around
 
 _WIDTH = 8  # consecutive arcs of a group, and groups of a larger group
 _MARGIN = 1e-9  # of boxes, relative to the extent of all
+_AT_ONCE = 1 << 15  # pairs of groups: their parts' take tens of megabytes
 _PARTS = 8  # of a curve at first
 # Halvings of crossing sub-arcs: after so many a sub-arc's sagitta is below its end points' rounding.
 _DIVISIONS = 24
@@ -39,7 +41,7 @@ def count_crossings(arcs: AllArcs, size: float) -> int:
     """
     limit = PROOF_LIMIT * size
     folded = _folded(arcs, limit)
-    i, j = _meeting(arcs)
+    i, j = candidate_pairs(arcs)
     straight = ~(arcs.curved[i] | arcs.curved[j])
     a, b = i[straight], j[straight]
     found = int(_cross_far(arcs.start[a], arcs.end[a], arcs.start[b], arcs.end[b], limit).sum())
@@ -48,12 +50,10 @@ def count_crossings(arcs: AllArcs, size: float) -> int:
 
 def _folded(arcs: AllArcs, limit: float) -> int:
     """The number of curves that turn back upon themselves: their control point lies beyond an end, on its line."""
-    bent = np.flatnonzero(arcs.curved)
-    a, b, c = arcs.start[bent], arcs.control[bent], arcs.end[bent]
-    near = np.minimum(np.abs(b - a), np.abs(c - b)) > 2 * limit
-    turned = (b - a).real * (c - b).real + (b - a).imag * (c - b).imag < 0.0
-    bent = np.flatnonzero(near & turned)
-    return int((areas(a[bent], b[bent], c[bent]) == 0.0).sum())
+    u, v = arcs.control - arcs.start, arcs.end - arcs.control
+    turned = np.flatnonzero(u.real * v.real + u.imag * v.imag < 0.0)
+    turned = turned[np.minimum(np.abs(u[turned]), np.abs(v[turned])) > 2 * limit]
+    return int((areas(arcs.start[turned], arcs.control[turned], arcs.end[turned]) == 0.0).sum())
 
 
 def _count_curved(arcs: AllArcs, i: Ints, j: Ints, limit: float) -> int:
@@ -65,9 +65,9 @@ def _count_curved(arcs: AllArcs, i: Ints, j: Ints, limit: float) -> int:
     one, two = np.divmod(part, parts[1][pair])
     first, second = ((k[pair], p / n[pair], (p + 1) / n[pair]) for k, p, n in ((i, one, parts[0]), (j, two, parts[1])))
     for _ in range(_DIVISIONS):
-        ends = (arcs.at(arc, t) for arc, low, high in (first, second) for t in (low, high))
-        meeting = _cross_far(*ends, limit)
-        first, second = tuple(x[meeting] for x in first), tuple(x[meeting] for x in second)
+        (a, b), (c, d) = ((arcs.at(arc, low), arcs.at(arc, high)) for arc, low, high in (first, second))
+        meeting = _cross_far(a, b, c, d, limit)
+        first, second = ((arc[meeting], low[meeting], high[meeting]) for arc, low, high in (first, second))
         bent = np.flatnonzero(arcs.curved[first[0]] | arcs.curved[second[0]])
         if not len(bent):
             return 0
@@ -134,69 +134,83 @@ def areas(a: Complexes, b: Complexes, c: Complexes) -> Floats:
 
 @dataclass(frozen=True, slots=True)
 class _Groups:
-    """Groups of consecutive arcs: their boxes (float64, 4 x n: left, bottom, right, top) and where they all go.
+    """Groups of consecutive arcs, n of them: the boxes around them, and where they all go.
 
     `ways` (uint8, n) has a bit for each direction that all arcs of a group go in, none where they are of several rings;
     `ring` (intp, n) is that of a group's first arc.
     """
 
-    boxes: Floats
+    boxes: Boxes
     ways: npt.NDArray[np.uint8]
     ring: Ints
 
     def __len__(self) -> int:
         return len(self.ways)
 
-    def larger(self) -> _Groups:
-        """Groups of these groups."""
-        first = np.arange(0, len(self), _WIDTH)
-        last = np.minimum(first + _WIDTH, len(self)) - 1
-        boxes = np.concatenate(
-            (
-                np.minimum.reduceat(self.boxes[:2], first, axis=1),
-                np.maximum.reduceat(self.boxes[2:], first, axis=1),
-            )
-        )
-        ways = np.bitwise_and.reduceat(self.ways, first)
-        ways[self.ring[first] != self.ring[last]] = 0
-        return _Groups(boxes, ways, self.ring[first])
-
-    def possible(self, i: Ints, j: Ints) -> tuple[Ints, Ints]:
-        """The pairs i <= j of groups whose arcs may cross."""
-        left, bottom, right, top = self.boxes
-        meet = (left[i] <= right[j]) & (left[j] <= right[i]) & (bottom[i] <= top[j]) & (bottom[j] <= top[i])
-        i, j = i[meet], j[meet]
+    def possible(self, i: Ints, j: Ints, margin: float) -> tuple[Ints, Ints]:
+        """The pairs i <= j of groups whose arcs may cross: of no common run, their boxes not apart by `margin`."""
         run = (j - i <= 1) & (self.ring[i] == self.ring[j]) & (self.ways[i] & self.ways[j] != 0)
-        return i[~run], j[~run]
+        i, j = i[~run], j[~run]
+        meet = _meet(self.boxes, i, j, margin)
+        i, j = i[meet], j[meet]
+        meet = _meet(self.boxes, j, i, margin)
+        return i[meet], j[meet]
 
 
-def _meeting(arcs: AllArcs) -> tuple[Ints, Ints]:
+def _meet(boxes: Boxes, i: Ints, j: Ints, margin: float) -> Bools:
+    """Whether no side of box i separates it from box j; bool (n,)."""
+    axis, other = boxes.axis[i], boxes.axis[j]
+    cos = np.abs(axis.real * other.real + axis.imag * other.imag)
+    sin = np.abs(_cross(axis, other))
+    away = boxes.centre[j] - boxes.centre[i]
+    length, width = boxes.half_length[j], boxes.half_width[j]
+    along = np.abs(axis.real * away.real + axis.imag * away.imag)
+    across = np.abs(_cross(axis, away))
+    return np.asarray(
+        (along <= boxes.half_length[i] + length * cos + width * sin + margin)
+        & (across <= boxes.half_width[i] + length * sin + width * cos + margin)
+    )
+
+
+def _cross(u: Complexes, v: Complexes) -> Floats:
+    """The cross products of vectors."""
+    return np.asarray(u.real * v.imag - u.imag * v.real)
+
+
+def candidate_pairs(arcs: AllArcs) -> tuple[Ints, Ints]:
     """The pairs i < j of arcs of one outline that may cross: a join of groups of groups of arcs with themselves."""
-    levels = [_single(arcs)]
-    while len(levels[-1]) > _WIDTH:
-        levels.append(levels[-1].larger())
+    levels, margin = _levels(arcs)
     i, j = np.divmod(np.arange(len(levels[-1]) ** 2), len(levels[-1]))
-    i, j = i[i <= j], j[i <= j]
-    i, j = levels[-1].possible(i, j)
+    i, j = levels[-1].possible(i[i <= j], j[i <= j], margin)
     for level in reversed(levels[:-1]):
-        steps = np.arange(_WIDTH)
-        shape = (len(i), _WIDTH, _WIDTH)
-        p = np.broadcast_to((_WIDTH * i[:, None] + steps)[:, :, None], shape).ravel()
-        q = np.broadcast_to((_WIDTH * j[:, None] + steps)[:, None, :], shape).ravel()
-        inside = (p <= q) & (q < len(level))
-        i, j = level.possible(p[inside], q[inside])
+        # In portions, so that the pairs of parts of each pair never fill the memory.
+        portions = [
+            level.possible(*_parts(i[k : k + _AT_ONCE], j[k : k + _AT_ONCE], len(level)), margin)
+            for k in range(0, max(1, len(i)), _AT_ONCE)
+        ]
+        i, j = (np.concatenate(part) for part in zip(*portions, strict=True))
     apart = i != j
     return i[apart], j[apart]
 
 
-def _single(arcs: AllArcs) -> _Groups:
-    """Each arc as a group of its own; every outline's boxes are pushed to a place of their own."""
+def _parts(i: Ints, j: Ints, count: int) -> tuple[Ints, Ints]:
+    """The pairs p <= q of parts of groups i and j; there are `count` on their level."""
+    shape = (len(i), _WIDTH, _WIDTH)
+    steps = np.arange(_WIDTH)
+    p = np.broadcast_to((_WIDTH * i[:, None] + steps)[:, :, None], shape).ravel()
+    q = np.broadcast_to((_WIDTH * j[:, None] + steps)[:, None, :], shape).ravel()
+    inside = (p <= q) & (q < count)
+    return p[inside], q[inside]
+
+
+def _levels(arcs: AllArcs) -> tuple[list[_Groups], float]:
+    """Each arc as a group of its own, groups of them, and so on up to few; and the margin of their boxes.
+
+    Every outline is pushed to a place of its own, so that none meets another.
+    """
     points = np.stack((arcs.start, np.where(arcs.curved, arcs.control, arcs.start), arcs.end))
-    x, y = points.real, points.imag
-    boxes = np.stack((x.min(axis=0), y.min(axis=0), x.max(axis=0), y.max(axis=0)))
-    extent = float(max(boxes[2].max() - boxes[0].min(), boxes[3].max() - boxes[1].min()))
-    boxes[2:] += _MARGIN * extent
-    boxes[[0, 2]] += 2 * extent * arcs.tile
+    extent = max(float(np.ptp(points.real)), float(np.ptp(points.imag)))
+    points += 2 * extent * arcs.tile
     # A straight arc has but one leg; a curve goes where both of its legs go.
     first = np.where(arcs.curved, arcs.control, arcs.end) - arcs.start
     second = np.where(arcs.curved, arcs.end - arcs.control, first)
@@ -205,4 +219,12 @@ def _single(arcs: AllArcs) -> _Groups:
         ways[(one > 0.0) & (two > 0.0)] |= ahead
         ways[(one < 0.0) & (two < 0.0)] |= back
     ring = np.repeat(np.arange(len(arcs.ring_offsets) - 1), np.diff(arcs.ring_offsets))
-    return _Groups(boxes, ways, ring)
+    levels = [_Groups(boxes_around(points, 1), ways, ring)]
+    width = 1
+    while len(levels[-1]) > _WIDTH:
+        width *= _WIDTH
+        begin = np.arange(0, len(arcs), width)
+        ways_of_all = np.bitwise_and.reduceat(ways, begin)
+        ways_of_all[ring[begin] != ring[np.minimum(begin + width, len(arcs)) - 1]] = 0
+        levels.append(_Groups(boxes_around(points, width), ways_of_all, ring[begin]))
+    return levels, _MARGIN * extent

@@ -43,37 +43,45 @@ _ARGUMENTS = (
 
 
 def errors_of_distance(
-    group: WallpaperGroup, lattice: Lattice, tiles: Sequence[LocalTile], limit: float
+    group: WallpaperGroup, lattice: Lattice, tiles: Sequence[LocalTile], arcs: AllArcs, limit: float
 ) -> tuple[float, float]:
     """The largest error of equidistance, and by how much any copy is too near, in units, over points of all edges.
 
-    `limit` is what the proof accepts of either.
+    `arcs` are those of the tiles, `limit` is what the proof accepts of either.
     """
-    tiles = _side_by_side(lattice, tiles)
     elements = [_elements(tile) for tile in tiles]
-    site = np.repeat(np.arange(len(tiles)), [len(start) for start, _ in elements])
     start, end = (np.concatenate(ends) for ends in zip(*elements, strict=True))
-    tree = BoxTree.of(lattice, start, end)
-    sites = Sites(site, start, end - start)
-    arcs = AllArcs.of([tile.outline for tile in tiles])
-    arc = np.repeat(np.arange(len(arcs)), len(_PARAMETERS))
-    points = arcs.at(arc, np.tile(_PARAMETERS, len(arcs)))
-    x, y = (np.round(share) for share in lattice.reduced.fractional(np.array([tile.nodes[0] for tile in tiles])))
-    vector = combination(*lattice.reduced_basis, x, y)
-    beyond, unit, shift, conj = (column[arc] for column in _neighbours(lattice, tiles))
+    sites = Sites(np.repeat(np.arange(len(tiles)), [len(one) for one, _ in elements]), start, end - start)
+    # One node for each site, and the lattice vector that takes it near 0.
+    node = np.array([tile.nodes[0] for tile in tiles])
+    vector = combination(*lattice.reduced_basis, *map(np.round, lattice.reduced.fractional(node)))
+    order = _side_by_side(arcs, node - vector)
+    of = np.repeat(order, len(_PARAMETERS))
+    points = arcs.sample(_PARAMETERS)[order].ravel()
+    tile = arcs.tile[of]
+    beyond, unit, shift, conj = _neighbours(lattice, tiles)
     claims = Claims(
-        near=points - vector[arcs.tile[arc]],
-        places=np.stack((points, move(points, unit, shift, conj))),
-        sites=np.stack((arcs.tile[arc], beyond)),
+        near=points - vector[tile],
+        places=np.stack((points, move(points, unit[of], shift[of], conj[of]))),
+        sites=np.stack((tile, beyond[of])),
     )
     motions = inverses([lattice.isometry(operation) for operation in group.operations])
     slack = _SLACK * limit
-    found = distances_of_claims(lattice, motions, tree, sites, claims, slack)
+    found = distances_of_claims(lattice, motions, BoxTree.of(lattice, start, end), sites, claims, slack)
     here, there = (
         sites.complete(distance, found[0] + slack, *side)
         for distance, *side in zip(found[1:], claims.places, claims.sites, strict=True)
     )
     return float(np.abs(here - there).max()), float((here - found[0]).max())
+
+
+def _side_by_side(arcs: AllArcs, places: Complexes) -> Ints:
+    """The arcs in an order in which tiles follow each other whose places are beside each other: intp (n,)."""
+    if len(places) == 1:
+        return np.arange(len(arcs))
+    rank = np.empty(len(places), np.intp)
+    rank[z_order(places)] = np.arange(len(places))
+    return rank[arcs.tile].argsort(kind="stable")
 
 
 class Claims(NamedTuple):
@@ -147,15 +155,6 @@ def distances_of_claims(
     if failed:
         raise MemoryError
     return result
-
-
-def _side_by_side(lattice: Lattice, tiles: Sequence[LocalTile]) -> list[LocalTile]:
-    """The tiles in an order in which those are near each other, modulo the lattice, that follow each other."""
-    if len(tiles) == 1:
-        return list(tiles)
-    x, y = lattice.reduced.fractional(np.array([tile.nodes[0] for tile in tiles]))
-    order = z_order(combination(*lattice.reduced_basis, x - np.round(x), y - np.round(y)))
-    return [tiles[k] for k in order.tolist()]
 
 
 def _elements(tile: LocalTile) -> tuple[Complexes, Complexes]:

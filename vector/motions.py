@@ -5,11 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
-from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.base.arrays import Bools, Complexes
 from voronoi_tiles.base.maps import Isometry, move
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
@@ -18,6 +19,15 @@ Motion = tuple[int, int, int, int, int, int]
 """An operation held in integers: the linear part, row by row, and twice the translation (fractional coordinates)."""
 
 IDENTITY: Motion = (1, 0, 0, 1, 0, 0)
+
+_SQUARE = {(a, 0, 0, b) for a in (-1, 1) for b in (-1, 1)} | {(0, a, b, 0) for a in (-1, 1) for b in (-1, 1)}
+_HEXAGONAL = {
+    (sign * a, sign * b, sign * c, sign * d)
+    for a, b, c, d in ((1, 0, 0, 1), (0, -1, 1, -1), (-1, 1, -1, 0), (0, 1, 1, 0), (-1, 1, 0, 1), (1, 0, 1, -1))
+    for sign in (-1, 1)
+}
+LINEAR_PARTS: Final = tuple(sorted(_SQUARE | _HEXAGONAL))
+"""The linear parts of all motions, of those that keep a square lattice or a hexagonal one, in the order of motions."""
 
 
 def compose(outer: Motion, inner: Motion) -> Motion:
@@ -73,6 +83,12 @@ class Action:
         """The linear part of each motion as (unit complex number, whether it conjugates)."""
         isometries = (self.lattice.isometry(operation) for operation in self.group.operations)
         return {m[:4]: (i.a, i.conj) for m, i in zip(self.motions, isometries, strict=True)}
+
+    @cached_property
+    def isometries(self) -> tuple[Complexes, Bools]:
+        """For each of `LINEAR_PARTS` its unit complex number, NaN where it is none of the group's, and conjugation."""
+        found = [self.linear.get(linear, (complex("nan"), False)) for linear in LINEAR_PARTS]
+        return np.array([unit for unit, _ in found]), np.array([conj for _, conj in found])
 
     @cached_property
     def reduced(self) -> tuple[tuple[int, int], tuple[int, int]]:

@@ -9,7 +9,7 @@
 #include <stdlib.h>
 
 #define WIDTH 8 /* boxes in a box of the next level, as in box_tree.py */
-#define BLOCK 8 /* points of a block */
+#define BLOCK 16 /* points of a block */
 
 typedef struct {
     double x, y;
@@ -31,8 +31,8 @@ typedef struct {
 
 /* An entry of a copy of the tree, and its distance from a point. */
 typedef struct {
-    int64_t motion, entry;
-    Complex shift;
+    const Copy *copy;
+    int64_t entry;
     double distance;
 } Found;
 
@@ -63,6 +63,17 @@ static double from_segment(Complex point, Complex start, Complex chord)
 static double beyond(double value, double half)
 {
     return value > half ? value - half : value < -half ? value + half : 0.0;
+}
+
+static double square(const Tree *tree, int64_t box, Complex point)
+{
+    double x = point.x - tree->centre[box].x, y = point.y - tree->centre[box].y;
+    double u = tree->axis[box].x, v = tree->axis[box].y;
+    double along = fabs(x * u + y * v) - tree->half_length[box];
+    double across = fabs(y * u - x * v) - tree->half_width[box];
+    along = along > 0.0 ? along : 0.0;
+    across = across > 0.0 ? across : 0.0;
+    return along * along + across * across;
 }
 
 static Seen look(const Tree *tree, int64_t level, int64_t box, Complex point)
@@ -155,7 +166,12 @@ static int descend(const Tree *tree, Complex middle, Known *known, Found found, 
         int64_t begin = tree->first[seen.level - 1] + WIDTH * (seen.box - tree->first[seen.level]);
         int64_t end = begin + WIDTH < tree->first[seen.level] ? begin + WIDTH : tree->first[seen.level];
         int64_t below = waiting;
+        double bound = known->of_all + 2.0 * (known->radius + known->slack), squares[WIDTH];
+        for (int64_t box = begin; box < end; box++)
+            squares[box - begin] = square(tree, box, middle);
         for (int64_t box = begin; box < end; box++) {
+            if (squares[box - begin] > bound * bound)
+                continue;
             Seen child = look(tree, seen.level - 1, box, middle);
             if (!possible(known, &child))
                 continue;
@@ -166,7 +182,7 @@ static int descend(const Tree *tree, Complex middle, Known *known, Found found, 
             stack[place] = child;
         }
     }
-    /* Those that came before the nearest was known. */
+    /* Without those that came before the nearest was known. */
     int64_t kept = before;
     for (int64_t k = before; k < list->count; k++)
         if (list->items[k].distance <= known->of_all + 2.0 * (known->radius + known->slack))
@@ -240,16 +256,19 @@ int64_t proof_nearest(int64_t count, const Complex *points, int64_t motions, con
             if (next->nearest - away > known.of_all + 2.0 * (known.radius + slack))
                 break;
             Complex from = image(middle, unit[next->motion], shift[next->motion], conj[next->motion], next->shift);
-            Found found = {next->motion, 0, next->shift, 0.0};
+            Found found = {next, 0, 0.0};
             failed = !descend(&tree, from, &known, found, &entries);
         }
         for (int64_t b = k; b < k + size && !failed; b++) {
             double nearest = INFINITY, least[2] = {INFINITY, INFINITY};
+            Complex from = zero;
             pairs.count = 0;
             for (int64_t e = 0; e < entries.count && !failed; e++) {
                 Found found = entries.items[e];
-                Complex from =
-                    image(points[b], unit[found.motion], shift[found.motion], conj[found.motion], found.shift);
+                if (e == 0 || found.copy != entries.items[e - 1].copy) {
+                    int64_t g = found.copy->motion;
+                    from = image(points[b], unit[g], shift[g], conj[g], found.copy->shift);
+                }
                 found.distance = from_segment(from, start[found.entry], chord[found.entry]);
                 if (found.distance <= nearest + slack) {
                     nearest = found.distance < nearest ? found.distance : nearest;

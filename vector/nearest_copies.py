@@ -32,7 +32,7 @@ _AT_ONCE = 1 << 14  # points whose search goes on at once: a multiple of the lar
 # Where the border of the lattice's Voronoi cell is only all but reached, either of two copies may be the nearest; in
 # coordinates of the reduced basis.
 _MARGIN = 0.02
-_TINY = 1e-300
+_TINY = 1e-200  # in the place of 0 below a fraction: no distance of a design is as small
 
 
 Motions = tuple[Complexes, Complexes, Bools]
@@ -101,7 +101,8 @@ class _CopySearch:
             bundles = points.reshape(-1, _BUNDLE**level)
             centres.append(bundles.mean(axis=1))
             self.radii.append(np.abs(bundles - centres[level][:, None]).max(axis=1))
-        unit, shift, conj = (part[:, None] for part in motions)
+        unit, shift, conj = motions
+        unit, shift, conj = unit[:, None], shift[:, None], conj[:, None]
         # The images of a bundle under all motions stand side by side: row k m + j is bundle k's under motion j.
         self.images = [move(centre, unit, shift, conj).T.ravel() for centre in centres]
         self.motions = len(motions[0])

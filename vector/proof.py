@@ -22,9 +22,9 @@ from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.vector.all_arcs import AllArcs
 from voronoi_tiles.vector.crossings import count_crossings
-from voronoi_tiles.vector.enclosure import strayed_parts
 from voronoi_tiles.vector.equidistance import errors_of_distance
-from voronoi_tiles.vector.tessellation import LocalTile, TileRecord, tessellate
+from voronoi_tiles.vector.strayed import strayed_parts
+from voronoi_tiles.vector.tessellation import TileRecord, tessellate
 
 
 def proved_tiles(
@@ -107,32 +107,28 @@ def prove(group: WallpaperGroup, lattice: Lattice, records: Sequence[TileRecord]
     tiles = [record.local() for record in records]
     arcs = AllArcs.of([tile.outline for tile in tiles])
     copies = np.array([group.order // len(record.symmetry) for record in records])
-    equidistance, emptiness = errors_of_distance(group, lattice, tiles, PROOF_LIMIT * size)
+    equidistance, emptiness = errors_of_distance(group, lattice, tiles, arcs, PROOF_LIMIT * size)
     return ProofReport(
         area=abs(arcs.area(copies) - lattice.det) / lattice.det,
         equidistance=equidistance / size,
         emptiness=emptiness / size,
-        open_joints=int((arcs.end != arcs.start[next_in_ring(arcs.ring_offsets)]).sum()),
+        open_joints=open_joints(arcs),
         crossings=count_crossings(arcs, size),
         strayed=strayed_parts(tiles, arcs, size),
-        unshared=sum(_unshared(tile, tiles) for tile in tiles),
+        unshared=_unshared(arcs, records[0].tessellation.counterparts()),
     )
 
 
-def _unshared(tile: LocalTile, tiles: Sequence[LocalTile]) -> int:
-    """The number of arcs that the tile beyond does not have, reversed, bit for bit."""
-    outline = tile.outline
-    missing = 0
-    by_name = {other.name: other for other in tiles}
-    for number, (name, operation) in enumerate(outline.neighbours):
-        chosen = outline.neighbour == number
-        beyond = by_name[name].copy(operation)
-        theirs = _bits(beyond.end, beyond.control, beyond.start)
-        mine = _bits(outline.start[chosen], outline.control[chosen], outline.end[chosen])
-        missing += len(mine - theirs)
-    return missing
+def open_joints(arcs: AllArcs) -> int:
+    """The number of arcs whose end is not, bit for bit, the start of the next of their ring."""
+    return int((arcs.end != arcs.start[next_in_ring(arcs.ring_offsets)]).sum())
 
 
-def _bits(*columns: Complexes) -> set[tuple[complex, ...]]:
-    """Rows of numbers as a set."""
-    return set(zip(*(column.tolist() for column in columns), strict=True))
+def _unshared(arcs: AllArcs, counterparts: tuple[Complexes, Complexes, Complexes]) -> int:
+    """The number of arcs that the tiles beyond do not have, reversed, bit for bit; all, where these have others."""
+    if len(counterparts[0]) != len(arcs):
+        return len(arcs)
+    start, control, end = counterparts
+    # Written so that NaN fails.
+    same = (start == arcs.start) & (control == arcs.control) & (end == arcs.end)
+    return int((~same).sum())

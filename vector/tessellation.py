@@ -10,29 +10,30 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import pairwise
 
-import numpy as np
-
-from voronoi_tiles.base.arrays import Complexes, Ints, offsets_of
+from voronoi_tiles.base.arrays import Complexes, Ints
 from voronoi_tiles.base.errors import ProofError
-from voronoi_tiles.base.maps import move
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.base.tolerance import SAME_POINT
 from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.vector.arcs import Neighbour
 from voronoi_tiles.vector.cells.bisectors import TouchingElementsError
-from voronoi_tiles.vector.cells.cells import Parts, UnboundedCellError, bound_cells
-from voronoi_tiles.vector.cells.half_edges import Contour, enclosed, trace_contour
-from voronoi_tiles.vector.cells.pencils import Rows, make_rows
+from voronoi_tiles.vector.cells.cells import UnboundedCellError, bound_cells
+from voronoi_tiles.vector.cells.enclosures import enclosed
+from voronoi_tiles.vector.cells.half_edges import trace_contour
+from voronoi_tiles.vector.cells.pencils import make_rows
 from voronoi_tiles.vector.cells.touching import refuse_touching
 from voronoi_tiles.vector.cells.trace import OpenBoundaryError, trace_boundary
-from voronoi_tiles.vector.complex.boundary import TileBoundary
+from voronoi_tiles.vector.complex.boundary import TileBoundaries
 from voronoi_tiles.vector.complex.edges import UnpairedEdgeError, find_edges
 from voronoi_tiles.vector.complex.period import Period, make_period
 from voronoi_tiles.vector.complex.quotient import Quotient, build_quotient
+from voronoi_tiles.vector.complex.site_symmetry import SiteSymmetry
 from voronoi_tiles.vector.complex.traced import Traced, clearance, with_curves
-from voronoi_tiles.vector.copies import Copies, Placed, copies_near, place, translation
+from voronoi_tiles.vector.copies import Placed, SiteUnion, bundles, copies_near, place, translation
+from voronoi_tiles.vector.motion_codes import motion_of, operation_of
 from voronoi_tiles.vector.motions import (
     IDENTITY,
     Action,
@@ -108,7 +109,7 @@ class LocalTile:
     @cached_property
     def outline(self) -> Outline:
         """The outline of the tile."""
-        return self._tessellation.placed_outline(self._index, IDENTITY)
+        return self._tessellation.placed_outlines[self._index]
 
     def copy(self, operation: Operation) -> Outline:
         """The outline of a copy."""
@@ -128,25 +129,48 @@ class Tessellation:
     quotient: Quotient
 
     @cached_property
-    def _boundaries(self) -> list[TileBoundary]:
-        """The boundary of each site's base tile."""
-        return [TileBoundary.of(self.quotient, tile) for tile in range(len(self.placed))]
+    def boundaries(self) -> TileBoundaries:
+        """The boundaries of the sites' base tiles."""
+        return TileBoundaries.of(self.quotient)
+
+    @cached_property
+    def _symmetry(self) -> SiteSymmetry:
+        """What maps the sites onto themselves."""
+        return SiteSymmetry.of(self.placed)
 
     @cached_property
     def period(self) -> Period:
         """The tiles of one cell, with the edges that they share."""
         return make_period(self.action, self.placed, self.quotient)
 
+    @cached_property
+    def placed_outlines(self) -> list[Outline]:
+        """The outlines of all base tiles, in the places of their sites."""
+        boundaries = self.boundaries
+        names = [
+            Neighbour(self.names[site], operation_of(motion))
+            for site, motion in zip(boundaries.site.tolist(), boundaries.motion.tolist(), strict=True)
+        ]
+        bounds = boundaries.face_offsets.tolist()
+        return boundaries.outlines(IDENTITY, [tuple(names[first:last]) for first, last in pairwise(bounds)])
+
+    @cached_property
+    def outlines(self) -> list[Outline]:
+        """The outlines of all base tiles, where their sites were drawn."""
+        if all(placed.shift == (0, 0) for placed in self.placed):
+            return self.placed_outlines
+        return [self.outline(tile, IDENTITY) for tile in range(len(self.placed))]
+
     def placed_outline(self, tile: int, motion: Motion) -> Outline:
         """The outline of a copy of a tile, named by a motion of the placed site."""
-        boundary = self._boundaries[tile]
         # The copy, not the motion that names it, decides on the bits.
         here = self.placed[tile].canonical(motion)
+        boundary = self.boundaries.of_tile(tile)
         neighbours = tuple(
-            Neighbour(self.names[t], to_operation(self.placed[t].canonical(compose(here, beyond))))
-            for t, beyond in boundary.neighbours
+            Neighbour(self.names[t], to_operation(self.placed[t].canonical(compose(here, motion_of(beyond)))))
+            for t, beyond in zip(boundary.site.tolist(), boundary.motion.tolist(), strict=True)
         )
-        return boundary.outline(here, neighbours)
+        return boundary.outlines(here, [neighbours])[0]
 
     def outline(self, tile: int, motion: Motion) -> Outline:
         """The outline of a copy of a tile, named by a motion of the site as it was drawn."""
@@ -159,6 +183,13 @@ class Tessellation:
         neighbours = tuple(Neighbour(name, operation @ back[name]) for name, operation in outline.neighbours)
         return replace(outline, neighbours=neighbours)
 
+    def counterparts(self) -> tuple[Complexes, Complexes, Complexes]:
+        """Of each arc of all `placed_outlines` the one that the tile beyond has there, reversed.
+
+        That is start, control and end, complex128 (n,), as that tile's own boundary has them; NaN where it has none.
+        """
+        return self.boundaries.counterparts(self._symmetry)
+
 
 def tessellate(
     sites: Sequence[NodedSite], group: WallpaperGroup, lattice: Lattice, *, without_short: bool = False
@@ -170,24 +201,24 @@ def tessellate(
     where two copies touch or cross, ProofError where no boundary was found, which is not known to happen to any design.
     """
     action = Action(group, lattice)
-    placed = [place(action, site.nodes, site.segments) for site in sites]
+    placed = place(action, sites)
     names = tuple(site.name for site in sites)
+    symmetry = SiteSymmetry.of(placed)
     try:
-        contours = [trace_contour(p.nodes, p.segments) for p in placed]
-        found = [_trace(action, placed, contours, tile) for tile in range(len(sites))]
-        traced, edges = find_edges(action, placed, [boundary for boundary, _ in found], without_short=without_short)
+        traced, least = _trace(action, placed)
+        edges = find_edges(action, symmetry, traced, without_short=without_short)
     except (TouchingElementsError, UnboundedCellError, OpenBoundaryError, UnpairedEdgeError) as error:
         refuse_touching(action, names, placed)
         raise ProofError(
             "the boundary of a tile does not close, though no copies touch; please report this design"
         ) from error
-    if min(clearance for _, clearance in found) < _SUSPICIOUS * action.size:
+    if least < _SUSPICIOUS * action.size:
         refuse_touching(action, names, placed)
-    tessellation = Tessellation(action, names, placed, build_quotient(action, traced, edges))
+    tessellation = Tessellation(action, names, placed, build_quotient(action, len(placed), edges))
     return [
         TileRecord(
             name=name,
-            outline=tessellation.outline(tile, IDENTITY),
+            outline=tessellation.outlines[tile],
             symmetry=tuple(
                 to_operation(compose(compose(translation(p, 1), m), translation(p, -1))) for m in p.stabilizer
             ),
@@ -198,83 +229,15 @@ def tessellate(
     ]
 
 
-def _trace(action: Action, placed: list[Placed], contours: list[Contour], tile: int) -> tuple[Traced, float]:
-    """The boundary of one tile, and the site's distance from the nearest of its vertices."""
-    contour = contours[tile]
-    copies = [copies_near(action, placed[tile], other) for other in placed]
-    images = [
-        move(other.nodes, near.unit[:, None], near.shift[:, None], near.conj[:, None])
-        for other, near in zip(contours, copies, strict=True)
-    ]
-    strangers = [nodes.reshape(-1) for t, nodes in enumerate(images) if t != tile]
-    siblings = images[tile][1:].reshape(-1)
-    inside = enclosed(contour, np.concatenate([np.zeros(0, complex), *strangers]), siblings)
-    rows = make_rows(contour, action.covering_radius, inside)
-    parts = _bound_cells_of_one(action, placed, contours, tile, copies, rows)
-    inner = (parts.target == tile) & (parts.copy == 0)
+def _trace(action: Action, placed: list[Placed]) -> tuple[Traced, float]:
+    """The boundaries of all tiles, and the least distance of a site from a vertex of its own."""
+    union, bundle = SiteUnion.of(placed), bundles(placed)
+    contour, node_bundle = trace_contour(union.nodes, union.segments), bundle[union.node_site]
+    copies = copies_near(action, placed, bundle)
+    rows = make_rows(contour, action.covering_radius, enclosed(contour, copies, union.node_site, node_bundle))
+    parts = bound_cells(rows, contour, copies, node_bundle, action.covering_radius)
     # Beside the shorter vector of the cell: an edge as long as the longer one may turn about what is left out.
-    boundary = trace_boundary(rows, contour, parts, inner, SAME_POINT * abs(action.lattice.reduced_basis[0]))
-    return with_curves(boundary, rows, contours, tile, parts, copies), clearance(boundary, rows, parts)
-
-
-@dataclass(frozen=True, slots=True)
-class _PartsOfOne(Parts):
-    """Parts of one site's rows: beyond part k lies the item `item[k]` of the copy `copy[k]` of the site `target[k]`."""
-
-    target: Ints
-
-
-def _bound_cells_of_one(
-    action: Action, placed: list[Placed], contours: list[Contour], tile: int, near: list[Copies], rows: Rows
-) -> _PartsOfOne:
-    """What bounds the cells of one site, by the search of all sites: each site is a bundle of its own."""
-    counts = np.array([len(p.segments) for p in placed])
-    half_edges, nodes = offsets_of(2 * counts), offsets_of([len(p.nodes) for p in placed])
-    lone = offsets_of([len(c.corner_node) - len(c.source) for c in contours])
-    everything = trace_contour(
-        np.concatenate([p.nodes for p in placed]),
-        np.concatenate([p.segments + first for p, first in zip(placed, nodes, strict=False)]),
-    )
-    node_bundle = np.repeat(np.arange(len(placed)), np.diff(nodes))
-    # The copies near the site that are not where they were placed, behind the identities.
-    others = [np.flatnonzero((copies.motions != IDENTITY).any(axis=1)) for copies in near]
-    bundle = np.repeat(np.arange(len(near)), [len(index) for index in others])
-    still = np.ones(len(near), bool)
-    copies = Copies(
-        motions=np.concatenate(
-            [np.tile(IDENTITY, (len(near), 1)), *(c.motions[i] for c, i in zip(near, others, strict=True))]
-        ),
-        unit=np.concatenate([still.astype(complex), *(c.unit[i] for c, i in zip(near, others, strict=True))]),
-        shift=np.concatenate([0j * still, *(c.shift[i] for c, i in zip(near, others, strict=True))]),
-        conj=np.concatenate([~still, *(c.conj[i] for c, i in zip(near, others, strict=True))]),
-        bundle=np.append(np.arange(len(near)), bundle),
-    )
-    split, count = 2 * len(placed[tile].segments), half_edges[-1]
-    shifted = replace(
-        rows,
-        half_edge=np.where(rows.half_edge >= 0, rows.half_edge + half_edges[tile], -1),
-        corner=np.where(
-            rows.corner >= split,
-            rows.corner - split + count + lone[tile],
-            np.where(rows.corner >= 0, rows.corner + half_edges[tile], -1),
-        ),
-    )
-    parts = bound_cells(shifted, everything, copies, node_bundle, action.covering_radius)
-    item = parts.item
-    corner = np.where(item >= count, item - count, item)
-    target = node_bundle[
-        np.concatenate((everything.corner_node, everything.source))[
-            corner + (item < count) * len(everything.corner_node)
-        ]
-    ]
-    there = 2 * counts[target]
-    local = np.where(corner >= count, corner - count - lone[target] + there, corner - half_edges[target])
-    # Back to the numbers of the copies near the site.
-    number = np.zeros(len(copies), np.intp)
-    number[len(near) :] = np.concatenate(others)
-    for t, known in enumerate(near):
-        own = np.flatnonzero((known.motions == IDENTITY).all(axis=1))
-        number[t] = own[0] if len(own) else 0
-    return _PartsOfOne(
-        parts.row, number[parts.copy], np.where(item >= count, there + local, local), parts.begin, parts.end, target
-    )
+    null = SAME_POINT * abs(action.lattice.reduced_basis[0])
+    boundary = trace_boundary(rows, contour, parts, union.node_site, copies.bundles, null)
+    traced = with_curves(boundary, rows, contour, parts, copies, union.node_site)
+    return traced, clearance(boundary, rows, parts)

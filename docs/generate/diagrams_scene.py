@@ -24,7 +24,7 @@ from voronoi_tiles.vector.cells.images import Surroundings, surround
 from voronoi_tiles.vector.cells.partial_quadratics import PartialQuadratics
 from voronoi_tiles.vector.cells.pencils import Rows, make_rows
 from voronoi_tiles.vector.cells.provisional import Bounds
-from voronoi_tiles.vector.copies import Copies, copies_near, place
+from voronoi_tiles.vector.copies import Copies, bundles, copies_near, place
 from voronoi_tiles.vector.motions import IDENTITY, Action
 
 Floats = NDArray[np.float64]
@@ -95,8 +95,8 @@ def lone_scene(sites: Sequence[tuple[Complexes, Ints]]) -> Scene:
 def group_scene(design: Design) -> Scene:
     """A scene of the first and only site of a design among all its copies near it."""
     action = Action(design.group, design.lattice)
-    (site,) = (place(action, site.nodes, site.segments) for site in design.noded)
-    return _scene([(site.nodes, site.segments)], copies_near(action, site, site), action.covering_radius)
+    (site,) = placed = place(action, design.noded)
+    return _scene([(site.nodes, site.segments)], copies_near(action, placed, bundles(placed)), action.covering_radius)
 
 
 def _scene(sites: Sequence[tuple[Complexes, Ints]], copies: Copies, covering_radius: float) -> Scene:

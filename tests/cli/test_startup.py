@@ -26,8 +26,8 @@ site = [{ strokes = [{ bezier = [[6, 9], [30, 2], [30, 20], [13, 25]] }] }]
     ("command", "needed"),
     [
         ("export DESIGN -o x.json", "numpy"),
-        ("export DESIGN -o x.svg", "numpy svgwrite"),
-        ("export DESIGN -o x.svg --sheet 200x100mm", "numpy shapely svgwrite importlib.resources"),
+        ("export DESIGN -o x.svg", "numpy svgwrite http.client"),
+        ("export DESIGN -o x.svg --sheet 200x100mm", "numpy shapely svgwrite http.client importlib.resources"),
         ("export DESIGN -o x.dxf", "numpy shapely importlib.resources ezdxf unittest"),
         ("info DESIGN --json", "numpy"),
         ("info DESIGN", "numpy rich"),

@@ -28,9 +28,11 @@ from voronoi_tiles.raster.frame import Frame, cell_frame
 from voronoi_tiles.raster.renderer import LabelImage, Renderer
 from voronoi_tiles.raster.scene import Pattern
 from voronoi_tiles.tiling import Tiling
-from voronoi_tiles.vector import proof
+from voronoi_tiles.vector.all_arcs import AllArcs
 from voronoi_tiles.vector.arcs import Arc, LineArc, Neighbour, ParabolaArc
+from voronoi_tiles.vector.crossings import count_crossings
 from voronoi_tiles.vector.outline import Outline
+from voronoi_tiles.vector.proof import open_joints
 from voronoi_tiles.vector.scan import QUANTUM
 
 Complexes = npt.NDArray[np.complex128]
@@ -640,7 +642,7 @@ def test_a_retraced_edge_is_seen_by_the_proof() -> None:
 
     tiling = broken(example(KEY), change)
     assert check(tiling).passed
-    assert proof._crossings(tiling.tiles[0].outline, abs(tiling.design.lattice.a)) > 0
+    assert count_crossings(AllArcs.of([tiling.tiles[0].outline]), abs(tiling.design.lattice.a)) > 0
 
 
 def test_a_gap_along_an_edge_is_seen_by_the_proof() -> None:
@@ -654,7 +656,7 @@ def test_a_gap_along_an_edge_is_seen_by_the_proof() -> None:
 
     tiling = broken(example(KEY), change)
     assert check(tiling).passed
-    assert proof._open_joints(tiling.tiles[0].outline) == 1
+    assert open_joints(AllArcs.of([tiling.tiles[0].outline])) == 1
 
 
 def test_a_hole_between_samples_is_seen_by_the_proof() -> None:

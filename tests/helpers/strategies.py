@@ -488,6 +488,120 @@ def dense(chance: Chance, on: Canvas) -> Sites:
     return [[stroke(chance, lambda: on.spot(chance, 0.8), on.inradius(), kind)]]
 
 
+def _mirror(chance: Chance, on: Canvas) -> tuple[Isometry, complex, complex] | None:
+    """One of the group's reflections, a point on its axis and the direction of that; None where it has none."""
+    places = [on.lattice.cartesian(x, y) for x in SPECIAL for y in SPECIAL]
+    mirrors = [(found, place) for place in places for found in on.stabilizer(place) if found.conj]
+    if not mirrors:
+        return None
+    mirror, place = chance.pick(mirrors)
+    return mirror, place, cmath.sqrt(mirror.a)
+
+
+def beside_mirror(chance: Chance, on: Canvas) -> Sites:
+    """A segment that begins next to a mirror, or runs along it: the gap is 1e-4 to 1e-10 of the cell.
+
+    Where another edge meets the mirror four copies meet, and two of them nearly touch.
+    """
+    chosen = _mirror(chance, on)
+    if chosen is None:
+        return near(chance, on)
+    _, place, axis = chosen
+    start = place + axis * on.size * complex(chance.real(-0.5, 0.5), 10.0 ** chance.real(-10.0, -4.0))
+    along = chance.pick((axis, cmath.rect(1.0, chance.real(0.0, 6.2))))
+    return [[segment(start, start + along * on.size * chance.real(0.05, 0.3))]]
+
+
+def twins(chance: Chance, on: Canvas) -> Sites:
+    """A site that the group maps nearly onto itself: its copies are pairs, or more, that are next to each other.
+
+    By 1e-3 to 2e-11 of the cell: far away their distances do not differ, as far as rounding tells.
+    """
+    return special(chance, on, on.size * 10.0 ** chance.real(-10.7, -3.0))
+
+
+def mirror_twins(chance: Chance, on: Canvas) -> Sites:
+    """A segment and its image in a mirror, this a little out of place: by 1e-8 to 2e-11 of the cell.
+
+    Elsewhere on the mirror tiles meet whose sites come in pairs.
+    """
+    chosen = _mirror(chance, on)
+    if chosen is None:
+        return twins(chance, on)
+    mirror, place, axis = chosen
+    start = place + axis * on.size * complex(chance.real(-0.5, 0.5), chance.real(0.003, 0.03))
+    end = start + axis * on.size * cmath.rect(chance.real(0.003, 0.03), chance.real(0.1, 3.0))
+    off = 1j * axis * on.size * 10.0 ** chance.real(-10.7, -8.0)
+    return [[segment(start, end), segment(mirror(start) + off, mirror(end) + off)]]
+
+
+def near_groups(chance: Chance, on: Canvas) -> Sites:
+    """Two to four strokes, of one site or of several, each of which almost reaches a copy of itself or of another."""
+    starts = _apart([on.spot(chance, 0.8) for _ in range(chance.whole(2, 4))], 0.1 * on.inradius())
+    strokes = []
+    for start in starts:
+        operation = chance.pick(GROUPS[on.group].operations)
+        if operation.is_identity:
+            operation = operation.translated(*chance.pick(((1, 0), (0, 1), (-1, 1))))
+        gap = on.size * cmath.rect(10.0 ** chance.real(-9.5, -4.0), chance.real(0.0, 6.2))
+        end = on.lattice.isometry(operation)(chance.pick((start, chance.pick(starts)))) + gap
+        # As a stroke along the whole way would cross others more often than not, or only its last part.
+        share = chance.pick((0.0, 0.9))
+        strokes.append(segment(start, start) if end == start else segment(start + share * (end - start), end))
+        if share:
+            strokes.append({"point": xy(start)})
+    return [[drawn] for drawn in strokes] if chance.whole(0, 1) else [strokes]
+
+
+def tiny_angles(chance: Chance, on: Canvas) -> Sites:
+    """Strokes bent by next to nothing, and points nearly on a line or a circle: arcs that meet at tiny angles."""
+    count, bend = chance.whole(3, 12), 10.0 ** chance.real(-9.0, -2.0)
+    reach, turn = on.inradius() * chance.real(0.2, 0.9), cmath.rect(1.0, chance.real(0.0, 6.2))
+    along = [2.0 * k / (count - 1) - 1.0 for k in range(count)]
+    match chance.whole(0, 3):
+        case 0:
+            bent = [complex(t, bend * chance.real(-1.0, 1.0)) for t in along]
+        case 1:
+            bent = [complex(t, bend * t * t) for t in along]
+        case 2:
+            return [
+                [{"point": xy(on.centre() + reach * turn * complex(t, bend * chance.real(-1.0, 1.0)))} for t in along]
+            ]
+        case _:
+            ring = regular(0j, 1.0, count)
+            return [
+                [{"point": xy(on.centre() + reach * turn * z * (1.0 + bend * chance.real(-1.0, 1.0)))} for z in ring]
+            ]
+    return [[segment(*(on.centre() + reach * turn * z for z in bent))]]
+
+
+def large(chance: Chance, on: Canvas) -> Sites:
+    """Strokes longer than the cell, between their own copies: along a row of these or nearly so, straight or bent."""
+    lattice = on.lattice
+    way = chance.pick([(1, 0), (0, 1), (1, 1), (1, -1), (2, 1), (1, 2), (3, -1), (2, 3)])
+    row = lattice.cartesian(*way)
+    length = chance.pick((0.5, 0.9, 0.99, 0.999999, 1.5, 3.0))
+    across = lattice.det / abs(row) * chance.pick((0.0, 0.01, 0.3, 0.9)) * 1j * row / abs(row)
+    start = on.spot(chance)
+    ends = (start, start + length / 2 * row + across * chance.real(-0.5, 0.5), start + length * row + across)
+    return [[segment(*(ends if chance.whole(0, 1) else ends[::2]))]]
+
+
+def crowd(chance: Chance, on: Canvas) -> Sites:
+    """Five to thirty sites, of a short stroke or a point each; now and then one on a special place among them."""
+    count = chance.pick((5, 8, 15, 30))
+    middles = _apart([on.spot(chance) for _ in range(count)], 0.3 * on.inradius() / count)
+    reach = 0.4 * min(abs(p - q) for k, p in enumerate(middles) for q in middles[:k])
+    sites: Sites = []
+    for middle in middles:
+        tip = middle + reach * cmath.rect(chance.real(0.1, 1.0), chance.real(0.0, 6.2))
+        sites.append([segment(middle, tip) if chance.whole(0, 1) else {"point": xy(middle)}])
+    if chance.whole(0, 3) == 0:
+        _, place, _ = _about(chance, on)
+        sites.append([{"point": xy(place)}])
+    return sites
+
+
 KINDS: dict[str, tuple[Callable[[Chance, Canvas], Sites], int]] = {
     # kind: the generator and how often `make fuzz` takes it
     "plain": (plain, 14),
@@ -507,15 +621,29 @@ KINDS: dict[str, tuple[Callable[[Chance, Canvas], Sites], int]] = {
     "dense": (dense, 2),
     "long": (long, 1),
 }
+LATER: dict[str, tuple[Callable[[Chance, Canvas], Sites], int]] = {
+    # Kinds that came later. They have numbers of their own, so that the design of a number stays what it was.
+    "beside a mirror": (beside_mirror, 3),
+    "twins": (twins, 3),
+    "mirror twins": (mirror_twins, 2),
+    "near groups": (near_groups, 3),
+    "tiny angles": (tiny_angles, 3),
+    "large": (large, 3),
+    "thin": (plain, 2),
+    "crowd": (crowd, 1),
+}
 
 
-def make_design(chance: Chance, kind: str | None = None, group: str | None = None) -> tuple[str, dict[str, Any]]:
-    """A kind's name and a random design of this kind as a mapping."""
+def make_design(
+    chance: Chance, kind: str | None = None, group: str | None = None, *, later: bool = False
+) -> tuple[str, dict[str, Any]]:
+    """A kind's name and a random design of this kind, or of any or any later one, as a mapping."""
     if kind is None:
-        kind = chance.pick([name for name, (_, weight) in KINDS.items() for _ in range(weight)])
-    generate = KINDS[kind][0]
+        kind = chance.pick([name for name, (_, weight) in (LATER if later else KINDS).items() for _ in range(weight)])
+    generate = (KINDS | LATER)[kind][0]
     skewed = [name for name, row in GROUPS.items() if not row.fixes_b]
-    group = group or chance.pick(skewed if kind == "skew" else list(GROUPS))
+    fitting = {"skew": skewed, "thin": skewed, "large": ["p1", "p1", "p2", "pg", "pm"]}
+    group = group or chance.pick(fitting.get(kind, list(GROUPS)))
     size, aspect, tilt = 60.0, 2.0, 50.0
     if kind == "units":
         size = chance.pick((1e-6, 1e9, 10.0 ** chance.real(-6.0, 9.0)))
@@ -524,6 +652,9 @@ def make_design(chance: Chance, kind: str | None = None, group: str | None = Non
     on = canvas(chance, group, size, aspect, tilt)
     if kind in {"units", "skew"}:
         generate = chance.pick((plain, grid, points, several))
+    if kind == "thin":
+        on = Canvas(group, on.cell | {"b": size * chance.pick((1e-3, 1e3))})
+        generate = chance.pick((plain, points, several, special, near, beside_mirror))
     sites = generate(chance, on)
     # Curves in 5 to 50 segments: most designs shall be cheap.
     fineness = 10.0 ** chance.real(-5.0, -4.0) if kind == "dense" else 10.0 ** chance.real(-3.3, -2.0)
@@ -540,7 +671,7 @@ def designs(*kinds: str, group: str | None = None) -> Any:
     """A Hypothesis strategy of designs of some kinds (all but the slowest, if none is named)."""
     from hypothesis import strategies as st
 
-    names = kinds or tuple(name for name in KINDS if name not in {"dense", "long"})
+    names = kinds or tuple(name for name in KINDS | LATER if name not in {"dense", "long"})
 
     @st.composite
     def build(draw: Callable[[Any], Any]) -> dict[str, Any]:

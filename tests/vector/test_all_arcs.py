@@ -22,7 +22,7 @@ def exact_area(outline: Outline) -> Fraction:
         p = [(Fraction(z.real), Fraction(z.imag)) for z in corners]
         products = [a[0] * b[1] - a[1] * b[0] for a, b in pairwise(p)]
         chord = p[0][0] * p[-1][1] - p[0][1] * p[-1][0]
-        total += chord / 6 + sum(products) / 3
+        total += chord / 6 + sum(products, Fraction(0)) / 3
     return total
 
 

@@ -21,8 +21,8 @@ from voronoi_tiles.vector.cells.bisectors import TouchingElementsError
 from voronoi_tiles.vector.cells.cells import Parts, UnboundedCellError, bound_cells
 from voronoi_tiles.vector.cells.half_edges import Contour, trace_contour
 from voronoi_tiles.vector.cells.pencils import Rows, make_rows
-from voronoi_tiles.vector.copies import Copies, copies_near, place
-from voronoi_tiles.vector.motions import IDENTITY, Action
+from voronoi_tiles.vector.copies import Copies, SiteUnion, bundles, copies_near, place
+from voronoi_tiles.vector.motions import Action
 
 Complexes = NDArray[np.complex128]
 Floats = NDArray[np.float64]
@@ -45,52 +45,14 @@ class Case:
         return bound_cells(self.rows, self.contour, self.copies, self.node_bundle, self.covering_radius)
 
 
-def in_one_bundle(design: Design) -> Case:
-    """All sites of a design in one bundle, as if none were at a special position."""
+def case(design: Design) -> Case:
+    """The rows of all half-edges and corners of a design's sites."""
     action = Action(design.group, design.lattice)
-    sites = design.noded
-    first = np.cumsum([0] + [len(site.nodes) for site in sites])
-    nodes = np.concatenate([site.nodes for site in sites])
-    segments = np.concatenate([site.segments + k for site, k in zip(sites, first[:-1], strict=True)])
-    placed = place(action, nodes, segments)
-    return case(action, placed.nodes, placed.segments, copies_near(action, placed, placed), np.zeros(len(nodes), int))
-
-
-def in_bundles(design: Design) -> Case:
-    """Each site of a design in a bundle of its own, with the copies that are near the first one."""
-    action = Action(design.group, design.lattice)
-    placed = [place(action, site.nodes, site.segments) for site in design.noded]
-    near = [copies_near(action, placed[0], other) for other in placed]
-    kept = [np.flatnonzero((copies.motions != IDENTITY).any(axis=1)) for copies in near]
-    one = np.ones(len(placed), complex)
-
-    def joined(first: NDArray[Any], name: str) -> NDArray[Any]:
-        some = [getattr(copies, name)[index] for copies, index in zip(near, kept, strict=True)]
-        return np.concatenate((first, *some))
-
-    copies = Copies(
-        motions=joined(np.tile(IDENTITY, (len(placed), 1)), "motions"),
-        unit=joined(one, "unit"),
-        shift=joined(0.0 * one, "shift"),
-        conj=joined(np.zeros(len(placed), bool), "conj"),
-        bundle=np.concatenate((np.arange(len(placed)), *(np.full(len(k), t) for t, k in enumerate(kept)))),
-    )
-    first = np.cumsum([0] + [len(site.nodes) for site in placed])
-    segments = np.concatenate([site.segments + k for site, k in zip(placed, first[:-1], strict=True)])
-    bundle = np.repeat(np.arange(len(placed)), np.diff(first))
-    return case(action, np.concatenate([site.nodes for site in placed]), segments, copies, bundle, of=0)
-
-
-def case(action: Action, nodes: Complexes, segments: Ints, copies: Copies, bundle: Ints, of: int | None = None) -> Case:
-    """The rows of all half-edges and corners, or of those of one bundle."""
-    contour = trace_contour(nodes, segments)
+    placed = place(action, design.noded)
+    bundle, union = bundles(placed), SiteUnion.of(placed)
+    contour = trace_contour(union.nodes, union.segments)
     rows = make_rows(contour, action.covering_radius, np.zeros(len(contour.source), bool))
-    if of is not None:
-        item = np.where(rows.straight, rows.half_edge, len(contour.source) + rows.corner)
-        node = np.concatenate((contour.source, contour.corner_node))[item]
-        wanted = np.flatnonzero(bundle[node] == of)
-        rows = Rows(*(getattr(rows, name)[wanted] for name in Rows.__slots__))
-    return Case(rows, contour, copies, bundle, action.covering_radius)
+    return Case(rows, contour, copies_near(action, placed, bundle), bundle[union.node_site], action.covering_radius)
 
 
 def drawn(group: str, cell: tuple[float, float], *sites: list[dict[str, Any]]) -> Design:
@@ -136,19 +98,19 @@ def hardly_apart() -> Design:
 
 def in_starter(group: str) -> Case:
     """The starter of a group."""
-    return in_bundles(starter(group))
+    return case(starter(group))
 
 
 CASES: dict[str, Callable[[], Case]] = {
-    "zigzag": lambda: in_one_bundle(zigzag(150)),
-    "points": lambda: in_one_bundle(scattered(60)),
-    "spiral": lambda: in_one_bundle(spiral(400)),
-    "thin": lambda: in_one_bundle(drawn("p1", (600.0, 1.0), [{"segment": [[3.0, 0.4], [9.0, 0.6]]}])),
-    "long": lambda: in_one_bundle(drawn("p1", (600.0, 9.0), [{"segment": [[3.0, 0.4], [590.0, 5.6]]}])),
-    "point": lambda: in_one_bundle(drawn("p4", (10.0, 10.0), [{"point": [1.0, 2.0]}])),
-    "hardly-apart": lambda: in_one_bundle(hardly_apart()),
-    "near": lambda: in_bundles(beside(1e-7)),
-    "nearer": lambda: in_bundles(beside(1e-11)),
+    "zigzag": lambda: case(zigzag(150)),
+    "points": lambda: case(scattered(60)),
+    "spiral": lambda: case(spiral(400)),
+    "thin": lambda: case(drawn("p1", (600.0, 1.0), [{"segment": [[3.0, 0.4], [9.0, 0.6]]}])),
+    "long": lambda: case(drawn("p1", (600.0, 9.0), [{"segment": [[3.0, 0.4], [590.0, 5.6]]}])),
+    "point": lambda: case(drawn("p4", (10.0, 10.0), [{"point": [1.0, 2.0]}])),
+    "hardly-apart": lambda: case(hardly_apart()),
+    "near": lambda: case(beside(1e-7)),
+    "nearer": lambda: case(beside(1e-11)),
     **{f"starter-{group}": partial(in_starter, group) for group in GROUPS},
 }
 
@@ -206,7 +168,7 @@ def test_kernel_gives_the_bits_of_numpy(name: str, monkeypatch: pytest.MonkeyPat
 @pytest.mark.usefixtures("compiled")
 def test_kernel_gives_the_bits_of_numpy_for_examples(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of every example, the first site's cells among the copies of all."""
-    same_bits(in_bundles(Design.load(path_of(name))), monkeypatch)
+    same_bits(case(Design.load(path_of(name))), monkeypatch)
 
 
 @pytest.mark.slow
@@ -215,7 +177,7 @@ def test_kernel_gives_the_bits_of_numpy_for_examples(name: str, monkeypatch: pyt
 def test_kernel_gives_the_bits_of_numpy_for_any_design(number: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Fuzzed designs of all kinds, near ones included."""
     _, design = fuzz.design_of(2027, number)
-    same_bits(in_bundles(Design.from_dict(design)), monkeypatch)
+    same_bits(case(Design.from_dict(design)), monkeypatch)
 
 
 def same_bits(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:

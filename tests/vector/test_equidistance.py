@@ -13,6 +13,7 @@ from voronoi_tiles.base.arrays import Floats
 from voronoi_tiles.base.maps import move
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.groups.wallpaper import GROUPS
+from voronoi_tiles.vector.all_arcs import AllArcs
 from voronoi_tiles.vector.box_tree import BoxTree
 from voronoi_tiles.vector.equidistance import Claims, Sites, distances_of_claims, errors_of_distance
 from voronoi_tiles.vector.nearest_copies import distances, inverses
@@ -32,7 +33,7 @@ def problem(name: str, kind: str, number: int, seed: int) -> tuple[Any, ...]:
         case "points":
             end = start.copy()
         case "long":
-            end = start + turn * random.uniform(0, 100, number)
+            end = start + turn * random.uniform(0, 40, number)
         case "grid":  # many that are equally near
             start = np.round(start)
             end = start + np.round(turn)
@@ -55,7 +56,7 @@ def problem(name: str, kind: str, number: int, seed: int) -> tuple[Any, ...]:
 @pytest.mark.parametrize("name", ["p1", "cm", "p6m"])
 def test_the_kernel_gives_the_same_bits(name: str, kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of all three distances, few elements or many; infinite are those of sites that are not near."""
-    for number in (1, 5, 70, 600):
+    for number in (1, 5, 300):
         given = problem(name, kind, number, number)
         compiled = distances_of_claims(*given)
         monkeypatch.setenv("VORONOI_TILES_KERNELS", "numpy")
@@ -91,5 +92,5 @@ def test_what_is_no_number_is_no_small_error() -> None:
         start[2] = wrong
         vars(tile)["outline"] = replace(tile.outline, start=start)
         with np.errstate(invalid="ignore"):
-            error, _ = errors_of_distance(read.group, read.lattice, [tile], 1e-11)
+            error, _ = errors_of_distance(read.group, read.lattice, [tile], AllArcs.of([tile.outline]), 1e-11)
         assert not error <= 1

@@ -101,7 +101,7 @@ def test_all_groups(name: str, kind: str) -> None:
     check(found, brute_force(GROUPS[name], lattice, start, end, points), 1e-13)
 
 
-@pytest.mark.parametrize("name", ["p1", "p2", "pm", "cmm"])
+@pytest.mark.parametrize("name", ["p1", "cmm"])
 @pytest.mark.parametrize("shape", ["thin", "skew"])
 @pytest.mark.parametrize("kind", ["points", "long", "fan"])
 def test_thin_and_skew_cells(name: str, shape: str, kind: str) -> None:
@@ -115,14 +115,16 @@ def test_thin_and_skew_cells(name: str, shape: str, kind: str) -> None:
     check(found, brute_force(GROUPS[name], lattice, start, end, points), 2e-13)
 
 
-@pytest.mark.parametrize("kind", ["points", "short", "chain", "fan"])
+@pytest.mark.parametrize("kind", ["points", "chain", "fan"])
 def test_many_points_and_elements(kind: str) -> None:
     """Deep trees, large bundles and more than one portion; shapely finds the same."""
     random = np.random.default_rng(11)
     lattice = Lattice(20 + 0j, 6 + 17j)
     start, end = elements_of(kind, lattice, 700, random)
     # In an order as edges have it, with jumps.
-    walk = np.cumsum(0.05 * np.exp(2j * np.pi * random.random(16_800))) + 40 * (np.arange(16_800) // 2100)
+    steps: Complexes = 0.05 * np.exp(2j * np.pi * random.random(16_500))
+    steps[::2050] += 40
+    walk: Complexes = steps.cumsum()
     points = walk[: len(walk) - 3]
     found = search(GROUPS["p1"], lattice, start, end, points)
     x, y = lattice.fractional(points)

@@ -7,6 +7,7 @@ import pytest
 
 from voronoi_tiles.vector.complex.sharpening import sharpened
 from voronoi_tiles.vector.complex.traced import Traced
+from voronoi_tiles.vector.copies import Copies
 
 GAP = 2.0**-20
 
@@ -18,13 +19,16 @@ def arc(*, curved: bool) -> Traced:
     return Traced(
         vertex=np.array([64j]),
         ring=none,
-        target=none,
+        ring_tile=none,
+        site=none,
         copy=none,
         curved=np.array([curved]),
         focus=np.array([GAP * 1j]),
         directrix=np.array([[0, 1]], complex),
         nodes=np.full((1, 2), np.nan + 0j) if curved else nodes,
-        copies=[],
+        copies=Copies(
+            np.zeros((0, 6), np.int64), np.zeros(0, complex), np.zeros(0, complex), np.zeros(0, bool), none[:0]
+        ),
     )
 
 

@@ -480,6 +480,41 @@ def test_nearly_touching_copies_are_tiled(group: str, gap: float) -> None:
     assert fuzz.try_design(design, np.random.default_rng(2), points=50) == "tiled"
 
 
+@pytest.mark.parametrize("group", ["p4g", "p31m"])
+@pytest.mark.parametrize("seed", [0, 8])
+def test_strokes_beside_a_mirror_are_tiled(group: str, seed: int) -> None:
+    """Four copies meet on a mirror, of which two nearly touch: rounding makes an edge there that is none.
+
+    The corner that it leaves behind lies on the two edges that are left, or these were off by as much.
+    """
+    assert tiled("beside a mirror", 12, seed=seed, group=group) > 3
+
+
+@pytest.mark.parametrize("group", ["p3m1", "p6m", "p4m"])
+def test_nearly_symmetric_sites_beside_mirrors_are_tiled(group: str) -> None:
+    """Where what meets nearly touches in pairs, rounding makes long edges that the tile beyond does not have."""
+    assert tiled("mirror twins", 16, seed=1, group=group) > 8
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", list(strategies.LATER))
+def test_later_kinds_of_designs_are_tiled(kind: str) -> None:
+    """Many of each kind."""
+    assert tiled(kind, 300, seed=22) > 30
+
+
+def tiled(kind: str, count: int, *, seed: int, group: str | None = None) -> int:
+    """Tile so many designs of a kind, and give the number of those whose copies do not touch: all of them pass."""
+    passed = 0
+    for number in range(count):
+        design = strategies.make_design(strategies.Dice(np.random.default_rng([seed, number])), kind, group)[1]
+        try:
+            passed += Design.from_dict(design).tessellate().proof.passed
+        except TouchingCopiesError:
+            continue
+    return passed
+
+
 # What the fuzz has found.
 FOUND = {
     "two sites in p1": one("p1", {"point": [0, 0]}, b=60.0, angle=90.0)

@@ -110,36 +110,3 @@ def trace_contour(nodes: Complexes, segments: Ints) -> Contour:
         leaving=leaving,
         turn=turn,
     )
-
-
-# A walk around the outside of open strokes encloses nothing, but for rounding; relative to its length squared.
-_AREA = 1e-9
-
-
-def enclosed(contour: Contour, strangers: Complexes, siblings: Complexes) -> Bools:
-    """Which half-edges look into a region that the site encloses, and in which no other copy lies.
-
-    Such a region belongs to the site, whatever its elements share of it. A copy of a connected site cannot lie in one
-    of its regions without touching it: it would have to be smaller. `strangers` are the nodes of copies of other
-    sites, `siblings` those of the other copies of this site, complex128 (k,) and (l,). The result is bool (h,).
-    """
-    face = contour.faces()
-    result = np.zeros(len(face), bool)
-    if not len(face):
-        return result
-    start, end = contour.nodes[contour.source], contour.nodes[contour.target]
-    origin = start[0]
-    x, y, u, v = (part - at for z in (start, end) for part, at in ((z.real, origin.real), (z.imag, origin.imag)))
-    # Walks around the inside of a closed stroke run counter-clockwise, around the outside of all others clockwise.
-    area = np.bincount(face, x * v - y * u)
-    inside = area > _AREA * np.bincount(face, contour.length) ** 2
-    components = int((~inside).sum()) + (len(contour.corner_node) - len(contour.source)) // 4
-    others = strangers if components == 1 else np.concatenate((strangers, siblings))
-    for number in np.flatnonzero(inside).tolist():
-        member = face == number
-        x, y = start.real[member], start.imag[member]
-        within = (others.real >= x.min()) & (others.real <= x.max())
-        within &= (others.imag >= y.min()) & (others.imag <= y.max())
-        if not within.any():
-            result |= member
-    return result

@@ -5,12 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import numpy.typing as npt
 
-from voronoi_tiles.base.arrays import Complexes, Ints
+from voronoi_tiles.base.arrays import Complexes, Ints, starts
 from voronoi_tiles.base.errors import TouchingCopiesError
-from voronoi_tiles.base.maps import move
 from voronoi_tiles.base.tolerance import EPSILON, TOUCHING
-from voronoi_tiles.vector.copies import Placed, copies_near, translation
+from voronoi_tiles.vector.cells.images import Images
+from voronoi_tiles.vector.copies import Placed, SiteUnion, bundles, copies_near, translation
 from voronoi_tiles.vector.motions import Action, compose, to_operation
 
 if TYPE_CHECKING:
@@ -24,25 +25,45 @@ def refuse_touching(action: Action, names: tuple[str, ...], placed: list[Placed]
     # Sites drawn far from the origin are known to fewer digits.
     far = max(abs(complex(action.cartesian(*site.shift))) for site in placed)
     nearest = max(TOUCHING * action.size, 4 * EPSILON * far)
-    found = None
-    for i, base in enumerate(placed):
-        here = _geometry(base.nodes, base.segments)
-        shapely.prepare(here)
-        for j in range(i, len(placed)):
-            copies = copies_near(action, base, placed[j])
-            for k in range(1 if i == j else 0, len(copies)):
-                nodes = move(placed[j].nodes, copies.unit[k], copies.shift[k], copies.conj[k])
-                there = _geometry(nodes, placed[j].segments)
-                gap = float(shapely.distance(here, there))
-                if gap <= nearest and (found is None or gap < nearest):
-                    nearest = gap
-                    found = (i, j, tuple(copies.motions[k].tolist()), here, there)
-    if found is None:
+    bundle, union = bundles(placed), SiteUnion.of(placed)
+    copies = copies_near(action, placed, bundle)
+    # The nodes of every site in every copy of its bundle: run after run.
+    images = Images.of(bundle[union.node_site], copies)
+    nodes, site = images.moved(union.nodes, copies), union.node_site[images.thing]
+    runs = np.append(starts(images.copy * len(placed) + site), len(nodes))
+    copy, site = images.copy[runs[:-1]], site[runs[:-1]]
+    tree = shapely.STRtree(_boxes(union.nodes, union.first, nearest))
+    run, base = tree.query(_boxes(nodes, runs, 0.0))
+    kept = (site[run] > base) | ((site[run] == base) & (copy[run] >= copies.bundles))
+    run, base = run[kept], base[kept]
+    if not len(run):
         return
-    i, j, motion, here, there = found
-    place = complex(*shapely.shortest_line(here, there).coords[0]) + complex(action.cartesian(*placed[i].shift))
-    drawn = compose(compose(translation(placed[i], 1), motion), translation(placed[j], -1))
+    order = np.lexsort((copy[run], site[run], base))
+    run, base = run[order], base[order]
+    looked_at, which = np.unique(run, return_inverse=True)
+    here = np.array([_geometry(own.nodes, own.segments) for own in placed])
+    there = np.array([_geometry(nodes[runs[r] : runs[r + 1]], placed[site[r]].segments) for r in looked_at])
+    gaps = shapely.distance(here[base], there[which])
+    least = int(gaps.argmin())
+    if gaps[least] > nearest:
+        return
+    i, j = int(base[least]), int(site[run[least]])
+    line = shapely.shortest_line(here[i], there[which[least]])
+    place = complex(*line.coords[0]) + complex(action.cartesian(*placed[i].shift))
+    a, b, c, d, s, t = copies.motions[copy[run[least]]].tolist()
+    drawn = compose(compose(translation(placed[i], 1), (a, b, c, d, s, t)), translation(placed[j], -1))
     raise TouchingCopiesError(site=names[i], other=names[j], operation=to_operation(drawn), place=place)
+
+
+def _boxes(nodes: Complexes, runs: Ints, margin: float) -> npt.NDArray[np.object_]:
+    """The boxes around runs of nodes, from `runs[k]` up to, not including, `runs[k + 1]`, widened by a margin."""
+    import shapely
+
+    x, y = nodes.real, nodes.imag
+    least = (np.minimum.reduceat(part, runs[:-1]) - margin for part in (x, y))
+    most = (np.maximum.reduceat(part, runs[:-1]) + margin for part in (x, y))
+    boxes: npt.NDArray[np.object_] = shapely.box(*least, *most)
+    return boxes
 
 
 def _geometry(nodes: Complexes, segments: Ints) -> Geometry:

@@ -1,4 +1,4 @@
-"""From the bounds of single cells to the closed boundary of a tile."""
+"""From the bounds of single cells to the closed boundaries of tiles."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from voronoi_tiles.vector.cells.pencils import Rows
 
 @dataclass(frozen=True, slots=True)
 class Boundary:
-    """The closed boundary of a tile, n arcs ring after ring: its interior lies to the left of every arc.
+    """The closed boundaries of all tiles, n arcs ring after ring: a tile lies to the left of every arc of its own.
 
     Arc k is the part `part[k]` (intp) of some row. It starts at `vertex[k]` (complex128) and ends where the next arc of
     the ring `ring[k]` (intp) starts.
@@ -30,24 +30,26 @@ class OpenBoundaryError(ArithmeticError):
     """The parts do not close to rings, which happens only where copies touch or cross."""
 
 
-def trace_boundary(rows: Rows, contour: Contour, parts: Parts, inner: Bools, null: float) -> Boundary:
-    """The rings to which those of a site's parts chain up that face other copies.
+def trace_boundary(rows: Rows, contour: Contour, parts: Parts, node_site: Ints, bundles: int, null: float) -> Boundary:
+    """The rings to which those parts chain up that face another site or copy.
 
-    `inner` (bool, k) says which parts face another element of the site itself. Arcs whose ends are no farther apart
-    than `null` are left out. Raises OpenBoundaryError where the parts do not close to rings.
+    `rows`, `contour` and `parts` are those of all sites; `node_site` (intp, m) is the site of each of the contour's
+    nodes, and the first `bundles` copies are the sites where they were placed. Arcs whose ends are no farther apart
+    than `null` are left out. Raises OpenBoundaryError where the parts do not close to rings, or a tile has none.
     """
     straight = rows.straight[parts.row]
     # Counter-clockwise around the tile, x falls along half-edges and rises along corners.
     start, end = np.where(straight, parts.end, parts.begin), np.where(straight, parts.begin, parts.end)
+    node = np.concatenate((contour.source, contour.corner_node))
+    site = node_site[node[np.where(rows.straight, rows.half_edge, len(contour.source) + rows.corner)]][parts.row]
+    inner = (parts.copy < bundles) & (node_site[node[parts.item]] == site)
     following = _links(rows, contour, parts, inner, straight)
     outer = np.flatnonzero(~inner)
-    if not len(outer):
-        raise OpenBoundaryError
     loose = outer[following[outer] < 0]
     entered = np.zeros(len(inner), bool)
     entered[following[outer][following[outer] >= 0]] = True
     entries = outer[~entered[outer]]
-    following[loose] = entries[_match(end[loose], start[entries])]
+    following[loose] = entries[_match(end[loose], start[entries], site[loose], site[entries])]
     # A walk along a permutation is a loop of look-ups: a list is quicker at it than any array trick.
     successor = following.tolist()
     seen = inner.tolist()
@@ -64,7 +66,10 @@ def trace_boundary(rows: Rows, contour: Contour, parts: Parts, inner: Bools, nul
             ring.append(number)
             k = successor[k]
         number += 1
-    return _without_null(np.array(order), start[order], np.array(ring), null)
+    boundary = _without_null(np.array(order, np.intp), start[order], np.array(ring, np.intp), null)
+    if not np.bincount(site[boundary.part], minlength=node_site[-1] + 1).all():
+        raise OpenBoundaryError
+    return boundary
 
 
 def _links(rows: Rows, contour: Contour, parts: Parts, inner: Bools, straight: Bools) -> Ints:
@@ -111,19 +116,48 @@ def _ends(owner: Ints, count: int, opening: Ints, closing: Ints, first: Ints, la
     return result[0], result[1]
 
 
-def _match(ends: Complexes, begins: Complexes) -> Ints:
-    """For each end the index of the begin that continues it: each other's nearest, then among those left."""
-    if len(ends) != len(begins):
-        raise OpenBoundaryError
+# Turns the plane so that no mirror and no row of copies is upright.
+_SLANT = np.exp(1j)
+
+
+def _match(ends: Complexes, begins: Complexes, end_site: Ints, begin_site: Ints) -> Ints:
+    """For each end the index of the begin of its site that continues it: each other's nearest, then among those left.
+
+    Raises OpenBoundaryError where a site has not as many begins as ends.
+    """
     partner = np.full(len(ends), -1)
-    left, right = np.arange(len(ends)), np.arange(len(begins))
+    if not np.array_equal(np.sort(end_site), np.sort(begin_site)):
+        raise OpenBoundaryError
+    if not len(ends):
+        return partner
+    # Along one direction nearly all of a site's come in the same order, and nearer to their partners than to others.
+    end_along, begin_along = (ends * _SLANT).real, (begins * _SLANT).real
+    left, right = np.lexsort((end_along, end_site)), np.lexsort((begin_along, begin_site))
+    gap, x, y = np.abs(ends[left] - begins[right]), end_along[left], begin_along[right]
+    apart = np.minimum(x[1:] - y[:-1], y[1:] - x[:-1])
+    apart[end_site[left][1:] != end_site[left][:-1]] = np.inf
+    infinite = np.array([np.inf])
+    sure = (gap < np.concatenate((apart, infinite))) & (gap < np.concatenate((infinite, apart)))
+    partner[left[sure]] = right[sure]
+    if not sure.all():
+        left, right = left[~sure], right[~sure]
+        for site in np.unique(end_site[left]).tolist():
+            some = np.sort(left[end_site[left] == site])
+            partner[some] = _nearest(ends, begins, some, np.sort(right[begin_site[right] == site]))
+    return partner
+
+
+def _nearest(ends: Complexes, begins: Complexes, left: Ints, right: Ints) -> Ints:
+    """For each of the ends `left` one of the begins `right`: each other's nearest, then among those that are left."""
+    partner = np.full(len(ends), -1)
+    chosen = left
     while len(left):
         there = Neighbours(begins[right]).nearest(ends[left])[1][:, 0]
         back = Neighbours(ends[left]).nearest(begins[right])[1][:, 0]
         mutual = np.flatnonzero(back[there] == np.arange(len(left)))
         partner[left[mutual]] = right[there[mutual]]
         left, right = np.delete(left, mutual), np.delete(right, there[mutual])
-    return partner
+    return partner[chosen]
 
 
 def _without_null(part: Ints, vertex: Complexes, ring: Ints, null: float) -> Boundary:

@@ -1,28 +1,35 @@
-"""The boundary of a base tile, put together from the edges of the quotient complex, and its outline."""
+"""The boundaries of base tiles, put together from the edges of the quotient complex, and their outlines."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, Ints, backwards, next_in_ring
+from voronoi_tiles.base.arrays import Complexes, Ints, backwards, counting, next_in_ring, offsets_of, ranges
 from voronoi_tiles.vector.arcs import Neighbour
 from voronoi_tiles.vector.complex.quotient import Quotient
 from voronoi_tiles.vector.complex.representatives import Points, Representatives
+from voronoi_tiles.vector.complex.site_symmetry import SiteSymmetry
+from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, code_of, images, inverted, reversing
 from voronoi_tiles.vector.motions import Motion, reverses_orientation
 from voronoi_tiles.vector.outline import Outline
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class TileBoundary:
-    """The boundary of a tile, n arcs in r rings, as images of representatives.
+class TileBoundaries:
+    """The boundaries of tiles, n arcs in r rings, tile after tile, as images of representatives.
 
     An arc starts at one of the n points `start` and ends where the next of its ring starts; `control` are the control
     points of the arcs as quadratic Bezier curves, none for a line. `focus` (complex128, n) and `directrix` (complex128,
-    n x 2) are those of the parabolas before the motions that take the control points to their places. The arcs of ring
-    k are those from `ring_offsets[k]` up to, not including, `ring_offsets[k + 1]` (intp, r + 1). Beyond an arc lies the
-    copy of the site and under the motion `neighbours[beyond[k]]` (`beyond`: intp, n).
+    n x 2) are those of the parabolas before the motions that take the control points to their places. The arcs of edge
+    k are those from `use_offsets[k]` up to, not including, `use_offsets[k + 1]` (intp, m + 1), those of ring k from
+    `ring_offsets[k]` up to `ring_offsets[k + 1]` (intp, r + 1), the rings of tile t those from `tile_offsets[t]` up to
+    `tile_offsets[t + 1]`.
+
+    Beyond an arc lies the copy of the site `site[face[k]]` under the motion `motion[face[k]]`: the faces of tile t
+    are those from `face_offsets[t]` up to `face_offsets[t + 1]`.
     """
 
     representatives: Representatives
@@ -30,64 +37,179 @@ class TileBoundary:
     control: Points
     focus: Complexes
     directrix: Complexes
+    use_offsets: Ints
     ring_offsets: Ints
-    beyond: Ints
-    neighbours: tuple[tuple[int, Motion], ...]
+    tile_offsets: Ints
+    face: Ints
+    site: Ints
+    motion: Codes
+    face_offsets: Ints
 
     @classmethod
-    def of(cls, quotient: Quotient, tile: int) -> TileBoundary:
-        """The boundary of the base tile of a site."""
-        rings = quotient.boundaries[tile]
-        start, control, focus, directrix, beyond = [], [], [], [], []
-        number: dict[tuple[int, Motion], int] = {}
-        for use in (use for ring in rings for use in ring):
-            edge = quotient.edges[use.edge]
-            order = np.arange(len(edge))[:: -1 if use.backwards else 1]
-            # Run through backwards, arc k starts where it ends else: at vertex k + 1.
-            start.append(edge.vertex.moved(use.motion).take(order + use.backwards))
-            control.append(edge.control.moved(use.motion).take(order))
-            focus.append(edge.focus[order])
-            directrix.append(edge.directrix[order])
-            beyond.append(np.full(len(edge), number.setdefault(use.beyond, len(number))))
-        counts = [sum(len(quotient.edges[use.edge]) for use in ring) for ring in rings]
+    def of(cls, quotient: Quotient) -> TileBoundaries:
+        """The boundaries of all base tiles."""
+        uses = quotient.uses
+        counts = np.diff(quotient.offsets)[uses.edge]
+        place, use = counting(counts)
+        edge, back = uses.edge[use], uses.backwards[use]
+        # Run through backwards, arc k starts where it ends else: at vertex k + 1.
+        arc = quotient.offsets[edge] + np.where(back, counts[use] - 1 - place, place)
+        motion = uses.motion[use]
+        use_offsets = offsets_of(counts)
+        tile = np.repeat(np.arange(len(uses.tile_offsets) - 1), np.diff(uses.ring_offsets[uses.tile_offsets]))
+        face, numbers = _numbered(tile, uses.site, uses.beyond)
+        beside, site, beyond = np.array([*numbers]).T
         return cls(
             representatives=quotient.representatives,
-            start=Points.concatenate(start),
-            control=Points.concatenate(control),
-            focus=np.concatenate(focus),
-            directrix=np.concatenate(directrix),
-            ring_offsets=np.append(0, np.cumsum(counts)),
-            beyond=np.concatenate(beyond),
-            neighbours=tuple(number),
+            start=quotient.vertex.take(arc + edge + back).moved(motion),
+            control=quotient.control.take(arc).moved(motion),
+            focus=quotient.focus[arc],
+            directrix=quotient.directrix[arc],
+            use_offsets=use_offsets,
+            ring_offsets=use_offsets[uses.ring_offsets],
+            tile_offsets=uses.tile_offsets,
+            face=face[use],
+            site=site,
+            motion=beyond,
+            face_offsets=np.searchsorted(beside, np.arange(len(uses.tile_offsets))),
         )
 
-    def outline(self, motion: Motion, neighbours: tuple[Neighbour, ...]) -> Outline:
-        """The outline of the image under a motion; `neighbours` names the copies that are then beyond its arcs."""
-        action = self.representatives.action
-        start = self.representatives.locate(self.start.moved(motion))
-        offsets = self.ring_offsets
-        end = start[next_in_ring(offsets)]
-        points = self.control.moved(motion)
-        curved = points.index >= 0
-        control = np.where(curved, self.representatives.locate(points), (start + end) / 2)
-        parabola = np.column_stack((self.focus, self.directrix))
-        parabola[~curved] = 0
-        for number, by in enumerate(points.motions):
-            chosen = np.flatnonzero(curved & (points.motion == number))
-            parabola[chosen] = action.apply(by, parabola[chosen])
-        # A motion that turns the plane over turns the rings round: run through each backwards.
-        order = np.arange(len(start))
-        if reverses_orientation(motion):
-            order = backwards(offsets)
-            start, end = end, start
-        return Outline(
-            start=start[order],
-            control=control[order],
-            end=end[order],
-            curved=curved[order],
-            focus=parabola[order, 0],
-            directrix=parabola[order, 1:],
-            neighbour=self.beyond[order],
-            neighbours=neighbours,
-            ring_offsets=offsets,
+    def of_tile(self, tile: int) -> TileBoundaries:
+        """The boundary of one of the tiles."""
+        rings = slice(self.tile_offsets[tile], self.tile_offsets[tile + 1] + 1)
+        ring_offsets = self.ring_offsets[rings]
+        arcs = slice(ring_offsets[0], ring_offsets[-1])
+        faces = slice(self.face_offsets[tile], self.face_offsets[tile + 1])
+        uses = slice(*(np.searchsorted(self.use_offsets, ring_offsets[[0, -1]]) + np.array([0, 1])))
+        return TileBoundaries(
+            representatives=self.representatives,
+            start=self.start.take(arcs),
+            control=self.control.take(arcs),
+            focus=self.focus[arcs],
+            directrix=self.directrix[arcs],
+            use_offsets=self.use_offsets[uses] - ring_offsets[0],
+            ring_offsets=ring_offsets - ring_offsets[0],
+            tile_offsets=np.array([0, len(ring_offsets) - 1]),
+            face=self.face[arcs] - faces.start,
+            site=self.site[faces],
+            motion=self.motion[faces],
+            face_offsets=np.array([0, faces.stop - faces.start]),
         )
+
+    def outlines(self, motion: Motion, neighbours: Sequence[tuple[Neighbour, ...]]) -> list[Outline]:
+        """The outlines of the tiles' images under a motion.
+
+        `neighbours` names for each tile the copies that are then beyond its faces.
+        """
+        # Its translation may be longer than codes hold.
+        turn, offsets = code_of((*motion[:4], 0, 0)), self.ring_offsets
+        start, control, parabola = self._located(turn, (motion[4], motion[5]))
+        end, curved = start[next_in_ring(offsets)], self.control.index >= 0
+        control = np.where(curved, control, (start + end) / 2)
+        face = self.face - np.repeat(self.face_offsets[:-1], np.diff(offsets[self.tile_offsets]))
+        if reverses_orientation(motion):
+            # A motion that turns the plane over turns the rings round: run through each backwards.
+            order = backwards(offsets)
+            start, control, end = end[order], control[order], start[order]
+            curved, parabola, face = curved[order], parabola[order], face[order]
+        focus, directrix = parabola[:, 0], parabola[:, 1:]
+        bounds = self.tile_offsets.tolist()
+        found = []
+        for tile, names in enumerate(neighbours):
+            rings = offsets[bounds[tile] : bounds[tile + 1] + 1]
+            first, last = rings[[0, -1]].tolist()
+            arcs = slice(first, last)
+            found.append(
+                Outline(
+                    start=start[arcs],
+                    control=control[arcs],
+                    end=end[arcs],
+                    curved=curved[arcs],
+                    focus=focus[arcs],
+                    directrix=directrix[arcs],
+                    neighbour=face[arcs],
+                    neighbours=names,
+                    ring_offsets=rings - first,
+                )
+            )
+        return found
+
+    def counterparts(self, symmetry: SiteSymmetry) -> tuple[Complexes, Complexes, Complexes]:
+        """Of each arc the one that the tile beyond has there: start, control and end, complex128 (n,), reversed.
+
+        Each tile beyond is asked for what it faces itself where it lies at the place of its site, and that is moved to
+        where it is beyond. NaN where such a tile has no edge there, or one of another number of arcs. The control point
+        of a line is that of a quadratic Bezier curve, the middle.
+        """
+        tile = np.repeat(np.arange(len(self.face_offsets) - 1), np.diff(self.face_offsets))
+        back = symmetry.canonical(tile, inverted(self.motion))
+        _, numbers = _numbered(tile, self.site, self.motion)
+        asked = zip(self.site.tolist(), tile.tolist(), back.tolist(), strict=True)
+        partner = np.array([numbers.get(face, -1) for face in asked])
+        following = next_in_ring(self.ring_offsets)
+        first, last = self.use_offsets[:-1], self.use_offsets[1:] - 1
+        of = self.face[first]
+        by_face = np.argsort(of, kind="stable")
+        begin = np.searchsorted(of[by_face], np.arange(len(tile) + 1))
+        known = np.flatnonzero(partner >= 0)
+        counts = np.diff(begin)[partner[known]]
+        there = by_face[ranges(begin[:-1][partner[known]], counts)]
+        face = np.repeat(known, counts)
+        by = self.motion[face]
+        turned = reversing(by)
+        # Edges are told apart by their face, their ends, and their first arc: here, and as they come from beyond.
+        here = self._order(of, (first, following[last], following[first], first), IDENTITY_CODE)
+        begins, stops = first[there], following[last[there]]
+        ends = np.where(turned, begins, stops), np.where(turned, stops, begins)
+        second, arc = np.where(turned, following[begins], last[there]), np.where(turned, begins, last[there])
+        order = self._order(face, (*ends, second, arc), by)
+        there, face, turned = there[order], face[order], turned[order]
+        rank = np.arange(len(here)) - begin[of[here]]
+        low, high = (np.searchsorted(face, of[here], side) for side in ("left", "right"))
+        sizes = np.diff(self.use_offsets)
+        matched = low + rank < high
+        row = np.where(matched, low + rank, 0)
+        matched[matched] = sizes[there[row[matched]]] == sizes[here[matched]]
+        use, row = here[matched], row[matched]
+        place, k = counting(sizes[use])
+        mine = first[use][k] + place
+        edge, over, by = there[row][k], turned[row][k], self.motion[face[row]][k]
+        arc = np.where(over, first[edge] + place, last[edge] - place)
+        result = np.full((3, len(self.face)), np.nan + 0j)
+        one, two = (self.representatives.locate(self.start.take(at).moved(by)) for at in (arc, following[arc]))
+        control = self.control.take(arc).moved(by)
+        result[0, mine], result[2, mine] = np.where(over, one, two), np.where(over, two, one)
+        result[1, mine] = np.where(control.index >= 0, self.representatives.locate(control), (one + two) / 2)
+        return result[0], result[1], result[2]
+
+    def _order(self, face: Ints, arcs: tuple[Ints, Ints, Ints, Ints], by: Codes | int) -> Ints:
+        """The order of rows by their faces, then by where the first three arcs start and the last's control point is.
+
+        All are moved by one motion, or one of each row.
+        """
+        locate = self.representatives.locate
+        starts = [locate(self.start.take(arc).moved(by)) for arc in arcs[:3]]
+        return np.lexsort((locate(self.control.take(arcs[3]).moved(by)), *starts[::-1], face))
+
+    def _located(self, turn: int, further: tuple[int, int]) -> tuple[Complexes, Complexes, Complexes]:
+        """Starts and control points under a motion, and foci and directrices (n x 3); what lines do not have is 0.
+
+        `further` is twice a translation that comes after it.
+        """
+        points = self.start.and_then(self.control)
+        if turn != IDENTITY_CODE:
+            points = points.moved(turn)
+        both = self.representatives.locate(points, further)
+        curved = np.flatnonzero(self.control.index >= 0)
+        parabola = np.zeros((len(self.face), 3), complex)
+        parabola[curved, 0], parabola[curved, 1:] = self.focus[curved], self.directrix[curved]
+        by = points.motion[len(self.face) :][curved, None]
+        parabola[curved] = images(self.representatives.action, by, parabola[curved], further)
+        return both[: len(self.face)], both[len(self.face) :], parabola
+
+
+def _numbered(*columns: Ints) -> tuple[Ints, dict[tuple[int, ...], int]]:
+    """Numbers for rows, in the order in which they appear, equal ones for equal rows; and those of all rows."""
+    numbers: dict[tuple[int, ...], int] = {}
+    rows = zip(*(column.tolist() for column in columns), strict=True)
+    return np.array([numbers.setdefault(row, len(numbers)) for row in rows]), numbers

@@ -1,56 +1,95 @@
-"""The corners of the tiling, where edges meet: each an image of one representative."""
+"""The corners of the tiling, where edges meet: each an image of one representative.
+
+Corner k is the one where edge k starts.
+"""
 
 from __future__ import annotations
 
 from collections import defaultdict
 
-from voronoi_tiles.vector.complex.edges import Corner, Edge
-from voronoi_tiles.vector.complex.representatives import Builder
+import numpy as np
+
+from voronoi_tiles.base.arrays import Bools, Ints
+from voronoi_tiles.base.components import components
+from voronoi_tiles.vector.complex.edges import Edges
+from voronoi_tiles.vector.complex.representatives import Builder, Points, fixed
 from voronoi_tiles.vector.complex.sharpening import sharpened, tangent
-from voronoi_tiles.vector.complex.traced import Traced
+from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, code_of, composed, inverted, motion_of
 from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, inverse
 
-Corners = dict[Corner, tuple[int, Motion]]
-"""For each corner the number of its representative, and the motion from there."""
-
 # For each corner, corners that edges' motions take it to, and those motions.
-_Related = defaultdict[Corner, list[tuple[Corner, Motion]]]
+_Related = defaultdict[int, list[tuple[int, Motion]]]
 
 
-def find_corners(builder: Builder, traced: list[Traced], edges: list[Edge]) -> Corners:
+def find_corners(builder: Builder, edges: Edges) -> Points:
     """All corners of edges as images of representatives; those on rotation centres and mirrors are put exactly there.
 
-    The edges come with their images; what takes an edge to an image takes its ends to those of the image.
+    What takes an edge to an image takes its ends to those of the image.
     """
+    source, image, following = edges.source, edges.image, edges.following
+    one = np.stack((source, following[source]), axis=1)
+    two = np.stack((image, following[image]), axis=1)
+    two = np.where(edges.backwards[:, None], two[:, ::-1], two).reshape(-1)
+    one, by = one.reshape(-1), np.repeat(edges.by, 2)
+    least = components(len(edges), one, two)
+    motion = _motions(least, one, two, by)
+    # Where two ways lead to one corner, it may be that a motion fixes it.
+    careful = np.zeros(len(edges), bool)
+    careful[least[one[composed(by, motion[one]) != motion[two]]]] = True
+    if edges.traced.nearly_touching:
+        careful[least[_near_touching(edges)]] = True
+    first = np.flatnonzero(least == np.arange(len(edges)))
+    where = edges.traced.vertex[edges.start[first]]
+    numbers = np.empty(len(edges), np.intp)
+    numbers[first] = builder.add(where)
+    if careful.any():
+        asked = careful[least[one]]
+        related = _related(one[asked], two[asked], by[asked])
+        ends = _Ends(edges)
+        for place in np.flatnonzero(careful[first]).tolist():
+            corner = int(first[place])
+            reached, fixing = _orbit(corner, related)
+            at = complex(where[place])
+            if edges.traced.nearly_touching:
+                for other, taken in reached.items():
+                    at = ends.sharpened(builder.action, at, taken, other)
+            stabilizer = _generated(fixing)
+            where[place] = fixed(builder.action, at, stabilizer, ends.across(corner))
+            builder.fix(int(numbers[corner]), stabilizer)
+            motion[list(reached)] = [code_of(taken) for taken in reached.values()]
+    return Points(numbers[least], motion)
+
+
+def _motions(least: Ints, one: Ints, two: Ints, by: Codes) -> Codes:
+    """For each corner a motion that takes the first of its orbit, `least`, there, by way of links between corners."""
+    motion = np.full(len(least), IDENTITY_CODE)
+    reached = least == np.arange(len(least))
+    source, image, by = (np.concatenate(pair) for pair in ((one, two), (two, one), (by, inverted(by))))
+    while not reached.all():
+        link = np.flatnonzero(reached[source] & ~reached[image])
+        motion[image[link]] = composed(by[link], motion[source[link]])
+        reached[image[link]] = True
+    return motion
+
+
+def _near_touching(edges: Edges) -> Ints:
+    """The corners at the ends of arcs that are the bisectors of what nearly touches."""
+    arcs = np.zeros(len(edges.traced), bool)
+    arcs[list(edges.traced.nearly_touching)] = True
+    return np.concatenate((np.flatnonzero(arcs[edges.start]), edges.following[arcs[edges.last]]))
+
+
+def _related(one: Ints, two: Ints, by: Codes) -> _Related:
+    """The links between corners, by the corner that they come from, in their order, there and back."""
     related: _Related = defaultdict(list)
-    ends: defaultdict[Corner, list[tuple[Edge, int]]] = defaultdict(list)
-    images: set[Edge] = set()
-    for edge in edges:
-        ends[edge.start].append((edge, 0))
-        ends[edge.end].append((edge, -1))
-        for motion, image, flips in edge.images:
-            if image is not edge and edge not in images:
-                images.add(image)
-            there = (image.end, image.start) if flips else (image.start, image.end)
-            for corner, other in zip((edge.start, edge.end), there, strict=True):
-                related[corner].append((other, motion))
-                related[other].append((corner, inverse(motion)))
-    found: Corners = {}
-    for edge in edges:
-        first = edge.start
-        if first in found:
-            continue
-        reached, fixing = _orbit(first, related)
-        where = complex(edge.vertex[0])
-        for corner, motion in reached.items():
-            sources = [(e, place) for e, place in ends[corner] if e not in images]
-            where = _sharpened(builder.action, traced[corner[0]], where, motion, sources, ends[corner])
-        number = builder.add_fixed(where, _generated(fixing), _across(traced, ends[first]))
-        found.update({corner: (number, motion) for corner, motion in reached.items()})
-    return found
+    for corner, other, code in zip(one.tolist(), two.tolist(), by.tolist(), strict=True):
+        motion = motion_of(code)
+        related[corner].append((other, motion))
+        related[other].append((corner, inverse(motion)))
+    return related
 
 
-def _orbit(first: Corner, related: _Related) -> tuple[dict[Corner, Motion], set[Motion]]:
+def _orbit(first: int, related: _Related) -> tuple[dict[int, Motion], set[Motion]]:
     """The corners that a corner is taken to, each with a motion that does it; and motions that generate its stabilizer.
 
     Where two ways lead to one corner, to go there and back is a motion that fixes the first.
@@ -70,41 +109,51 @@ def _orbit(first: Corner, related: _Related) -> tuple[dict[Corner, Motion], set[
     return reached, fixing
 
 
-def _sharpened(
-    action: Action,
-    boundary: Traced,
-    where: complex,
-    motion: Motion,
-    sources: list[tuple[Edge, int]],
-    ends: list[tuple[Edge, int]],
-) -> complex:
-    """A corner's representative, put onto the bisectors of what nearly touches.
+class _Ends:
+    """The edges that end at corners, each with the place of its arc there, 0 or -1."""
 
-    The corner is the image of `where` under `motion`. `ends` are the edges that end there, each with the place of its
-    arc there, 0 or -1; `sources` those of them that stand for their orbit.
-    """
-    for edge, place in sources:
-        arc = int(edge.arcs[place])
-        if arc in boundary.nearly_touching:
-            here = action.apply_to_point(motion, where)
-            there = sharpened(boundary, arc, here, [_tangent(boundary, e, p) for e, p in ends if e is not edge])
-            if there != here:
-                where = action.apply_to_point(inverse(motion), there)
-    return where
+    def __init__(self, edges: Edges) -> None:
+        self.edges = edges
+        self._before = np.empty(len(edges), np.intp)
+        self._before[edges.following] = np.arange(len(edges))
+        self._on_mirror: Bools = np.zeros(len(edges), bool)
+        self._on_mirror[edges.source[edges.symmetries[~edges.backwards[edges.symmetries]]]] = True
+        self._kept = np.zeros(len(edges), bool)
+        self._kept[edges.orbits[0]] = True
 
+    def at(self, corner: int) -> list[tuple[int, int]]:
+        """The edges that end at a corner, in their order."""
+        return sorted([(corner, 0), (int(self._before[corner]), -1)], key=lambda end: (end[0], -end[1]))
 
-def _across(traced: list[Traced], ends: list[tuple[Edge, int]]) -> complex | None:
-    """The direction of an edge at a corner, of one that does not lie on a mirror."""
-    for edge, place in ends:
-        if not any(image is edge and motion != IDENTITY and not flips for motion, image, flips in edge.images):
-            return _tangent(traced[edge.tile], edge, place)
-    return None
+    def sharpened(self, action: Action, where: complex, motion: Motion, corner: int) -> complex:
+        """A corner's representative, put onto the bisectors of what nearly touches.
 
+        The corner is the image of `where` under `motion`. Of the edges there those count that stand for their orbit.
+        """
+        ends = self.at(corner)
+        for edge, place in ends:
+            arc = int((self.edges.start if place == 0 else self.edges.last)[edge])
+            if self._kept[edge] and arc in self.edges.traced.nearly_touching:
+                here = action.apply_to_point(motion, where)
+                others = [self.tangent(e, p) for e, p in ends if e != edge]
+                there = sharpened(self.edges.traced, arc, here, others)
+                if there != here:
+                    where = action.apply_to_point(inverse(motion), there)
+        return where
 
-def _tangent(boundary: Traced, edge: Edge, place: int) -> complex:
-    """The direction of an edge at its start (place 0) or end (place -1)."""
-    start, end = edge.vertex[[place, place + 1] if place == 0 else [-2, -1]].tolist()
-    return tangent(boundary, int(edge.arcs[place]), start, end, at_start=place == 0)
+    def across(self, corner: int) -> complex | None:
+        """The direction of an edge at a corner, of one that does not lie on a mirror."""
+        for edge, place in self.at(corner):
+            if not self._on_mirror[edge]:
+                return self.tangent(edge, place)
+        return None
+
+    def tangent(self, edge: int, place: int) -> complex:
+        """The direction of an edge at its start (place 0) or end (place -1)."""
+        traced = self.edges.traced
+        arc = int((self.edges.start if place == 0 else self.edges.last)[edge])
+        start, end = traced.vertex[[arc, traced.following[arc]]].tolist()
+        return tangent(traced, arc, start, end, at_start=place == 0)
 
 
 def _generated(motions: set[Motion]) -> tuple[Motion, ...]:

@@ -6,135 +6,291 @@ of these are found, and which motion takes which to which: so they form orbits, 
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints, counting, next_in_ring, offsets_of, starts
 from voronoi_tiles.base.tolerance import PROOF_LIMIT
+from voronoi_tiles.vector.complex.edge_cuts import Cuts, cut_further
+from voronoi_tiles.vector.complex.left_out_edges import without
+from voronoi_tiles.vector.complex.site_symmetry import SiteSymmetry
 from voronoi_tiles.vector.complex.traced import Traced
-from voronoi_tiles.vector.copies import Placed
-from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, inverse, reverses_orientation
+from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, composed, images, inverted, reversing
+from voronoi_tiles.vector.motions import Action
 
-# How near vertices must be to count as one, relative to the cell's size: far above rounding.
-_SAME = 1e-6
-# How far an edge may be from the image of its counterpart, on the same scale. Where copies nearly touch, vertices are
-# known to far fewer digits along their edges; the proof judges what comes of it.
+# How far an edge may be from the image of its counterpart, relative to the cell's size. Where copies nearly touch,
+# vertices are known to far fewer digits along their edges; the proof judges what comes of it.
 PAIRING = 1e-3
 # An edge this short, on the same scale, may have come out in one tile only.
 _ONE_SIDED = 1e-6
-# Turns the plane so that no mirror and no row of copies is upright.
-_SLANT = np.exp(1j)
-
-Corner = tuple[int, int]
-"""Where an arc starts: its tile, and its index in the traced boundary of that."""
 
 
-@dataclass(eq=False, slots=True)
-class Edge:
-    """A maximal run of arcs that face one copy; where it is a whole ring, it is cut at one vertex or several.
+@dataclass(frozen=True, eq=False)
+class Edges:
+    """The edges of all tiles: m maximal runs of arcs that face one copy, ring after ring.
 
-    It is part of the boundary of the base tile `tile`: its k arcs are `arcs` (intp, k), in order, and `beyond` are the
-    site and the motion of the copy on their other side. It runs from the corner `start` to the corner `end`, over the
-    points `vertex` (complex128, k + 1) at the ends of its arcs; `course` (complex128, 2 k + 1) has a point between the
-    ends of each arc besides, halfway by its parameter.
+    A ring that faces one copy all round is cut at one vertex or several. Edge k are the arcs
+    `arcs[offsets[k] : offsets[k + 1]]` (intp) of the boundaries `traced`, the first of them `start[k]`; the edge
+    `following[k]` (intp) starts where it ends. It is part of the boundary of the tile `tile[k]`, and beyond it lies the
+    copy of the site `site[k]` (intp) under `motion[k]` (int64).
 
-    `images` are all edges of base tiles that motions map it to, each with the motion and whether its image runs
-    backwards along that edge; itself under the identity comes first.
+    Link j says that `by[j]` maps the edge `source[j]` onto the edge `image[j]` (intp), whose arcs then come `backwards`
+    (bool). The links from edge k are those from `links[k]` up to, not including, `links[k + 1]` (intp, m + 1), that
+    under the identity first.
     """
 
-    tile: int
+    traced: Traced
     arcs: Ints
-    beyond: tuple[int, Motion]
-    start: Corner
-    end: Corner
-    vertex: Complexes
-    course: Complexes
-    images: list[tuple[Motion, Edge, bool]]
+    offsets: Ints
+    start: Ints
+    following: Ints
+    tile: Ints
+    site: Ints
+    motion: Codes
+    links: Ints
+    image: Ints
+    by: Codes
+    backwards: Bools
+
+    def __len__(self) -> int:
+        """The number of edges."""
+        return len(self.following)
+
+    @property
+    def last(self) -> Ints:
+        """The arc at the end of each edge."""
+        return self.arcs[self.offsets[1:] - 1]
+
+    @cached_property
+    def source(self) -> Ints:
+        """The edge that each link comes from."""
+        return np.repeat(np.arange(len(self)), np.diff(self.links))
+
+    @cached_property
+    def orbits(self) -> tuple[Ints, Ints]:
+        """The edges that stand for their orbits, the first of each; and for each edge the link that leads to it."""
+        bounds, image = self.links.tolist(), self.image.tolist()
+        link_to = [-1] * len(self)
+        kept = []
+        for edge in range(len(self)):
+            if link_to[edge] < 0:
+                kept.append(edge)
+                for link in range(bounds[edge], bounds[edge + 1]):
+                    if link_to[image[link]] < 0:
+                        link_to[image[link]] = link
+        return np.array(kept), np.array(link_to)
+
+    @cached_property
+    def symmetries(self) -> Ints:
+        """The links of edges to themselves under other motions than the identity."""
+        return np.flatnonzero((self.image == self.source) & (self.by != IDENTITY_CODE))
+
+    def vertices(self, edge: int) -> Complexes:
+        """The points at the ends of an edge's arcs, from its start to its end."""
+        return self.traced.vertex[self.around(edge)]
+
+    def around(self, edge: int) -> Ints:
+        """The arcs of an edge, and the one that starts where it ends."""
+        arcs = self.arcs[self.offsets[edge] : self.offsets[edge + 1]]
+        return np.append(arcs, self.traced.following[arcs[-1]])
+
+    def course(self, edge: int) -> Complexes:
+        """The points at the ends of an edge's arcs, and between these one of each arc, halfway by its parameter."""
+        around = self.around(edge)
+        course = np.empty(2 * len(around) - 1, complex)
+        course[::2], course[1::2] = self.traced.vertex[around], self.traced.middles[around[:-1]]
+        return course
 
 
 class UnpairedEdgeError(ArithmeticError):
-    """An edge, `edge`, has no counterpart in the tile beyond, or no image there."""
+    """The edge number `edge` of `edges` has no counterpart in the tile beyond, or no image there."""
 
-    def __init__(self, edge: Edge) -> None:
+    def __init__(self, edges: Edges, edge: int) -> None:
         super().__init__("an edge has no counterpart in the tile beyond")
-        self.edge = edge
+        self.edges, self.edge = edges, edge
 
 
-def find_edges(
-    action: Action, placed: list[Placed], traced: list[Traced], *, without_short: bool
-) -> tuple[list[Traced], list[Edge]]:
-    """The boundaries of all base tiles and their edges, ring after ring, each with its images.
+def find_edges(action: Action, symmetry: SiteSymmetry, traced: Traced, *, without_short: bool) -> Edges:
+    """The edges of all base tiles, each with its images.
 
     Edges that rounding has made, where many tiles meet, are left out of the boundaries. `without_short` leaves out all
     that may be such; this is tried as well where the edges cannot be paired otherwise. Raises UnpairedEdgeError where
     they cannot be paired at all.
     """
-    limit = (_ONE_SIDED if without_short else PROOF_LIMIT) * action.size
-    traced = [_without_short_edges(boundary, limit) for boundary in traced]
+    edges = _without_short_edges(traced, (_ONE_SIDED if without_short else PROOF_LIMIT) * action.size)
     pinched = True
     while True:
         try:
-            return traced, _paired(action, placed, traced, pinched=pinched)
+            return _paired(action, symmetry, edges, pinched=pinched)
         except UnpairedEdgeError as error:
-            edge = error.edge
-            extent = float(np.abs(edge.vertex - edge.vertex[0]).max())
-            boundary = traced[edge.tile]
-            rest = np.delete(np.arange(len(boundary)), edge.arcs)
-            if extent <= _ONE_SIDED * action.size and len(rest):
-                traced = [boundary.take(rest) if t == edge.tile else other for t, other in enumerate(traced)]
+            traced, vertex = error.edges.traced, error.edges.vertices(error.edge)
+            rest, arcs = np.ones(len(traced), bool), error.edges.around(error.edge)
+            rest[arcs[:-1]] = False
+            short = np.abs(vertex - vertex[0]).max() <= max(_ONE_SIDED * action.size, _spread(traced, arcs))
+            if short and (rest & (traced.tile == error.edges.tile[error.edge])).any():
+                edges = _between(without(traced, np.flatnonzero(rest)))
             elif pinched:
                 pinched = False
             elif not without_short:
-                return find_edges(action, placed, traced, without_short=True)
+                return find_edges(action, symmetry, traced, without_short=True)
             else:
                 raise
 
 
-def _paired(action: Action, placed: list[Placed], traced: list[Traced], *, pinched: bool) -> list[Edge]:
+def _spread(traced: Traced, around: Ints) -> float:
+    """How far apart rounding may have put the ends of an edge, where what meets there nearly touches.
+
+    `around` are its arcs and the one after them.
+    """
+    before = np.flatnonzero(traced.following == around[0])
+    return 16 * float(traced.uncertainty[np.append(before, around)].max())
+
+
+def _without_short_edges(traced: Traced, limit: float) -> Edges:
+    """The edges of boundaries without those that extend no farther than a limit; of rings with no other, all.
+
+    They are not paired yet, and end only where the copy beyond changes.
+    """
+    edges = _between(traced)
+    first, counts = traced.vertex[edges.start], np.diff(edges.offsets)
+    extent = np.abs(traced.vertex[edges.arcs] - np.repeat(first, counts))
+    extent = np.maximum.reduceat(extent, edges.offsets[:-1])
+    long = np.maximum(extent, np.abs(first[edges.following] - first)) > limit
+    if long.all():
+        return edges
+    ring = starts(traced.ring[edges.start])
+    long |= np.repeat(~np.logical_or.reduceat(long, ring), np.diff(np.append(ring, len(edges))))
+    if long.all():
+        return edges
+    return _between(without(traced, np.sort(edges.arcs[np.repeat(long, counts)])))
+
+
+def _between(traced: Traced, cuts: Cuts | None = None) -> Edges:
+    """The edges between cuts, not paired yet; a ring without a cut is cut at its start.
+
+    Without `cuts` they end where the copy beyond changes.
+    """
+    if cuts is None:
+        cuts = traced.changes
+    offsets = traced.offsets
+    whole = ~np.logical_or.reduceat(cuts, offsets[:-1])
+    if whole.any():
+        cuts = cuts.copy()
+        cuts[offsets[:-1][whole]] = True
+    at = cuts.nonzero()[0]
+    first, sizes = at[at.searchsorted(offsets[:-1])], np.diff(offsets)
+    # Each ring begins with its first cut.
+    arcs = np.arange(len(traced)) + np.repeat(first - offsets[:-1], sizes)
+    arcs -= np.where(arcs >= np.repeat(offsets[1:], sizes), np.repeat(sizes, sizes), 0)
+    begins = cuts[arcs].nonzero()[0]
+    start = arcs[begins]
+    ring = traced.ring[start]
+    none = np.zeros(0, np.intp)
+    return Edges(
+        traced=traced,
+        arcs=arcs,
+        offsets=np.append(begins, len(traced)),
+        start=start,
+        following=next_in_ring(np.append(starts(ring), len(start))),
+        tile=traced.ring_tile[ring],
+        site=traced.site[start],
+        motion=traced.motions_beyond(start),
+        links=none,
+        image=none,
+        by=none,
+        backwards=none.astype(bool),
+    )
+
+
+def _paired(action: Action, symmetry: SiteSymmetry, edges: Edges, *, pinched: bool) -> Edges:
     """The edges of boundaries, ring after ring, each with its images.
 
-    `pinched` looks for vertices at which a boundary touches itself, and ends edges there: such a tile may have the same
-    neighbour before and after the vertex, while an edge of that neighbour ends. Raises UnpairedEdgeError.
+    `edges` end where the copy beyond changes, and at one place in each ring that faces one copy only. `pinched` looks
+    for vertices at which a boundary touches itself, and ends edges there: such a tile may have the same neighbour
+    before and after the vertex, while an edge of that neighbour ends. Raises UnpairedEdgeError.
     """
-    cuts = [_cuts(boundary) for boundary in traced]
-    _cut_further(action, placed, traced, cuts, pinched)
-    edges = [edge for tile, boundary in enumerate(traced) for edge in _edges(tile, boundary, cuts[tile])]
-    between: defaultdict[tuple[int, tuple[int, Motion]], list[Edge]] = defaultdict(list)
-    for edge in edges:
-        between[edge.tile, edge.beyond].append(edge)
-    limit = PAIRING * action.size
-    for edge in edges:
-        for motion, tile, beyond, flips in _images(placed, edge.tile, *edge.beyond):
-            if motion == IDENTITY and not flips:
-                edge.images.append((motion, edge, False))
-                continue
-            image = action.apply(motion, edge.course)
-            candidates = between.get((tile, beyond), [])
-            if flips:
-                image = image[::-1]
-            gaps = [_gap(image, other.course, limit) for other in candidates]
-            best = int(np.argmin(gaps)) if gaps else -1
-            if best < 0 or gaps[best] > limit:
-                raise UnpairedEdgeError(edge)
-            edge.images.append((motion, candidates[best], flips))
+    traced = edges.traced
+    cuts = cut_further(action, symmetry, traced, pinched=pinched)
+    if cuts is not traced.changes:
+        edges = _between(traced, cuts)
+    count = len(edges)
+    # Every way to move an edge between a base tile and the copy of a site onto a base tile: by what maps the tile's
+    # site onto itself, and by what takes the copy beyond to its own base tile.
+    if symmetry.general:
+        links, source = np.arange(0, 2 * count + 1, 2), np.repeat(np.arange(count), 2)
+        by = np.full(2 * count, IDENTITY_CODE)
+        under = inverted(edges.motion)
+        by[1::2] = under
+        wanted, on, facing = links[:-1] + 1, edges.site, edges.tile
+        backwards = np.zeros(2 * count, bool)
+        backwards[1::2] = ~reversing(under)
+    else:
+        own, theirs = symmetry.order[edges.tile], symmetry.order[edges.site]
+        links = offsets_of(own + theirs)
+        k, source = counting(own + theirs)
+        tile, site, motion = edges.tile[source], edges.site[source], edges.motion[source]
+        back = k >= own[source]
+        first = np.where(back, symmetry.offsets[site] - own[source], symmetry.offsets[tile])
+        element = symmetry.stabilizer[first + k]
+        by = np.where(back, composed(element, inverted(motion)), element)
+        under = np.where(back, by, composed(element, motion))
+        under = symmetry.canonical(np.where(back, tile, site), under)
+        backwards = reversing(by) != back
+        wanted = np.flatnonzero(k > 0)
+        on, facing, under = np.where(back, site, tile)[wanted], np.where(back, tile, site)[wanted], under[wanted]
+    # The identity's links lead back; of the others, those edges may be the images that face the right copy.
+    image = np.empty(len(source), np.intp)
+    image[links[:-1]] = np.arange(count)
+    edges = replace(edges, links=links, image=image, by=by, backwards=backwards)
+    key, asked, sites = edges.motion, under, len(symmetry.order)
+    if sites > 1:
+        motions = np.unique(np.concatenate((key, asked)), return_inverse=True)[1]
+        key = (edges.tile * sites + edges.site) * len(motions) + motions[:count]
+        asked = (on * sites + facing) * len(motions) + motions[count:]
+    order = np.argsort(key, kind="stable")
+    key = key[order]
+    low, high = key.searchsorted(asked), key.searchsorted(asked, "right")
+    if (low == high).any():
+        raise UnpairedEdgeError(edges, int(source[wanted[np.flatnonzero(low == high)[0]]]))
+    edges.image[wanted] = order[low]
+    unsure = (high - low > 1) | ~_agree(action, edges, wanted)
+    for row in np.flatnonzero(unsure).tolist():
+        edges.image[wanted[row]] = _nearest(action, edges, int(wanted[row]), order[low[row] : high[row]])
     return edges
 
 
-def _without_short_edges(boundary: Traced, limit: float) -> Traced:
-    """The boundary of the edges that extend farther than a limit; of all in a ring that would have none."""
-    kept = []
-    for ring, cut in zip(boundary.rings, _cuts(boundary), strict=True):
-        long = [
-            arcs
-            for arcs, end in _runs(ring, cut)
-            if np.abs(boundary.vertex[np.append(arcs, end)] - boundary.vertex[arcs[0]]).max() > limit
-        ]
-        kept.append(np.sort(np.concatenate(long)) if len(cut) > 1 and long else ring)
-    index = np.concatenate(kept)
-    return boundary if len(index) == len(boundary) else boundary.take(index)
+def _agree(action: Action, edges: Edges, links: Ints) -> Bools:
+    """Whether the images of edges under links have the vertices of those that they lead to."""
+    source, image = edges.source[links], edges.image[links]
+    counts = np.diff(edges.offsets)
+    here, there = counts[source], counts[image]
+    place, row = counting(here + 1)
+    # Vertex j of an edge is where its arc j starts, the last one where the next edge does.
+    bounds = np.append(edges.arcs, 0)
+    at = edges.offsets[source][row] + place
+    one = np.where(place == here[row], edges.start[edges.following[source]][row], bounds[at])
+    place = np.minimum(np.where(edges.backwards[links][row], here[row] - place, place), there[row])
+    at = edges.offsets[image][row] + place
+    two = np.where(place == there[row], edges.start[edges.following[image]][row], bounds[at])
+    vertex = edges.traced.vertex
+    gap = np.abs(images(action, edges.by[links][row], vertex[one]) - vertex[two])
+    gap = np.maximum.reduceat(gap, offsets_of(here + 1)[:-1])
+    return np.asarray((here == there) & (gap <= PAIRING * action.size))
+
+
+def _nearest(action: Action, edges: Edges, link: int, candidates: Ints) -> int:
+    """The one of some edges that a link's image of its edge comes nearest to. Raises UnpairedEdgeError."""
+    source, limit = int(edges.source[link]), PAIRING * action.size
+    image = images(action, edges.by[link], edges.course(source))
+    if edges.backwards[link]:
+        image = image[::-1]
+    gaps = [_gap(image, edges.course(other), limit) for other in candidates.tolist()]
+    best = int(np.argmin(gaps))
+    if gaps[best] > limit:
+        raise UnpairedEdgeError(edges, source)
+    return int(candidates[best])
 
 
 def _gap(one: Complexes, other: Complexes, limit: float) -> float:
@@ -155,119 +311,3 @@ def _gap(one: Complexes, other: Complexes, limit: float) -> float:
             np.interp(shares * run[-1], run, course.real) + 1j * np.interp(shares * run[-1], run, course.imag)
         )
     return float(np.abs(places[0] - places[1]).max())
-
-
-def _cuts(boundary: Traced) -> list[list[int]]:
-    """For each ring the places in it where the copy beyond changes."""
-    result = []
-    for ring in boundary.rings:
-        target, copy = boundary.target[ring], boundary.copy[ring]
-        changes = (target != np.roll(target, 1)) | (copy != np.roll(copy, 1))
-        result.append(np.flatnonzero(changes).tolist())
-    return result
-
-
-def _images(
-    placed: list[Placed], tile: int, target: int, there: Motion
-) -> Iterator[tuple[Motion, int, tuple[int, Motion], bool]]:
-    """Every way to move an edge between a base tile and the copy of `target` under `there` onto a base tile.
-
-    That is the motion, the tile, site and motion of the copy then beyond, and whether the image runs backwards.
-    """
-    for motion in placed[tile].stabilizer:
-        beyond = placed[target].canonical(compose(motion, there))
-        yield motion, tile, (target, beyond), reverses_orientation(motion)
-    back = inverse(there)
-    for element in placed[target].stabilizer:
-        motion = compose(element, back)
-        yield motion, target, (tile, placed[tile].canonical(motion)), not reverses_orientation(motion)
-
-
-def _cut_further(
-    action: Action, placed: list[Placed], traced: list[Traced], cuts: list[list[list[int]]], pinched: bool
-) -> None:
-    """Cut rings at more vertices, and at all images of these, in place.
-
-    They are one vertex of each ring that faces one copy only and, where `pinched`, those where a boundary touches
-    itself.
-    """
-    # A vertex is where its arc starts; what it is mapped to depends on the copies beyond this arc and the one before.
-    waiting: list[Corner] = []
-    for tile, boundary in enumerate(traced):
-        if pinched:
-            waiting += [(tile, arc) for arc in _pinches(boundary, _SAME * action.size)]
-        waiting += [(tile, int(r[0])) for r, cut in zip(boundary.rings, cuts[tile], strict=True) if not cut]
-    done: set[Corner] = set()
-    while waiting:
-        tile, arc = waiting.pop()
-        if (tile, arc) in done:
-            continue
-        done.add((tile, arc))
-        boundary = traced[tile]
-        number, ring = next((n, r) for n, r in enumerate(boundary.rings) if r[0] <= arc <= r[-1])
-        before = arc - 1 if arc > ring[0] else int(ring[-1])
-        place = arc - int(ring[0])
-        if place not in cuts[tile][number]:
-            cuts[tile][number] = sorted([*cuts[tile][number], place])
-        here = boundary.vertex[arc : arc + 1]
-        for faced in {boundary.beyond(arc), boundary.beyond(before)}:
-            for motion, other, beyond, _ in _images(placed, tile, *faced):
-                waiting += [
-                    (other, k)
-                    for k in _at(traced[other], action.apply(motion, here), _SAME * action.size)
-                    if traced[other].beyond(k) == beyond
-                ]
-
-
-def _at(boundary: Traced, point: Complexes, limit: float) -> list[int]:
-    """The arcs that start at a point."""
-    return [int(arc) for arc in np.flatnonzero(np.abs(boundary.vertex - point) <= limit)]
-
-
-def _pinches(boundary: Traced, limit: float) -> list[int]:
-    """The vertices at which a boundary touches itself: another one is within a limit, and not just along the way."""
-    # Sorted from left to right, turned by the slant, few vertices are near each other.
-    along = (boundary.vertex * _SLANT).real
-    order = np.argsort(along)
-    vertex, along = boundary.vertex[order], along[order]
-    pairs = [np.zeros((0, 2), np.intp)]
-    for step in range(1, len(order)):
-        near = np.flatnonzero(along[step:] - along[:-step] <= limit)
-        if not len(near):
-            break
-        same = near[np.abs(vertex[near + step] - vertex[near]) <= limit]
-        pairs.append(np.stack((order[same], order[same + step]), axis=1))
-    one, two = np.concatenate(pairs).T
-    # Vertices along a ring may be as close without touching: only short arcs lie between them, one way or the other.
-    chord = np.abs(boundary.vertex[boundary.following] - boundary.vertex)
-    walk, around = np.cumsum(chord) - chord, np.bincount(boundary.ring, chord)
-    between = np.abs(walk[one] - walk[two])
-    between = np.minimum(between, around[boundary.ring[one]] - between)
-    apart = (boundary.ring[one] != boundary.ring[two]) | (between > limit)
-    return [int(vertex) for vertex in np.unique(np.concatenate((one[apart], two[apart])))]
-
-
-def _runs(ring: Ints, cut: list[int]) -> Iterator[tuple[Ints, int]]:
-    """The arcs between the places where a ring is cut, and the arc that starts where they end."""
-    for first, last in zip(cut, [*cut[1:], *(place + len(ring) for place in cut[:1])], strict=True):
-        yield ring[np.arange(first, last) % len(ring)], int(ring[last % len(ring)])
-
-
-def _edges(tile: int, boundary: Traced, cuts: list[list[int]]) -> Iterator[Edge]:
-    """The edges of a boundary whose rings are cut at these places."""
-    for ring, cut in zip(boundary.rings, cuts, strict=True):
-        for arcs, end in _runs(ring, cut):
-            start = int(arcs[0])
-            vertex = boundary.vertex[np.append(arcs, end)]
-            course = np.empty(2 * len(vertex) - 1, complex)
-            course[::2], course[1::2] = vertex, boundary.middles[arcs]
-            yield Edge(
-                tile=tile,
-                arcs=arcs,
-                beyond=boundary.beyond(start),
-                start=(tile, start),
-                end=(tile, end),
-                vertex=vertex,
-                course=course,
-                images=[],
-            )

@@ -20,6 +20,7 @@ from voronoi_tiles.paths.paths import LINE, QUAD, Paths
 from voronoi_tiles.vector.complex.quotient import EdgeUse, Quotient
 from voronoi_tiles.vector.complex.representatives import Points, Representatives
 from voronoi_tiles.vector.copies import Placed
+from voronoi_tiles.vector.motion_codes import code_of, motion_of
 from voronoi_tiles.vector.motions import Action, Motion, compose, reverses_orientation, split, translated
 
 
@@ -153,8 +154,8 @@ def make_period(action: Action, placed: Sequence[Placed], quotient: Quotient) ->
     motions = [(site, motion) for site, base in enumerate(placed) for motion in base.representatives]
     rings = collector.rings(motions)
     points = _Located(action, quotient.representatives)
-    vertices = [points.name(quotient.edges[orbit].vertex.moved(motion)) for orbit, motion in collector.edges]
-    controls = [points.name(quotient.edges[orbit].control.moved(motion)) for orbit, motion in collector.edges]
+    vertices = [points.name(quotient.edges[orbit].vertex.moved(code_of(motion))) for orbit, motion in collector.edges]
+    controls = [points.name(quotient.edges[orbit].control.moved(code_of(motion))) for orbit, motion in collector.edges]
     counts = np.array([len(rows) for rows in controls])
     # An edge stands where its start has the lattice vector 0.
     home = np.array([rows[0, 2:] for rows in vertices])
@@ -245,11 +246,11 @@ class _Located:
 
     def name(self, points: Points) -> Ints:
         """The names of points, intp (n, 4); the first of the four is -1 where there is no point."""
-        table = np.array([self._row(motion) for motion in points.motions])
-        rows = np.column_stack((points.index, table[points.motion]))
-        for k, motion in self.representatives.canonical(points):
-            rows[k, 1:] = self._row(motion)
-        return rows
+        motions = self.representatives.canonical(points)
+        table = {code: self._row(motion_of(code)) for code in dict.fromkeys(motions.tolist())}
+        distinct, motion = np.unique(motions, return_inverse=True)
+        rows = np.array([table[code] for code in distinct.tolist()])
+        return np.column_stack((points.index, rows[motion]))
 
     def _row(self, motion: Motion) -> tuple[int, int, int]:
         """The number of a motion modulo the lattice, and its lattice vector."""

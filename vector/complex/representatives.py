@@ -2,54 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Ints
-from voronoi_tiles.vector.motions import Action, Motion, compose, reverses_orientation
+from voronoi_tiles.base.arrays import Complexes, Ints, offsets_of, ranges
+from voronoi_tiles.vector.motion_codes import Codes, composed, encode, images
+from voronoi_tiles.vector.motions import Action, Motion, reverses_orientation
 
 
 @dataclass(frozen=True, slots=True)
 class Points:
-    """Images of representatives: of number `index[k]` (intp, n) under the motion `motions[motion[k]]` (intp, n).
+    """Images of representatives: of number `index[k]` (intp, n) under the motion `motion[k]` (int64, n).
 
     The index is -1 where there is no point.
     """
 
     index: Ints
-    motion: Ints
-    motions: tuple[Motion, ...]
-
-    @classmethod
-    def under(cls, motion: Motion, index: Ints) -> Points:
-        """The images of some representatives under one motion."""
-        return cls(index, np.zeros(len(index), np.intp), (motion,))
+    motion: Codes
 
     def __len__(self) -> int:
         """The number of points."""
         return len(self.index)
 
-    def moved(self, outer: Motion) -> Points:
-        """The images under one more motion."""
-        return Points(self.index, self.motion, tuple(compose(outer, motion) for motion in self.motions))
+    def moved(self, outer: Codes | int) -> Points:
+        """The images under one more motion, or one more of each."""
+        return Points(self.index, composed(outer, self.motion))
 
-    def take(self, places: Ints) -> Points:
+    def and_then(self, others: Points) -> Points:
+        """These points, and others behind them."""
+        return Points(np.concatenate((self.index, others.index)), np.concatenate((self.motion, others.motion)))
+
+    def take(self, places: Ints | slice) -> Points:
         """The points at these places."""
-        return Points(self.index[places], self.motion[places], self.motions)
-
-    @classmethod
-    def concatenate(cls, parts: Sequence[Points]) -> Points:
-        """All points of several, in their order."""
-        numbers: dict[Motion, int] = {}
-        motion = [np.zeros(0, np.intp)]
-        for part in parts:
-            table = np.array([numbers.setdefault(motion, len(numbers)) for motion in part.motions], np.intp)
-            motion.append(table[part.motion])
-        index = np.concatenate([np.zeros(0, np.intp), *(part.index for part in parts)])
-        return cls(index, np.concatenate(motion), tuple(numbers))
+        return Points(self.index[places], self.motion[places])
 
 
 @dataclass(frozen=True)
@@ -64,27 +52,43 @@ class Representatives:
     stabilizer: dict[int, tuple[Motion, ...]]
 
     @cached_property
-    def _special(self) -> Bools:
-        """Whether a representative has a stabilizer, bool (m,)."""
-        special = np.zeros(len(self.position), bool)
-        special[list(self.stabilizer)] = True
-        return special
+    def _order(self) -> Ints:
+        """How many motions fix each representative, 0 where none but the identity does, intp (m,)."""
+        order = np.zeros(len(self.position), np.intp)
+        order[list(self.stabilizer)] = [len(motions) for motions in self.stabilizer.values()]
+        return order
 
-    def locate(self, points: Points) -> Complexes:
-        """The positions of points, complex128 (n,); 0 where there is none."""
-        result = np.zeros(len(points), complex)
-        for number, motion in enumerate(points.motions):
-            chosen = (points.motion == number) & (points.index >= 0)
-            result[chosen] = self.action.apply(motion, self.position[points.index[chosen]])
-        for k, motion in self.canonical(points):
-            result[k] = self.action.apply_to_point(motion, complex(self.position[points.index[k]]))
+    @cached_property
+    def _fixing(self) -> tuple[Codes, Ints]:
+        """The motions of all stabilizers, and where those of each representative begin."""
+        first = np.zeros(len(self.position), np.intp)
+        first[list(self.stabilizer)] = offsets_of([len(motions) for motions in self.stabilizer.values()])[:-1]
+        return encode([motion for motions in self.stabilizer.values() for motion in motions]), first
+
+    def locate(self, points: Points, further: tuple[int, int] = (0, 0)) -> Complexes:
+        """The positions of points, complex128 (n,); 0 where there is none.
+
+        `further` is twice a translation that comes after all motions, of any length.
+        """
+        result = images(self.action, self.canonical(points), self.position[points.index], further)
+        result[points.index < 0] = 0.0
         return result
 
-    def canonical(self, points: Points) -> Iterator[tuple[int, Motion]]:
-        """Those points to which several motions lead, with the one of these that stands for all."""
-        for k in np.flatnonzero((points.index >= 0) & self._special[points.index]).tolist():
-            point = int(points.index[k])
-            yield k, min(compose(points.motions[points.motion[k]], s) for s in self.stabilizer[point])
+    def canonical(self, points: Points) -> Codes:
+        """The motions of points; where several lead to one point, that which stands for all."""
+        if not self.stabilizer:
+            return points.motion
+        order = self._order[points.index]
+        special = np.flatnonzero((order > 0) & (points.index >= 0))
+        if not len(special):
+            return points.motion
+        (fixing, first), counts = self._fixing, order[special]
+        motion = composed(
+            np.repeat(points.motion[special], counts), fixing[ranges(first[points.index[special]], counts)]
+        )
+        result = points.motion.copy()
+        result[special] = np.minimum.reduceat(motion, offsets_of(counts)[:-1])
+        return result
 
 
 class Builder:
@@ -102,34 +106,34 @@ class Builder:
         self._count += len(positions)
         return np.arange(self._count - len(positions), self._count)
 
-    def add_fixed(self, position: complex, stabilizer: tuple[Motion, ...], tangent: complex | None = None) -> int:
-        """Add a representative that these motions fix, put exactly where they do; the result is its index.
-
-        Onto a mirror it is moved along `tangent`, if one is given.
-        """
-        place = self._centred(position, stabilizer)
-        if tangent is not None and any(map(reverses_orientation, stabilizer)) and len(stabilizer) == 2:
-            # A vertex on a mirror from which the site keeps little distance is known badly across the mirror, but is
-            # exactly on the other edge that ends there.
-            off = place - position
-            square = (tangent.conjugate() * off).real
-            if square != 0.0:
-                along = tangent * (abs(off) ** 2 / square)
-                if abs(along) <= 1e3 * abs(off):
-                    place = self._centred(position + along, stabilizer)
-        number = int(self.add(np.array([place]))[0])
+    def fix(self, number: int, stabilizer: Sequence[Motion]) -> None:
+        """Say that these motions fix a representative."""
         if len(stabilizer) > 1:
-            self._stabilizer[number] = stabilizer
-        return number
-
-    def _centred(self, position: complex, stabilizer: tuple[Motion, ...]) -> complex:
-        """The mean of a point's images, which all the motions fix."""
-        return sum(self.action.apply_to_point(motion, position) for motion in stabilizer) / len(stabilizer)
-
-    def last(self) -> complex:
-        """The position of the representative added last."""
-        return complex(self._positions[-1][-1])
+            self._stabilizer[number] = tuple(stabilizer)
 
     def snapshot(self) -> Representatives:
         """The representatives so far."""
-        return Representatives(self.action, np.concatenate(self._positions), self._stabilizer)
+        return Representatives(self.action, np.concatenate(self._positions), dict(self._stabilizer))
+
+
+def fixed(action: Action, position: complex, stabilizer: Sequence[Motion], tangent: complex | None = None) -> complex:
+    """A point that motions fix, put exactly where they do: the mean of its images.
+
+    Onto a mirror it is moved along `tangent`, if one is given.
+    """
+    place = _centred(action, position, stabilizer)
+    if tangent is not None and any(map(reverses_orientation, stabilizer)) and len(stabilizer) == 2:
+        # A vertex on a mirror from which the site keeps little distance is known badly across the mirror, but is
+        # exactly on the other edge that ends there.
+        off = place - position
+        square = (tangent.conjugate() * off).real
+        if square != 0.0:
+            along = tangent * (abs(off) ** 2 / square)
+            if abs(along) <= 1e3 * abs(off):
+                return _centred(action, position + along, stabilizer)
+    return place
+
+
+def _centred(action: Action, position: complex, stabilizer: Sequence[Motion]) -> complex:
+    """The mean of a point's images, which all the motions fix."""
+    return sum(action.apply_to_point(motion, position) for motion in stabilizer) / len(stabilizer)

@@ -19,10 +19,10 @@ from voronoi_tiles.vector.complex.traced import NEARLY_TOUCHING, Traced
 
 def sharpened(boundary: Traced, arc: int, here: complex, tangents: Iterable[complex]) -> complex:
     """A point of an arc, moved along one of some tangents, where what the arc is the bisector of nearly touches."""
-    found = _off_parabola(boundary, arc, here) if boundary.curved[arc] else _off_bisector(boundary, arc, here)
-    if found is None:
+    gap, away = _gap(boundary, arc, here)
+    if not gap < NEARLY_TOUCHING * away:
         return here
-    off, normal = found
+    off, normal = (off_parabola if boundary.curved[arc] else off_bisector)(boundary, arc, here)
     best = max((t for t in tangents if t), key=lambda t: abs((normal.conjugate() * t).real) / abs(t), default=0j)
     across = (normal.conjugate() * best).real
     return here + best * (off / across) if abs(across) > 1e-3 * abs(best) else here
@@ -50,18 +50,26 @@ def tangent(boundary: Traced, arc: int, start: complex, end: complex, *, at_star
     return complex(control - start if at_start else end - control)
 
 
-def _off_bisector(boundary: Traced, arc: int, here: complex) -> tuple[float, complex] | None:
-    """How far the bisector of two nodes is from a point, and its normal; None where they are not near."""
+def _gap(boundary: Traced, arc: int, here: complex) -> tuple[float, float]:
+    """How far apart the two are that an arc is the bisector of, NaN where one is no node, and how far away they are."""
+    if not boundary.curved[arc]:
+        one, two = boundary.nodes[arc].tolist()
+        return abs(two - one), abs(here - one)
+    focus, (first, last) = complex(boundary.focus[arc]), boundary.directrix[arc].tolist()
+    axis = (last - first) / abs(last - first)
+    return abs(((focus - first) * axis.conjugate()).imag), abs(here - focus)
+
+
+def off_bisector(boundary: Traced, arc: int, here: complex) -> tuple[float, complex]:
+    """How far the bisector of two nodes is from a point, and its normal."""
     one, two = boundary.nodes[arc].tolist()
     gap = abs(two - one)
-    if not gap < NEARLY_TOUCHING * abs(here - one):
-        return None
     normal: complex = (two - one) / gap
     return gap / 2 - (normal.conjugate() * (here - one)).real, normal
 
 
-def _off_parabola(boundary: Traced, arc: int, here: complex) -> tuple[float, complex] | None:
-    """How far a parabola is from a point, and its normal there; None where focus and directrix are not near.
+def off_parabola(boundary: Traced, arc: int, here: complex) -> tuple[float, complex]:
+    """How far a parabola is from a point, and its normal there.
 
     In the frame of the directrix g(s, h) = s^2 + q^2 - 2 q h is 0 on it (see `parabola_controls`), and its gradient
     2 (s, -q) the normal: one step of Newton's method.
@@ -70,8 +78,6 @@ def _off_parabola(boundary: Traced, arc: int, here: complex) -> tuple[float, com
     axis = (last - first) / abs(last - first)
     q = ((focus - first) * axis.conjugate()).imag
     apart = (here - focus) * axis.conjugate()
-    if not abs(q) < NEARLY_TOUCHING * abs(apart):
-        return None
     s, h = apart.real, apart.imag + q
     gradient = 2 * complex(s, -q)
     return -(s * s + q * q - 2 * q * h) / abs(gradient), axis * gradient / abs(gradient)

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from voronoi_tiles.paths.winding import winding
 from voronoi_tiles.vector.all_arcs import AllArcs
 from voronoi_tiles.vector.arcs import Arc, LineArc, ParabolaArc
-from voronoi_tiles.vector.enclosure import strayed_parts, winding_number, winding_numbers
 from voronoi_tiles.vector.outline import Outline
+from voronoi_tiles.vector.strayed import strayed_parts, winding_number, winding_numbers
 
 
 @dataclass(frozen=True)

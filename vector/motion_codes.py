@@ -1,0 +1,120 @@
+"""Motions in arrays: each is one integer, so that thousands are composed, compared and sorted at once.
+
+A code holds the linear part in its highest bits, then twice the translation, both coordinates made positive. Codes are
+in the order of the motions that they stand for. They are made of translations by up to 2^26 cells; motions farther away
+are held as tuples of integers only.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+
+import numpy as np
+import numpy.typing as npt
+
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints
+from voronoi_tiles.base.maps import move
+from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.vector.motions import IDENTITY, LINEAR_PARTS, Action, Motion, compose, inverse, to_operation
+
+Codes = npt.NDArray[np.int64]
+"""Motions, one integer each."""
+
+_BITS = 29
+_HALF = 1 << (_BITS - 1)
+_MASK = (1 << _BITS) - 1
+
+_NUMBER = {linear: k for k, linear in enumerate(LINEAR_PARTS)}
+_A, _B, _C, _D = np.array(LINEAR_PARTS, np.int64).T.copy()
+_REVERSES = _A * _D - _B * _C < 0
+# The number of each product, -1 where the two are of no common group.
+_PRODUCT = np.array(
+    [
+        [_NUMBER.get(compose((*outer, 0, 0), (*inner, 0, 0))[:4], -1) for inner in LINEAR_PARTS]
+        for outer in LINEAR_PARTS
+    ],
+    np.int64,
+)
+_INVERSE = np.array([_NUMBER[inverse((*linear, 0, 0))[:4]] for linear in LINEAR_PARTS])
+
+
+# The numbers of linear parts by their digits in base 3.
+_BY_KEY = np.full(81, -1, np.int64)
+for _linear, _k in _NUMBER.items():
+    _BY_KEY[_linear[0] * 27 + _linear[1] * 9 + _linear[2] * 3 + _linear[3] + 40] = _k
+
+
+def encode(motions: npt.ArrayLike) -> Codes:
+    """The codes of motions, given as rows of six integers."""
+    rows = np.asarray(motions, np.int64).reshape(-1, 6)
+    assert not len(rows) or np.abs(rows[:, 4:]).max() <= _HALF // 2, "a translation that no cell is skew enough for"
+    key = rows[:, 0] * 27 + rows[:, 1] * 9 + rows[:, 2] * 3 + rows[:, 3]
+    return _coded(_BY_KEY[key + 40], rows[:, 4], rows[:, 5])
+
+
+def code_of(motion: Motion) -> int:
+    """The code of one motion."""
+    return (_NUMBER[motion[:4]] << 2 * _BITS) + ((motion[4] + _HALF) << _BITS) + motion[5] + _HALF
+
+
+@lru_cache(maxsize=4096)
+def motion_of(code: int) -> Motion:
+    """The motion of a code."""
+    return (*LINEAR_PARTS[code >> 2 * _BITS], ((code >> _BITS) & _MASK) - _HALF, (code & _MASK) - _HALF)
+
+
+@lru_cache(maxsize=4096)
+def operation_of(code: int) -> Operation:
+    """The operation of a code."""
+    return to_operation(motion_of(code))
+
+
+IDENTITY_CODE = code_of(IDENTITY)
+"""The code of the identity."""
+
+
+def _coded(linear: Codes, s: Codes, t: Codes) -> Codes:
+    """The codes of motions: numbers of linear parts, and twice the translations."""
+    return (linear << 2 * _BITS) + ((s + _HALF) << _BITS) + (t + _HALF)
+
+
+def decode(codes: Codes) -> tuple[Codes, Codes, Codes]:
+    """The numbers of the linear parts, and twice the translation in both coordinates."""
+    return codes >> 2 * _BITS, ((codes >> _BITS) & _MASK) - _HALF, (codes & _MASK) - _HALF
+
+
+def composed(outer: Codes | int, inner: Codes | int) -> Codes:
+    """The motions that apply `inner` first and `outer` to its result; the two broadcast."""
+    one, s, t = decode(np.asarray(outer))
+    two, u, v = decode(np.asarray(inner))
+    return _coded(_PRODUCT[one, two], _A[one] * u + _B[one] * v + s, _C[one] * u + _D[one] * v + t)
+
+
+def inverted(codes: Codes) -> Codes:
+    """The motions that undo these."""
+    linear, s, t = decode(codes)
+    back = _INVERSE[linear]
+    return _coded(back, -(_A[back] * s + _B[back] * t), -(_C[back] * s + _D[back] * t))
+
+
+def reversing(codes: Codes) -> Bools:
+    """Whether motions turn the plane over."""
+    return np.asarray(_REVERSES[codes >> 2 * _BITS])
+
+
+def modulo(codes: Codes) -> Ints:
+    """What names motions modulo the lattice, from 0 to 63."""
+    return np.asarray((codes >> 2 * _BITS) * 4 + ((codes >> _BITS) & 1) * 2 + (codes & 1))
+
+
+def images(action: Action, codes: Codes, z: Complexes, further: tuple[int, int] = (0, 0)) -> Complexes:
+    """The images of points, each under its motion: the same bits as `Action.apply` gives.
+
+    `further` is twice a translation that comes after the motions, of any length.
+    """
+    linear, s, t = decode(codes)
+    if further != (0, 0):
+        s, t = s + further[0], t + further[1]
+    shift = action.cartesian(s / 2, t / 2)
+    unit, conj = action.isometries
+    return move(z, unit[linear], shift, conj[linear])
