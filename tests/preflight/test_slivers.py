@@ -129,6 +129,7 @@ def test_slivers_between_loose_lines(kind: str, a: float, b: float, turn: float)
     st.floats(0, 360),
     st.booleans(),
 )
+@example("outline", 0.5, 0.0078125, 0.0, False)  # past the sides by more than the tolerance, and less than two
 def test_slivers_that_a_line_cuts_off(kind: str, b: float, past: float, turn: float, backwards: bool) -> None:
     """A line from side to side of an outline cuts a strip off, whether it ends on the other lines or runs past them."""
     half = math.sqrt(30**2 - (30 - b) ** 2) if kind == "circle" else 50

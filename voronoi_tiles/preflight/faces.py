@@ -41,9 +41,12 @@ def faces_of(chords: Chords, crossed: Complexes, touching: float) -> Faces:
     first, last = chords.first[line], chords.first[line + 1] - 1
     nodes = np.concatenate((chords.start[first], chords.end[last], crossed))
     points = shapely.points(plane(nodes))
-    nodes = nodes[components(len(nodes), *_pairs(shapely.STRtree(points), points, touching))]
-    cuts = _cuts(chords, nodes, *_pairs(chords.tree, points, touching), touching)
-    return _divided(chords, np.union1d(line, cuts.path), line, nodes[: 2 * len(line)], cuts)
+    place = components(len(nodes), *_pairs(shapely.STRtree(points), points, touching))
+    ends = np.full((2, len(chords.total)), -1, np.intp)
+    ends[:, line] = place[: 2 * len(line)].reshape(2, -1)
+    near, chord = _pairs(chords.tree, points, touching)
+    cuts = _cuts(chords, nodes, place[near], chord, ends, touching)
+    return _divided(chords, np.union1d(line, cuts.path), line, nodes[place[: 2 * len(line)]], cuts)
 
 
 def _pairs(tree: shapely.STRtree, points: NDArray[np.object_], touching: float) -> tuple[Ints, Ints]:
@@ -52,15 +55,17 @@ def _pairs(tree: shapely.STRtree, points: NDArray[np.object_], touching: float) 
     return one, two
 
 
-def _cuts(chords: Chords, nodes: Complexes, node: Ints, chord: Ints, touching: float) -> _Cuts:
-    """Where paths pass by nodes, but not at their own ends: these are nodes themselves."""
+def _cuts(chords: Chords, nodes: Complexes, node: Ints, chord: Ints, ends: Ints, touching: float) -> _Cuts:
+    """Where paths pass by nodes, but not at their own ends: `ends` (intp, (2, paths)) are their nodes, -1 for rings.
+
+    A node beside an end is another one: there a line crosses the path, which runs a hair past it.
+    """
     path = chords.path[chord]
     at = chords.before[chord] + foot_share(nodes[node], chords.start[chord], chords.end[chord]) * chords.lengths[chord]
     at = np.minimum(at, chords.total[path])  # a sum may round beyond it
-    first, last = chords.first[path], chords.first[path + 1] - 1
     inner = np.ones(len(path), np.bool_)
-    for end, far in ((chords.start[first], at), (chords.end[last], chords.total[path] - at)):
-        inner &= chords.ring[path] | (far > _AROUND * touching) | (np.abs(end - nodes[node]) > 2 * touching)
+    for end, far in zip(ends[:, path], (at, chords.total[path] - at), strict=True):
+        inner &= (end != node) | (far > _AROUND * touching)
     path, at, node = path[inner], at[inner], node[inner]
     # Neighbouring chords meet a node in one place.
     order = np.lexsort((at, node, path))
