@@ -130,6 +130,7 @@ def test_slivers_between_loose_lines(kind: str, a: float, b: float, turn: float)
     st.booleans(),
 )
 @example("outline", 0.5, 0.0078125, 0.0, False)  # past the sides by more than the tolerance, and less than two
+@example("circle", 0.1, 0.015625, 0.0, False)  # past it along the line, within the tolerance across it
 def test_slivers_that_a_line_cuts_off(kind: str, b: float, past: float, turn: float, backwards: bool) -> None:
     """A line from side to side of an outline cuts a strip off, whether it ends on the other lines or runs past them."""
     half = math.sqrt(30**2 - (30 - b) ** 2) if kind == "circle" else 50
@@ -141,7 +142,7 @@ def test_slivers_that_a_line_cuts_off(kind: str, b: float, past: float, turn: fl
         "circle": "<circle r='30'/>",
         "lines": "<path d='M-60 30H60'/><path d='M-50 40V-40'/><path d='M50 40V-40'/>",
     }[kind]
-    body = f"{outline}<path d='M{ends[0]} {y}H{ends[1]}'/>"
+    body = f"{outline}\n<path d='M{ends[0]} {y}H{ends[1]}'/>"
     slivers = [
         one for one in found(f"<g transform='translate(300 300) rotate({turn})'>{body}</g>") if one.kind == "sliver"
     ]
@@ -149,6 +150,7 @@ def test_slivers_that_a_line_cuts_off(kind: str, b: float, past: float, turn: fl
         assert not slivers
     elif b < 0.99:
         assert [one.value for one in slivers] == [pytest.approx(b, rel=2e-3, abs=6e-3)]
+        assert {source.split()[-1] for source in slivers[0].sources} == {"1", "2"}  # the outline's line, and the other
 
 
 def test_a_neck_between_two_slivers_is_said() -> None:

@@ -17,7 +17,7 @@ _AROUND = 4.0  # how far along its path from its end a chord is still met as tha
 
 
 class Faces(NamedTuple):
-    """Regions as shapely's polygons, and the parts of paths that bound them, with the path of each (intp, n)."""
+    """Regions as shapely's polygons, and the parts of paths between crossings, with the path of each (intp, n)."""
 
     polygons: NDArray[np.object_]
     parts: NDArray[np.object_]
@@ -95,4 +95,9 @@ def _divided(chords: Chords, paths: Ints, line: Ints, ends: Complexes, cuts: _Cu
     begins[1:] |= twice[1:] == twice[:-1]
     part = np.cumsum(begins) - 1
     parts = shapely.linestrings(plane(point[twice]), indices=part)
-    return Faces(shapely.get_parts(shapely.polygonize(parts)), parts, path[twice][begins])
+    # Drawn to a node, a part may cross another one beside it, and a ring that crosses itself bounds no polygon: all are
+    # divided where they cross now. An edge is of the part, or parts, that it lies on.
+    edges = shapely.get_parts(shapely.union_all(parts))
+    middles = shapely.line_interpolate_point(edges, 0.5, normalized=True)
+    edge, part = shapely.STRtree(parts).query_nearest(middles)
+    return Faces(shapely.get_parts(shapely.polygonize(edges)), edges[edge], path[twice][begins][part])
