@@ -16,6 +16,9 @@ _STEPS: Final = 12
 """Halvings of the interval in which it is looked for how far a sliver can be shrunk; a count. They leave a
 four-thousandth."""
 
+_DEEP: Final = 0.99
+"""What is left of a shape that was shrunk is so deep inside it at least, in distances that it was shrunk by."""
+
 
 class Sliver(NamedTuple):
     """A region in which no disc of a size fits: the greatest that does and where it is, and the paths around it.
@@ -119,17 +122,25 @@ def _widest(shape: shapely.Geometry, radius: float) -> tuple[complex, float] | N
     """The middle and the diameter of the largest disc in a region; None where one of this radius fits."""
     if shape.is_empty or not shape.buffer(-radius).is_empty:
         return None
+    edges = shapely.boundary(shapely.get_parts(shape))
+
+    def deep(core: shapely.Geometry) -> tuple[shapely.Point, float]:
+        """A point of a region, and how far it is from the edge of the shape."""
+        point = core.representative_point()
+        # Lines beside the polygons, where the shape is not all of polygons, may have no boundary.
+        return point, float(np.nanmin(shapely.distance(edges, point)))
+
     low, high = 0.0, radius
-    core = shape
+    point, far = deep(shape)
     for _ in range(_STEPS):
         middle = (low + high) / 2
         left = shape.buffer(-middle)
-        if left.is_empty:
+        # What is left of a shape is known to half a hundredth of the distance; how far a point is from the edge,
+        # exactly. Crumbs that are left of a taper beyond its largest disc lie nearer to the edge.
+        found = None if left.is_empty else deep(left)
+        if found is None or found[1] < _DEEP * middle:
             high = middle
         else:
-            low, core = middle, left
-    # What is left of a shape is known to half a hundredth of the distance; how far a point is from the edge, exactly.
-    point = core.representative_point()
-    edges = shapely.boundary(shapely.get_parts(shape))
-    # Lines beside the polygons, where the shape is not all of polygons, may have no boundary.
-    return complex(point.x, point.y), 2 * float(np.nanmin(shapely.distance(edges, point)))
+            low = middle
+            point, far = max((point, far), found, key=lambda one: one[1])
+    return complex(point.x, point.y), 2 * far
