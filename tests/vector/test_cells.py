@@ -17,6 +17,7 @@ from voronoi_tiles.base import kernels
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.designs.starters import starter
 from voronoi_tiles.groups.wallpaper import GROUPS
+from voronoi_tiles.vector.cells import cells
 from voronoi_tiles.vector.cells.bisectors import TouchingElementsError
 from voronoi_tiles.vector.cells.cells import Parts, UnboundedCellError, bound_cells
 from voronoi_tiles.vector.cells.half_edges import Contour, trace_contour
@@ -160,6 +161,15 @@ def test_every_end_of_a_part_is_a_point_of_the_cell(name: str) -> None:
 @pytest.mark.usefixtures("compiled")
 def test_kernel_gives_the_bits_of_numpy(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The same parts, in the same order."""
+    same_bits(CASES[name](), monkeypatch)
+
+
+@pytest.mark.parametrize("name", ["points", "spiral"])
+@pytest.mark.usefixtures("compiled")
+def test_kernel_that_runs_out_of_room_goes_on(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """However little room it is given, less than one row takes included, the parts are the same."""
+    monkeypatch.setattr(cells, "_PER_ROW", 0)
+    monkeypatch.setattr(cells, "_ROOM", 1)
     same_bits(CASES[name](), monkeypatch)
 
 

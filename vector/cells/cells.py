@@ -26,8 +26,8 @@ from voronoi_tiles.vector.copies import Copies
 _CHUNK = 1024
 # Pairs of rows and elements held at once; where there are more, the rows are halved. A pair takes some 500 bytes.
 _PAIRS = 1_000_000
-# Parts of the first rows for which the compiled kernel has room.
-_ROOM = 1000
+# Parts for which the compiled kernel has room at first: of each row, and besides.
+_PER_ROW, _ROOM = 4, 1000
 # What the compiled kernel takes of a contour, and of everything, as in cells.c; what it answers.
 _OF_CONTOUR = (
     "nodes",
@@ -116,9 +116,9 @@ def _bound_compiled(
     of_contour = [np.ascontiguousarray(getattr(contour, name)) for name in _OF_CONTOUR]
     of_copies = copies.bundles, copies.unit, copies.shift, copies.conj, copies.bundle
     of_hierarchy = [getattr(hierarchy, name) for name in Hierarchy.__slots__]
-    found, first, progress = [], 0, np.zeros(2, np.intp)
+    found, first, progress, more = [], 0, np.zeros(2, np.intp), _ROOM
     while first < len(rows):
-        room = 4 * (len(rows) - first) + _ROOM
+        room = _PER_ROW * (len(rows) - first) + more
         row, copy, item = (np.empty(room, np.intp) for _ in range(3))
         begin, end = np.empty(room, complex), np.empty(room, complex)
         status = compiled(
@@ -129,6 +129,9 @@ def _bound_compiled(
         if status:
             raise {_UNBOUNDED: UnboundedCellError, _TOUCHING: TouchingElementsError}.get(status, MemoryError)
         first, count = progress.tolist()
+        if not count:  # the next row alone has more parts
+            more = 2 * room
+            continue
         found.append(Parts(row[:count], copy[:count], item[:count], begin[:count], end[:count]))
     return _joined(found)
 
