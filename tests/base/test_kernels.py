@@ -92,6 +92,7 @@ def test_a_library_of_other_sources_is_passed_over(monkeypatch: pytest.MonkeyPat
         np.zeros(8)[::2],
         np.zeros((2, 3)).T,
         np.zeros(4, ">f8"),
+        np.frombuffer(bytes(33), np.float64, offset=1),
     ],
 )
 def test_a_kernel_takes_only_the_arrays_that_it_is_made_for(wrong: np.ndarray) -> None:

@@ -34,9 +34,9 @@ class Array:
         self.dtype = np.dtype(dtype)
 
     def from_param(self, array: NDArray[Any]) -> ctypes.c_void_p:
-        """The array's address. Raises TypeError where it has another dtype, or gaps."""
-        if array.dtype != self.dtype or not array.flags.c_contiguous:
-            raise TypeError(f"the kernel takes contiguous arrays of {self.dtype}, not {array.dtype}")
+        """The array's address. Raises TypeError where it has another dtype, gaps, or stands between two addresses."""
+        if array.dtype != self.dtype or not (array.flags.c_contiguous and array.flags.aligned):
+            raise TypeError(f"the kernel takes aligned, contiguous arrays of {self.dtype}, not {array.dtype}")
         return ctypes.c_void_p(array.ctypes.data)
 
 
