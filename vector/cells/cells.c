@@ -473,15 +473,15 @@ typedef struct {
 
 static int grow(void *buffer, int64_t *capacity, int64_t needed, size_t size)
 {
-    void **pointer = buffer;
     int64_t more = *capacity * 2 > needed ? *capacity * 2 : needed;
-    void *larger;
+    void *items; /* copied: no pointer may be read as one of another type */
     if (needed <= *capacity)
         return 1;
-    larger = realloc(*pointer, (size_t)more * size);
-    if (!larger)
+    memcpy(&items, buffer, sizeof items);
+    items = realloc(items, (size_t)more * size);
+    if (!items)
         return 0;
-    *pointer = larger;
+    memcpy(buffer, &items, sizeof items);
     *capacity = more;
     return 1;
 }
