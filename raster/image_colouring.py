@@ -52,10 +52,13 @@ def _pairs_in_blocks(copies: Ints, block: Ints, pattern: Pattern) -> Ints:
     count = len(pattern.placements)
     placement = copies[:, 0]
     # In the reduced basis, where what is near has near coordinates: the table is as small as can be.
-    x, y = (copies[:, 1:] @ np.round(np.linalg.inv(pattern.basis)).astype(np.intp)).T
-    y = y - y.min()
+    steps = copies[:, 1:] @ np.round(np.linalg.inv(pattern.basis)).astype(np.intp)
+    # Of each placement from its own least: images of a site far from the origin are as far from each other.
+    least = np.full((count, 2), np.iinfo(np.intp).max)
+    np.minimum.at(least, placement, steps)
+    x, y = (steps - least[placement]).T
     width = 2 * int(y.max()) + 1
-    place = (x - x.min()) * width + y  # the differences of two tell (x, y) apart
+    place = x * width + y  # the differences of two tell (x, y) apart
     most = int(place.max())
     size = 2 * most + 1
     first = placement * (count * size) - place + most
@@ -74,5 +77,6 @@ def _pairs_in_blocks(copies: Ints, block: Ints, pattern: Pattern) -> Ints:
     number, moved = np.divmod(np.unique(np.concatenate(found)) if table is None else np.flatnonzero(table), size)
     moved -= most
     x = (moved + width // 2) // width
-    between = np.stack((x, moved - x * width), axis=1) @ pattern.basis
-    return np.unique(np.column_stack((*np.divmod(number, count), between)), axis=0)
+    one, other = np.divmod(number, count)
+    between = (np.stack((x, moved - x * width), axis=1) + least[other] - least[one]) @ pattern.basis
+    return np.unique(np.column_stack((one, other, between)), axis=0)

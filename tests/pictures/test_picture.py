@@ -428,3 +428,17 @@ def test_the_picture_of_differences() -> None:
     column = int((place.real - x0) % 60 * scale)
     row = int((y1 - place.imag) % 60 * scale)
     assert marked[max(row - 3, 0) : row + 4, max(column - 3, 0) : column + 4].any()
+
+
+@pytest.mark.parametrize("cells", [10**3, 10**9])
+def test_sites_far_from_the_origin_have_as_many_neighbours(cells: int) -> None:
+    """Their images lie far from each other, as numbers; which are neighbours is the same."""
+    here, far = (
+        vt.Design.from_dict(
+            {"schema": 1, "group": "p4", "cell": {"a": 64.0}, "site": [{"strokes": [{"point": [8.0 + shift, 4.0]}]}]}
+        )
+        for shift in (0.0, 64.0 * cells)
+    )
+    found = [neighbours(pattern_of(design)) for design in (here, far)]
+    assert len(found[0][0]) == len(found[1][0]) > 0
+    assert found[0][1] == found[1][1]
