@@ -27,6 +27,7 @@ from typing import NamedTuple
 import cgal
 import numpy as np
 import peer
+from compiled import MissingError
 from exact import Label, Plane, Vertex, as_given, distance, exact_images, longer_side, true_vertices
 from mpmath import mpc, mpf
 from report import machine, published, table
@@ -297,7 +298,7 @@ def _run_cgal(plane: Plane, nodes: Complexes) -> tuple[Plane, peer.Reading | Non
     given = as_given(plane.site, nodes, plane.size)
     try:
         return given, cgal.run_cgal(plane.site, nodes)[1]
-    except cgal.MissingError:
+    except MissingError:
         return given, None
 
 

@@ -1,19 +1,17 @@
 """Boost.Polygon itself, by boost.cpp: the yardstick of peer.py without what reading back in Python adds to it.
 
-It is compiled when it is first needed, into a folder that is removed at the end.
+Compiled when it is first needed.
 """
 
 from __future__ import annotations
 
-import atexit
-import shutil
 import subprocess
-import tempfile
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
 import numpy as np
+from compiled import MissingError, program_of, version_of
 from peer import SCALE, Reading, Segment
 
 SOURCE = Path(__file__).with_name("boost.cpp")
@@ -21,20 +19,15 @@ FLAGS = ("-std=c++17", "-O3", "-DNDEBUG")
 _PROBE = "#include <boost/version.hpp>\n#include <boost/polygon/voronoi.hpp>\nBOOST_LIB_VERSION\n"
 
 
-class MissingError(Exception):
-    """Boost.Polygon cannot be compiled here; the message says what is missing."""
-
-
 @cache
 def version() -> str:
     """Boost's version; raises MissingError where there is no compiler or no Boost."""
-    if shutil.which("g++") is None:
-        raise MissingError("g++ is missing: install g++ and libboost-dev to compare with Boost.Polygon itself")
-    command = ["g++", "-E", "-P", "-x", "c++", "-"]
-    finished = subprocess.run(command, input=_PROBE, capture_output=True, text=True, check=False)  # noqa: S603 ours
-    if finished.returncode:
-        raise MissingError("Boost is missing: install libboost-dev to compare with Boost.Polygon itself")
-    return finished.stdout.split()[-1].strip('"').replace("_", ".")
+    found = version_of(
+        _PROBE,
+        without_compiler="g++ is missing: install g++ and libboost-dev to compare with Boost.Polygon itself",
+        without_library="Boost is missing: install libboost-dev to compare with Boost.Polygon itself",
+    )
+    return found.replace("_", ".")
 
 
 def described() -> str:
@@ -43,17 +36,6 @@ def described() -> str:
         return f"Boost.Polygon {version()}, g++ -O3"
     except MissingError as error:
         return str(error)
-
-
-@cache
-def _program() -> Path:
-    """Compile boost.cpp; some seconds. Raises MissingError as `version` does."""
-    version()
-    folder = tempfile.mkdtemp(prefix="boost-")
-    atexit.register(shutil.rmtree, folder)
-    program = Path(folder, "boost")
-    subprocess.run(["g++", *FLAGS, "-o", str(program), str(SOURCE)], check=True)  # noqa: S603, S607 our own source
-    return program
 
 
 def run_boost(
@@ -69,7 +51,9 @@ def run_boost(
     if np.abs(whole).max() >= 2**31:
         raise ValueError("the coordinates are too large for 32 bits")
     rows = [f"{runs} {len(whole)} {base}", *(f"{a} {b} {c} {d}" for a, b, c, d in whole.astype(int).tolist())]
-    done = subprocess.run([str(_program())], input="\n".join(rows), capture_output=True, text=True, check=True)  # noqa: S603
+    version()
+    program = program_of(SOURCE, FLAGS)
+    done = subprocess.run([str(program)], input="\n".join(rows), capture_output=True, text=True, check=True)  # noqa: S603
     first, *lines = done.stdout.splitlines()
     owner: list[tuple[int, int]] = []
     cells: dict[int, list[tuple[complex, complex, bool, int]]] = {}

@@ -1,20 +1,18 @@
 """The other yardstick: CGAL's segment Delaunay graph, by cgal.cpp, on the same block of copies as Boost.Polygon.
 
 It takes doubles as they are, and its predicates are exact; its vertices are computed in doubles. cgal.cpp says which
-traits it takes. It is compiled when it is first needed, into a folder that is removed at the end.
+traits it takes. Compiled when it is first needed, half a minute.
 """
 
 from __future__ import annotations
 
-import atexit
-import shutil
 import subprocess
-import tempfile
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
 import numpy as np
+from compiled import MissingError, program_of, version_of
 from numpy.typing import NDArray
 from peer import Reading
 
@@ -25,19 +23,14 @@ FLAGS = ("-std=c++17", "-O3", "-DNDEBUG", "-frounding-math")
 _PROBE = "#include <CGAL/version.h>\n#include <gmp.h>\n#include <mpfr.h>\nCGAL_VERSION_STR\n"
 
 
-class MissingError(Exception):
-    """CGAL cannot be used here; the message says what is missing."""
-
-
 @cache
 def version() -> str:
     """CGAL's version; raises MissingError where there is no compiler or no CGAL."""
-    if shutil.which("g++") is None:
-        raise MissingError("g++ is missing: install g++, libcgal-dev, libgmp-dev and libmpfr-dev to compare with CGAL")
-    finished = subprocess.run(["g++", "-E", "-P", "-"], input=_PROBE, capture_output=True, text=True, check=False)  # noqa: S607
-    if finished.returncode:
-        raise MissingError("CGAL is missing: install libcgal-dev, libgmp-dev and libmpfr-dev to compare with it")
-    return finished.stdout.split()[-1].strip('"')
+    return version_of(
+        _PROBE,
+        without_compiler="g++ is missing: install g++, libcgal-dev, libgmp-dev and libmpfr-dev to compare with CGAL",
+        without_library="CGAL is missing: install libcgal-dev, libgmp-dev and libmpfr-dev to compare with it",
+    )
 
 
 def described() -> str:
@@ -46,18 +39,6 @@ def described() -> str:
         return f"CGAL {version()}"
     except MissingError as error:
         return str(error)
-
-
-@cache
-def _program() -> Path:
-    """Compile cgal.cpp; half a minute. Raises MissingError as `version` does."""
-    version()
-    folder = tempfile.mkdtemp(prefix="cgal-")
-    atexit.register(shutil.rmtree, folder)
-    program = Path(folder, "cgal")
-    command = ["g++", *FLAGS, "-o", str(program), str(SOURCE), "-lgmp", "-lmpfr"]
-    subprocess.run(command, check=True)  # noqa: S603 our own source
-    return program
 
 
 def run_cgal(site: NodedSite, nodes: NDArray[np.complex128]) -> tuple[float, Reading]:
@@ -71,8 +52,10 @@ def run_cgal(site: NodedSite, nodes: NDArray[np.complex128]) -> tuple[float, Rea
         the seconds that building and reading took, without process, input and output; and what was read, in the terms
         of peer.py.
     """
+    version()
+    program = program_of(SOURCE, FLAGS, ("-lgmp", "-lmpfr"))
     text = _input_text(site, nodes)
-    finished = subprocess.run([str(_program())], input=text, capture_output=True, text=True, check=True)  # noqa: S603
+    finished = subprocess.run([str(program)], input=text, capture_output=True, text=True, check=True)  # noqa: S603
     first, *lines = finished.stdout.splitlines()
     table = np.array([line.split() for line in lines], dtype=float).reshape(-1, 6)
     owner = _owners(site, len(nodes))

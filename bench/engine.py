@@ -26,6 +26,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+from compiled import MissingError
 from numpy.typing import NDArray
 from processes import usage_of
 from report import machine, published, table
@@ -166,7 +167,7 @@ def has_cgal() -> bool:
     """Whether CGAL can be used here."""
     try:
         return HAS_PEERS and bool(cgal.version())
-    except cgal.MissingError:
+    except MissingError:
         return False
 
 

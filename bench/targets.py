@@ -30,21 +30,16 @@ from typing import Any, NamedTuple
 import boost
 import numpy as np
 from against import Checkout, checkouts
-from engine import CURVES, Case
+from compiled import MissingError
+from engine import CURVES, HAS_PEERS, Case
 from numpy.typing import NDArray
 from processes import usage_of
 from report import machine, published, table
 
 from voronoi_tiles import Design
 
-try:
+if HAS_PEERS:
     import peer
-except ImportError as error:
-    if error.name != "pyvoronoi":
-        raise
-    HAS_PEERS = False
-else:
-    HAS_PEERS = True
 
 NEW, NUMPY, OLD = "this", "numpy alone", "old"
 BOOST, PYVORONOI, QHULL = "Boost.Polygon", "through pyvoronoi", "qhull"
@@ -271,7 +266,7 @@ def peers_of(problem: Problem, known: dict[str, Any]) -> dict[str, Callable[[], 
     found: dict[str, Callable[[], Figure]] = {PYVORONOI: lambda: Figure([peer.run_peer(segments, size)[0]], 0.0)}
     try:
         _, reading = boost.run_boost(segments, size)
-    except boost.MissingError:
+    except MissingError:
         return found
     assert abs(peer.tile_area(reading, segments) / record.outline.area - 1) <= AGREEMENT
     runs = max(1, min(200, 5_000 // size))

@@ -31,6 +31,7 @@ import gpu
 import peer
 import report
 import targets
+from compiled import MissingError
 
 from voronoi_tiles import Design
 from voronoi_tiles.base.operations import Operation
@@ -185,7 +186,7 @@ def test_cgal_gives_the_same_tile(monkeypatch: pytest.MonkeyPatch) -> None:
     """CGAL's area is the engine's, where it is installed; VORONOI_TILES_REQUIRE_CGAL=1 makes its absence an error."""
     try:
         cgal.version()
-    except cgal.MissingError as error:
+    except MissingError as error:
         if os.environ.get("VORONOI_TILES_REQUIRE_CGAL") == "1":
             raise
         pytest.skip(str(error))
@@ -269,7 +270,7 @@ def compiled_boost(monkeypatch: pytest.MonkeyPatch) -> None:
     """Boost.Polygon, compiled in a hurry, or the reason why a test is left out; an error as in CGAL's test."""
     try:
         boost.version()
-    except boost.MissingError as error:
+    except MissingError as error:
         if os.environ.get("VORONOI_TILES_REQUIRE_CGAL") == "1":
             raise
         pytest.skip(str(error))
