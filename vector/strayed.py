@@ -42,11 +42,6 @@ def _is_far(outline: Outline, point: complex, distance: float) -> bool:
     return bool((distance_to_arcs(outline, arc, np.full(len(arc), point)) > distance).all())
 
 
-def winding_number(outline: Outline, point: complex) -> int:
-    """How often an outline runs counter-clockwise around a point that is not on it."""
-    return int(winding_numbers(AllArcs.of([outline]), np.array([point]), np.zeros(1, np.intp))[0])
-
-
 def winding_numbers(arcs: AllArcs, points: Complexes, tile: Ints) -> Ints:
     """How often the outline of its tile runs counter-clockwise around each point: intp (n,).
 

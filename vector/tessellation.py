@@ -111,32 +111,25 @@ class LocalTile:
         """The outline of the tile."""
         return self._tessellation.placed_outlines[self._index]
 
-    def copy(self, operation: Operation) -> Outline:
-        """The outline of a copy."""
-        return self._tessellation.placed_outline(self._index, to_motion(operation))
-
 
 @dataclass(frozen=True, eq=False)
 class Tessellation:
     """What the engine computes: all tiles of the plane, as images of the quotient complex of their edges.
 
-    The sites have `names` and are `placed` near the origin. The proof is not part of it.
+    The sites have `names` and are `placed` near the origin, and `symmetry` is what maps them onto themselves. The proof
+    is not part of it.
     """
 
     action: Action
     names: tuple[str, ...]
     placed: list[Placed]
+    symmetry: SiteSymmetry
     quotient: Quotient
 
     @cached_property
     def boundaries(self) -> TileBoundaries:
         """The boundaries of the sites' base tiles."""
         return TileBoundaries.of(self.quotient)
-
-    @cached_property
-    def _symmetry(self) -> SiteSymmetry:
-        """What maps the sites onto themselves."""
-        return SiteSymmetry.of(self.placed)
 
     @cached_property
     def period(self) -> Period:
@@ -188,7 +181,7 @@ class Tessellation:
 
         That is start, control and end, complex128 (n,), as that tile's own boundary has them; NaN where it has none.
         """
-        return self.boundaries.counterparts(self._symmetry)
+        return self.boundaries.counterparts(self.symmetry)
 
 
 def tessellate(
@@ -214,7 +207,7 @@ def tessellate(
         ) from error
     if least < _SUSPICIOUS * action.size:
         refuse_touching(action, names, placed)
-    tessellation = Tessellation(action, names, placed, build_quotient(action, len(placed), edges))
+    tessellation = Tessellation(action, names, placed, symmetry, build_quotient(action, len(placed), edges))
     return [
         TileRecord(
             name=name,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from helpers import brute
 from helpers.examples import each_example, tiling
-from helpers.outlines import ABOVE, RIGHT, polygon
+from helpers.outlines import ABOVE, RIGHT, polygon, winding_number
 
 from voronoi_tiles.base.maps import UNITS, Isometry
 from voronoi_tiles.base.operations import Operation
@@ -17,7 +17,6 @@ from voronoi_tiles.tiling import Tiling
 from voronoi_tiles.vector.arcs import Arc, LineArc, ParabolaArc
 from voronoi_tiles.vector.outline import Outline
 from voronoi_tiles.vector.scan import Grid, crossings, owners, scan_spans
-from voronoi_tiles.vector.strayed import winding_number
 
 IDENTITY = Isometry(1 + 0j, 0j, conj=False)
 MIRROR = Isometry(-1 + 0j, 10 + 0j, conj=True)

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from helpers.outlines import RIGHT, polygon
+from helpers.outlines import RIGHT, polygon, winding_number
 from numpy.typing import NDArray
 
 from voronoi_tiles.paths.winding import winding
 from voronoi_tiles.vector.all_arcs import AllArcs
 from voronoi_tiles.vector.arcs import Arc, LineArc, ParabolaArc
 from voronoi_tiles.vector.outline import Outline
-from voronoi_tiles.vector.strayed import strayed_parts, winding_number, winding_numbers
+from voronoi_tiles.vector.strayed import strayed_parts, winding_numbers
 
 
 @dataclass(frozen=True)
