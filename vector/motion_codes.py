@@ -24,37 +24,45 @@ _BITS = 29
 _HALF = 1 << (_BITS - 1)
 _MASK = (1 << _BITS) - 1
 
+_TRANSLATION = (1 << 2 * _BITS) - 1
+# The code of a motion is its linear part's, this, and twice its translation times these.
+_ORIGIN = (_HALF << _BITS) + _HALF
+_PLACES = np.array([1 << _BITS, 1])
+
 _NUMBER = {linear: k for k, linear in enumerate(LINEAR_PARTS)}
 _A, _B, _C, _D = np.array(LINEAR_PARTS, np.int64).T.copy()
 _REVERSES = _A * _D - _B * _C < 0
-# The number of each product, -1 where the two are of no common group.
+# What each linear part makes of a translation's two coordinates, as part of a code.
+_ALONG_A, _ALONG_B = (_A << _BITS) + _C, (_B << _BITS) + _D
+# The code of each product, row by row, < 0 where the two are of no common group.
 _PRODUCT = np.array(
     [
-        [_NUMBER.get(compose((*outer, 0, 0), (*inner, 0, 0))[:4], -1) for inner in LINEAR_PARTS]
+        _NUMBER.get(compose((*outer, 0, 0), (*inner, 0, 0))[:4], -1) << 2 * _BITS
         for outer in LINEAR_PARTS
-    ],
-    np.int64,
+        for inner in LINEAR_PARTS
+    ]
 )
 _INVERSE = np.array([_NUMBER[inverse((*linear, 0, 0))[:4]] for linear in LINEAR_PARTS])
 
 
-# The numbers of linear parts by their digits in base 3.
+# The codes of linear parts, by their digits in base 3.
+_DIGITS = np.array([27, 9, 3, 1])
 _BY_KEY = np.full(81, -1, np.int64)
 for _linear, _k in _NUMBER.items():
-    _BY_KEY[_linear[0] * 27 + _linear[1] * 9 + _linear[2] * 3 + _linear[3] + 40] = _k
+    _BY_KEY[_DIGITS @ _linear + 40] = _k << 2 * _BITS
 
 
 def encode(motions: npt.ArrayLike) -> Codes:
     """The codes of motions, given as rows of six integers."""
     rows = np.asarray(motions, np.int64).reshape(-1, 6)
-    assert not len(rows) or np.abs(rows[:, 4:]).max() <= _HALF // 2, "a translation that no cell is skew enough for"
-    key = rows[:, 0] * 27 + rows[:, 1] * 9 + rows[:, 2] * 3 + rows[:, 3]
-    return _coded(_BY_KEY[key + 40], rows[:, 4], rows[:, 5])
+    shift = rows[:, 4:]
+    assert not len(rows) or np.abs(shift).max() <= _HALF // 2, "a translation that no cell is skew enough for"
+    return _BY_KEY[rows[:, :4] @ _DIGITS + 40] + (shift @ _PLACES + _ORIGIN)
 
 
 def code_of(motion: Motion) -> int:
     """The code of one motion."""
-    return (_NUMBER[motion[:4]] << 2 * _BITS) + ((motion[4] + _HALF) << _BITS) + motion[5] + _HALF
+    return (_NUMBER[motion[:4]] << 2 * _BITS) + (motion[4] << _BITS) + motion[5] + _ORIGIN
 
 
 @lru_cache(maxsize=4096)
@@ -73,11 +81,6 @@ IDENTITY_CODE = code_of(IDENTITY)
 """The code of the identity."""
 
 
-def _coded(linear: Codes, s: Codes, t: Codes) -> Codes:
-    """The codes of motions: numbers of linear parts, and twice the translations."""
-    return (linear << 2 * _BITS) + ((s + _HALF) << _BITS) + (t + _HALF)
-
-
 def decode(codes: Codes) -> tuple[Codes, Codes, Codes]:
     """The numbers of the linear parts, and twice the translation in both coordinates."""
     return codes >> 2 * _BITS, ((codes >> _BITS) & _MASK) - _HALF, (codes & _MASK) - _HALF
@@ -85,16 +88,17 @@ def decode(codes: Codes) -> tuple[Codes, Codes, Codes]:
 
 def composed(outer: Codes | int, inner: Codes | int) -> Codes:
     """The motions that apply `inner` first and `outer` to its result; the two broadcast."""
-    one, s, t = decode(np.asarray(outer))
-    two, u, v = decode(np.asarray(inner))
-    return _coded(_PRODUCT[one, two], _A[one] * u + _B[one] * v + s, _C[one] * u + _D[one] * v + t)
+    outer = np.asarray(outer)
+    one, (two, u, v) = outer >> 2 * _BITS, decode(np.asarray(inner))
+    linear = _PRODUCT[one * len(LINEAR_PARTS) + two]
+    return np.asarray(linear + (outer & _TRANSLATION) + _ALONG_A[one] * u + _ALONG_B[one] * v)
 
 
 def inverted(codes: Codes) -> Codes:
     """The motions that undo these."""
     linear, s, t = decode(codes)
     back = _INVERSE[linear]
-    return _coded(back, -(_A[back] * s + _B[back] * t), -(_C[back] * s + _D[back] * t))
+    return np.asarray((back << 2 * _BITS) + _ORIGIN - _ALONG_A[back] * s - _ALONG_B[back] * t)
 
 
 def reversing(codes: Codes) -> Bools:
