@@ -77,16 +77,20 @@ class Traced:
         across = (self.focus - self.directrix[:, 0]) * axis.conj()
         here = np.where(self.curved, self.focus, one)
         away = np.maximum(np.abs(self.vertex - here), np.abs(self.vertex[self.following] - here))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            gap = np.where(self.curved, np.abs(across.imag) / np.abs(axis), np.abs(two - one))
-            moved = EPSILON * np.maximum(np.abs(here), away) * away / gap
+        gap = np.abs(two - one)
+        np.divide(np.abs(across.imag), np.abs(axis), out=gap, where=self.curved)
+        moved = np.zeros(len(self))
         # Twice as many as are sharpened: a point that was sharpened before has moved.
-        return np.where(gap < 2 * NEARLY_TOUCHING * away, moved, 0.0)
+        near = (gap < 2 * NEARLY_TOUCHING * away).nonzero()[0]
+        if len(near):
+            with np.errstate(divide="ignore"):
+                moved[near] = EPSILON * np.maximum(np.abs(here[near]), away[near]) * away[near] / gap[near]
+        return moved
 
     @cached_property
     def offsets(self) -> Ints:
         """Where the arcs of each ring begin, and where the last end, intp (r + 1)."""
-        return np.append(starts(self.ring), len(self))
+        return np.concatenate((starts(self.ring), [len(self)]))
 
     @cached_property
     def following(self) -> Ints:
@@ -129,42 +133,53 @@ def with_curves(
     """
     row, copy = parts.row[boundary.part], parts.copy[boundary.part]
     half_edges, corner = len(contour.source), rows.corner[row]
-    item = np.stack((np.where(corner >= 0, half_edges + corner, rows.half_edge[row]), parts.item[boundary.part]))
+    item = np.array((np.where(corner >= 0, half_edges + corner, rows.half_edge[row]), parts.item[boundary.part]))
     first = np.concatenate((contour.source, contour.corner_node))[item]
-    second = np.concatenate((contour.target, contour.corner_node))[item]
     # What half-edges and corners lie on: segments, and behind them nodes.
-    here, there = np.where(item < half_edges, item >> 1, half_edges + first)
+    carrier = np.where(item < half_edges, item >> 1, half_edges + first)
+    kept = _without_seams(boundary.ring, np.array((carrier[0], copy, carrier[1])))
+    first, copy, ring = first[:, kept], copy[kept], boundary.ring[kept]
+    second = np.concatenate((contour.target, contour.corner_node))[item[:, kept]]
     node_here, node_there = first == second
-    ends_here = contour.nodes[np.stack((first[0], second[0]))]
-    ends_there = contour.nodes[np.stack((first[1], second[1]))]
-    ends_there = move(ends_there, copies.unit[copy], copies.shift[copy], copies.conj[copy])
+    # The first and the second end of the elements here and beyond.
+    ends = contour.nodes[np.array((first, second))]
+    ends[:, 1] = move(ends[:, 1], copies.unit[copy], copies.shift[copy], copies.conj[copy])
+    here, there = ends[:, 0], ends[:, 1]
     curved = node_here != node_there
-    between = np.where(node_here & node_there, np.stack((ends_here[0], ends_there[0])), np.nan)
+    bounds = np.concatenate((starts(ring), [len(ring)]))
     traced = Traced(
-        vertex=boundary.vertex,
-        ring=boundary.ring,
-        ring_tile=node_site[first[0, starts(boundary.ring)]],
+        vertex=boundary.vertex[kept],
+        ring=np.arange(len(bounds) - 1).repeat(bounds[1:] - bounds[:-1]),
+        ring_tile=node_site[first[0, bounds[:-1]]],
         site=node_site[first[1]],
         copy=copy,
         curved=curved,
-        focus=np.where(curved, np.where(node_here, ends_here[0], ends_there[0]), 0),
-        directrix=np.where(curved, np.where(node_here, ends_there, ends_here), 0).T,
-        nodes=between.T,
+        focus=np.where(curved, np.where(node_here, here[0], there[0]), 0),
+        directrix=np.where(curved, np.where(node_here, there, here), 0).T,
+        nodes=np.where(node_here & node_there, ends[0], np.nan).T,
         copies=copies,
     )
-    return _tidy(traced, np.stack((here, copy, there)))
+    return traced if (traced.ring_tile[1:] > traced.ring_tile[:-1]).all() else _in_order(traced)
 
 
-def _tidy(traced: Traced, curve: Ints) -> Traced:
-    """The boundaries with neighbouring arcs of one curve joined, in the order of their tiles, outer rings before holes.
+def _without_seams(ring: Ints, curve: Ints) -> Ints:
+    """The arcs without those that go on along the curve of the one before; of a ring with one curve only, all.
 
-    `curve` (intp, m x n) is what determines the curve of each of the n arcs.
+    `ring` (intp, n) is the ring of each arc, `curve` (intp, m x n) what determines its curve.
     """
-    first, sizes = traced.offsets[:-1], np.diff(traced.offsets)
-    before = np.arange(-1, len(traced) - 1)
-    before[first] = traced.offsets[1:] - 1
+    first = starts(ring)
+    before = np.arange(-1, len(ring) - 1)
+    before[first] = np.concatenate((first[1:], [len(ring)])) - 1
     fresh = (curve != curve[:, before]).any(axis=0)
-    whole = np.repeat(~np.logical_or.reduceat(fresh, first), sizes)
+    whole = ~np.logical_or.reduceat(fresh, first)
+    if whole.any():
+        fresh |= whole.repeat(np.diff(first, append=len(ring)))
+    return fresh.nonzero()[0]
+
+
+def _in_order(traced: Traced) -> Traced:
+    """The boundaries in the order of their tiles, outer rings before holes."""
+    first, sizes = traced.offsets[:-1], np.diff(traced.offsets)
     start, end = traced.vertex, traced.vertex[traced.following]
     twice = start.real * end.imag - start.imag * end.real
     bent = np.flatnonzero(traced.curved)
@@ -172,10 +187,8 @@ def _tidy(traced: Traced, curve: Ints) -> Traced:
     chord = end[bent] - start[bent]
     twice[bent] += (tangent.real * chord.imag - tangent.imag * chord.real) * (2 / 3)
     order = np.lexsort((np.add.reduceat(twice, first) <= 0.0, traced.ring_tile))
-    index = ranges(first[order], sizes[order])
-    kept = (fresh | whole)[index]
-    ring = np.repeat(np.arange(len(order)), sizes[order])[kept]
-    return replace(traced.take(index[kept]), ring=ring, ring_tile=traced.ring_tile[order])
+    rest = traced.take(ranges(first[order], sizes[order]))
+    return replace(rest, ring=np.repeat(np.arange(len(order)), sizes[order]), ring_tile=traced.ring_tile[order])
 
 
 def clearance(boundary: Boundary, rows: Rows, parts: Parts) -> float:

@@ -64,7 +64,10 @@ def backwards(offsets: Ints) -> Ints:
 
 def starts(values: NDArray[np.generic]) -> Ints:
     """Where runs of equal values begin; the array is not empty."""
-    return np.flatnonzero(np.append(True, values[1:] != values[:-1]))
+    changes = (values[1:] != values[:-1]).nonzero()[0]
+    begin = np.zeros(len(changes) + 1, np.intp)
+    np.add(changes, 1, out=begin[1:])
+    return begin
 
 
 def first_least(value: NDArray[np.float64], of: Ints, count: int) -> Ints:
