@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, Ints, backwards, counting, next_in_ring, offsets_of, ranges
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints, backwards, counting, next_in_ring, offsets_of, ranges
 from voronoi_tiles.vector.arcs import Neighbour
 from voronoi_tiles.vector.complex.quotient import Quotient
 from voronoi_tiles.vector.complex.representatives import Points, Representatives
 from voronoi_tiles.vector.complex.site_symmetry import SiteSymmetry
-from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, code_of, images, inverted, reversing
+from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, code_of, composed, images, inverted, reversing
 from voronoi_tiles.vector.motions import Motion, reverses_orientation
 from voronoi_tiles.vector.outline import Outline
 
@@ -54,15 +54,17 @@ class TileBoundaries:
         edge, back = uses.edge[use], uses.backwards[use]
         # Run through backwards, arc k starts where it ends else: at vertex k + 1.
         arc = quotient.offsets[edge] + np.where(back, counts[use] - 1 - place, place)
-        motion = uses.motion[use]
+        start = arc + edge + back
+        motions = quotient.vertex.motion[start], quotient.control.motion[arc]
+        start_motion, control_motion = composed(uses.motion[use], np.array(motions))
         use_offsets = offsets_of(counts)
         tile = np.repeat(np.arange(len(uses.tile_offsets) - 1), np.diff(uses.ring_offsets[uses.tile_offsets]))
         face, numbers = _numbered(tile, uses.site, uses.beyond)
         beside, site, beyond = np.array([*numbers]).T
         return cls(
             representatives=quotient.representatives,
-            start=quotient.vertex.take(arc + edge + back).moved(motion),
-            control=quotient.control.take(arc).moved(motion),
+            start=Points(quotient.vertex.index[start], start_motion),
+            control=Points(quotient.control.index[arc], control_motion),
             focus=quotient.focus[arc],
             directrix=quotient.directrix[arc],
             use_offsets=use_offsets,
@@ -103,16 +105,16 @@ class TileBoundaries:
         """
         # Its translation may be longer than codes hold.
         turn, offsets = code_of((*motion[:4], 0, 0)), self.ring_offsets
-        start, control, parabola = self._located(turn, (motion[4], motion[5]))
-        end, curved = start[next_in_ring(offsets)], self.control.index >= 0
+        curved = self.control.index >= 0
+        start, control, focus, first, second = self._located(turn, (motion[4], motion[5]), curved)
+        end, directrix = start[next_in_ring(offsets)], np.array((first, second)).T
         control = np.where(curved, control, (start + end) / 2)
         face = self.face - np.repeat(self.face_offsets[:-1], np.diff(offsets[self.tile_offsets]))
         if reverses_orientation(motion):
             # A motion that turns the plane over turns the rings round: run through each backwards.
             order = backwards(offsets)
             start, control, end = end[order], control[order], start[order]
-            curved, parabola, face = curved[order], parabola[order], face[order]
-        focus, directrix = parabola[:, 0], parabola[:, 1:]
+            curved, focus, directrix, face = curved[order], focus[order], directrix[order], face[order]
         bounds = self.tile_offsets.tolist()
         found = []
         for tile, names in enumerate(neighbours):
@@ -191,21 +193,21 @@ class TileBoundaries:
         starts = [locate(self.start.take(arc).moved(by)) for arc in arcs[:3]]
         return np.lexsort((locate(self.control.take(arcs[3]).moved(by)), *starts[::-1], face))
 
-    def _located(self, turn: int, further: tuple[int, int]) -> tuple[Complexes, Complexes, Complexes]:
-        """Starts and control points under a motion, and foci and directrices (n x 3); what lines do not have is 0.
+    def _located(self, turn: int, further: tuple[int, int], curved: Bools) -> Complexes:
+        """Starts, control points, foci and both points of directrices under a motion, (5, n); 0 for what lines lack.
 
         `further` is twice a translation that comes after it.
         """
-        points = self.start.and_then(self.control)
+        count, points = len(self.face), self.start.and_then(self.control)
         if turn != IDENTITY_CODE:
             points = points.moved(turn)
-        both = self.representatives.locate(points, further)
-        curved = np.flatnonzero(self.control.index >= 0)
-        parabola = np.zeros((len(self.face), 3), complex)
-        parabola[curved, 0], parabola[curved, 1:] = self.focus[curved], self.directrix[curved]
-        by = points.motion[len(self.face) :][curved, None]
-        parabola[curved] = images(self.representatives.action, by, parabola[curved], further)
-        return both[: len(self.face)], both[len(self.face) :], parabola
+        start, control = self.representatives.position[points.index].reshape(2, count)
+        canonical, by = self.representatives.canonical(points), points.motion[count:]
+        motion = np.array((canonical[:count], canonical[count:], by, by, by))
+        before = np.array((start, control, self.focus, *self.directrix.T))
+        located = images(self.representatives.action, motion, before, further)
+        located[1:, ~curved] = 0.0
+        return located
 
 
 def _numbered(*columns: Ints) -> tuple[Ints, dict[tuple[int, ...], int]]:

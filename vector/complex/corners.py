@@ -6,16 +6,17 @@ Corner k is the one where edge k starts.
 from __future__ import annotations
 
 from collections import defaultdict
+from functools import cached_property, partial
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Ints
+from voronoi_tiles.base.arrays import Ints
 from voronoi_tiles.base.components import components
 from voronoi_tiles.vector.complex.edges import Edges
-from voronoi_tiles.vector.complex.representatives import Builder, Points, fixed
+from voronoi_tiles.vector.complex.representatives import Builder, Points, fixed, on_mirror
 from voronoi_tiles.vector.complex.sharpening import sharpened, tangent
 from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, code_of, composed, inverted, motion_of
-from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, inverse
+from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, inverse, reverses_orientation
 
 # For each corner, corners that edges' motions take it to, and those motions.
 _Related = defaultdict[int, list[tuple[int, Motion]]]
@@ -27,10 +28,11 @@ def find_corners(builder: Builder, edges: Edges) -> Points:
     What takes an edge to an image takes its ends to those of the image.
     """
     source, image, following = edges.source, edges.image, edges.following
-    one = np.stack((source, following[source]), axis=1)
-    two = np.stack((image, following[image]), axis=1)
-    two = np.where(edges.backwards[:, None], two[:, ::-1], two).reshape(-1)
-    one, by = one.reshape(-1), np.repeat(edges.by, 2)
+    one, two = np.empty((2, len(source), 2), np.intp)
+    one[:, 0], one[:, 1] = source, following[source]
+    two[:, 0], two[:, 1] = image, following[image]
+    two[edges.backwards] = two[edges.backwards, ::-1]
+    one, two, by = one.reshape(-1), two.reshape(-1), edges.by.repeat(2)
     least = components(len(edges), one, two)
     motion = _motions(least, one, two, by)
     # Where two ways lead to one corner, it may be that a motion fixes it.
@@ -54,7 +56,9 @@ def find_corners(builder: Builder, edges: Edges) -> Points:
                 for other, taken in reached.items():
                     at = ends.sharpened(builder.action, at, taken, other)
             stabilizer = _generated(fixing)
-            where[place] = fixed(builder.action, at, stabilizer, ends.across(corner))
+            tangent = ends.across(corner) if len(stabilizer) == 2 and any(map(reverses_orientation, stabilizer)) else None
+            put = fixed if tangent is None else partial(on_mirror, tangent=tangent)
+            where[place] = put(builder.action, at, stabilizer)
             builder.fix(int(numbers[corner]), stabilizer)
             motion[list(reached)] = [code_of(taken) for taken in reached.values()]
     return Points(numbers[least], motion)
@@ -114,12 +118,24 @@ class _Ends:
 
     def __init__(self, edges: Edges) -> None:
         self.edges = edges
-        self._before = np.empty(len(edges), np.intp)
-        self._before[edges.following] = np.arange(len(edges))
-        self._on_mirror: Bools = np.zeros(len(edges), bool)
-        self._on_mirror[edges.source[edges.symmetries[~edges.backwards[edges.symmetries]]]] = True
-        self._kept = np.zeros(len(edges), bool)
-        self._kept[edges.orbits[0]] = True
+
+    @cached_property
+    def _before(self) -> Ints:
+        """For each edge the one that ends where it starts."""
+        before = np.empty(len(self.edges), np.intp)
+        before[self.edges.following] = np.arange(len(self.edges))
+        return before
+
+    @cached_property
+    def _on_mirror(self) -> frozenset[int]:
+        """The edges that lie on mirrors."""
+        same = self.edges.symmetries
+        return frozenset(self.edges.source[same[~self.edges.backwards[same]]].tolist())
+
+    @cached_property
+    def _kept(self) -> frozenset[int]:
+        """The edges that stand for their orbits."""
+        return frozenset(self.edges.orbits[0].tolist())
 
     def at(self, corner: int) -> list[tuple[int, int]]:
         """The edges that end at a corner, in their order."""
@@ -133,7 +149,7 @@ class _Ends:
         ends = self.at(corner)
         for edge, place in ends:
             arc = int((self.edges.start if place == 0 else self.edges.last)[edge])
-            if self._kept[edge] and arc in self.edges.traced.nearly_touching:
+            if edge in self._kept and arc in self.edges.traced.nearly_touching:
                 here = action.apply_to_point(motion, where)
                 others = [self.tangent(e, p) for e, p in ends if e != edge]
                 there = sharpened(self.edges.traced, arc, here, others)
@@ -144,7 +160,7 @@ class _Ends:
     def across(self, corner: int) -> complex | None:
         """The direction of an edge at a corner, of one that does not lie on a mirror."""
         for edge, place in self.at(corner):
-            if not self._on_mirror[edge]:
+            if edge not in self._on_mirror:
                 return self.tangent(edge, place)
         return None
 

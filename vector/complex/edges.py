@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Ints, counting, next_in_ring, offsets_of, starts
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints, counting, next_in_ring, offsets_of
 from voronoi_tiles.base.tolerance import PROOF_LIMIT
 from voronoi_tiles.vector.complex.edge_cuts import Cuts, cut_further
 from voronoi_tiles.vector.complex.left_out_edges import without
@@ -34,7 +34,8 @@ class Edges:
     A ring that faces one copy all round is cut at one vertex or several. Edge k are the arcs
     `arcs[offsets[k] : offsets[k + 1]]` (intp) of the boundaries `traced`, the first of them `start[k]`; the edge
     `following[k]` (intp) starts where it ends. It is part of the boundary of the tile `tile[k]`, and beyond it lies the
-    copy of the site `site[k]` (intp) under `motion[k]` (int64).
+    copy of the site `site[k]` (intp) under `motion[k]` (int64). The edges of ring r are those from `ring_offsets[r]` up
+    to, not including, `ring_offsets[r + 1]` (intp).
 
     Link j says that `by[j]` maps the edge `source[j]` onto the edge `image[j]` (intp), whose arcs then come `backwards`
     (bool). The links from edge k are those from `links[k]` up to, not including, `links[k + 1]` (intp, m + 1), that
@@ -46,6 +47,7 @@ class Edges:
     offsets: Ints
     start: Ints
     following: Ints
+    ring_offsets: Ints
     tile: Ints
     site: Ints
     motion: Codes
@@ -63,10 +65,24 @@ class Edges:
         """The arc at the end of each edge."""
         return self.arcs[self.offsets[1:] - 1]
 
+    @property
+    def counts(self) -> Ints:
+        """The number of arcs of each edge."""
+        return self.offsets[1:] - self.offsets[:-1]
+
     @cached_property
     def source(self) -> Ints:
         """The edge that each link comes from."""
-        return np.repeat(np.arange(len(self)), np.diff(self.links))
+        return np.arange(len(self)).repeat(self.links[1:] - self.links[:-1])
+
+    @cached_property
+    def around(self) -> Ints:
+        """The arcs of each edge and the one that starts where it ends: of edge k from `offsets[k] + k`, intp (n + m)."""
+        edge = np.arange(len(self))
+        around = np.empty(len(self.arcs) + len(self), np.intp)
+        around[np.arange(len(self.arcs)) + edge.repeat(self.counts)] = self.arcs
+        around[self.offsets[1:] + edge] = self.start[self.following]
+        return around
 
     @cached_property
     def orbits(self) -> tuple[Ints, Ints]:
@@ -87,18 +103,14 @@ class Edges:
         """The links of edges to themselves under other motions than the identity."""
         return np.flatnonzero((self.image == self.source) & (self.by != IDENTITY_CODE))
 
-    def vertices(self, edge: int) -> Complexes:
-        """The points at the ends of an edge's arcs, from its start to its end."""
-        return self.traced.vertex[self.around(edge)]
-
-    def around(self, edge: int) -> Ints:
-        """The arcs of an edge, and the one that starts where it ends."""
-        arcs = self.arcs[self.offsets[edge] : self.offsets[edge + 1]]
-        return np.append(arcs, self.traced.following[arcs[-1]])
+    def arcs_around(self, edge: int) -> Ints:
+        """The arcs of one edge, and the one that starts where it ends."""
+        first, last = (self.offsets[edge : edge + 2] + edge).tolist()
+        return self.around[first : last + 1]
 
     def course(self, edge: int) -> Complexes:
         """The points at the ends of an edge's arcs, and between these one of each arc, halfway by its parameter."""
-        around = self.around(edge)
+        around = self.arcs_around(edge)
         course = np.empty(2 * len(around) - 1, complex)
         course[::2], course[1::2] = self.traced.vertex[around], self.traced.middles[around[:-1]]
         return course
@@ -125,8 +137,8 @@ def find_edges(action: Action, symmetry: SiteSymmetry, traced: Traced, *, withou
         try:
             return _paired(action, symmetry, edges, pinched=pinched)
         except UnpairedEdgeError as error:
-            traced, vertex = error.edges.traced, error.edges.vertices(error.edge)
-            rest, arcs = np.ones(len(traced), bool), error.edges.around(error.edge)
+            traced, arcs = error.edges.traced, error.edges.arcs_around(error.edge)
+            vertex, rest = traced.vertex[arcs], np.ones(len(traced), bool)
             rest[arcs[:-1]] = False
             short = np.abs(vertex - vertex[0]).max() <= max(_ONE_SIDED * action.size, _spread(traced, arcs))
             if short and (rest & (traced.tile == error.edges.tile[error.edge])).any():
@@ -154,17 +166,15 @@ def _without_short_edges(traced: Traced, limit: float) -> Edges:
     They are not paired yet, and end only where the copy beyond changes.
     """
     edges = _between(traced)
-    first, counts = traced.vertex[edges.start], np.diff(edges.offsets)
-    extent = np.abs(traced.vertex[edges.arcs] - np.repeat(first, counts))
-    extent = np.maximum.reduceat(extent, edges.offsets[:-1])
-    long = np.maximum(extent, np.abs(first[edges.following] - first)) > limit
+    counts = edges.counts + 1
+    extent = np.abs(traced.vertex[edges.around] - traced.vertex[edges.start].repeat(counts))
+    long = np.maximum.reduceat(extent, edges.offsets[:-1] + np.arange(len(edges))) > limit
     if long.all():
         return edges
-    ring = starts(traced.ring[edges.start])
-    long |= np.repeat(~np.logical_or.reduceat(long, ring), np.diff(np.append(ring, len(edges))))
+    long |= np.repeat(~np.logical_or.reduceat(long, edges.ring_offsets[:-1]), np.diff(edges.ring_offsets))
     if long.all():
         return edges
-    return _between(without(traced, np.sort(edges.arcs[np.repeat(long, counts)])))
+    return _between(without(traced, np.sort(edges.arcs[np.repeat(long, edges.counts)])))
 
 
 def _between(traced: Traced, cuts: Cuts | None = None) -> Edges:
@@ -179,22 +189,22 @@ def _between(traced: Traced, cuts: Cuts | None = None) -> Edges:
     if whole.any():
         cuts = cuts.copy()
         cuts[offsets[:-1][whole]] = True
-    at = cuts.nonzero()[0]
-    first, sizes = at[at.searchsorted(offsets[:-1])], np.diff(offsets)
-    # Each ring begins with its first cut.
-    arcs = np.arange(len(traced)) + np.repeat(first - offsets[:-1], sizes)
-    arcs -= np.where(arcs >= np.repeat(offsets[1:], sizes), np.repeat(sizes, sizes), 0)
-    begins = cuts[arcs].nonzero()[0]
-    start = arcs[begins]
-    ring = traced.ring[start]
+    # Edges start at the cuts, and each ring begins with its first one.
+    start = cuts.nonzero()[0]
+    ring_offsets = start.searchsorted(offsets)
+    skipped, sizes = start[ring_offsets[:-1]] - offsets[:-1], offsets[1:] - offsets[:-1]
+    arcs = np.arange(len(traced)) + skipped.repeat(sizes)
+    arcs -= np.where(arcs >= offsets[1:].repeat(sizes), sizes.repeat(sizes), 0)
+    begins = start - skipped.repeat(ring_offsets[1:] - ring_offsets[:-1])
     none = np.zeros(0, np.intp)
     return Edges(
         traced=traced,
         arcs=arcs,
-        offsets=np.append(begins, len(traced)),
+        offsets=np.concatenate((begins, offsets[-1:])),
         start=start,
-        following=next_in_ring(np.append(starts(ring), len(start))),
-        tile=traced.ring_tile[ring],
+        following=next_in_ring(ring_offsets),
+        ring_offsets=ring_offsets,
+        tile=traced.ring_tile[traced.ring[start]],
         site=traced.site[start],
         motion=traced.motions_beyond(start),
         links=none,
@@ -264,18 +274,14 @@ def _paired(action: Action, symmetry: SiteSymmetry, edges: Edges, *, pinched: bo
 def _agree(action: Action, edges: Edges, links: Ints) -> Bools:
     """Whether the images of edges under links have the vertices of those that they lead to."""
     source, image = edges.source[links], edges.image[links]
-    counts = np.diff(edges.offsets)
+    counts, first = edges.counts, edges.offsets[:-1] + np.arange(len(edges))
     here, there = counts[source], counts[image]
     place, row = counting(here + 1)
-    # Vertex j of an edge is where its arc j starts, the last one where the next edge does.
-    bounds = np.append(edges.arcs, 0)
-    at = edges.offsets[source][row] + place
-    one = np.where(place == here[row], edges.start[edges.following[source]][row], bounds[at])
-    place = np.minimum(np.where(edges.backwards[links][row], here[row] - place, place), there[row])
-    at = edges.offsets[image][row] + place
-    two = np.where(place == there[row], edges.start[edges.following[image]][row], bounds[at])
-    vertex = edges.traced.vertex
-    gap = np.abs(images(action, edges.by[links][row], vertex[one]) - vertex[two])
+    # Of an edge with fewer vertices the last one stands for those that it lacks.
+    other = np.minimum(np.where(edges.backwards[links][row], here[row] - place, place), there[row])
+    vertex = edges.traced.vertex[edges.around]
+    one, two = vertex[first[source][row] + place], vertex[first[image][row] + other]
+    gap = np.abs(images(action, edges.by[links][row], one) - two)
     gap = np.maximum.reduceat(gap, offsets_of(here + 1)[:-1])
     return np.asarray((here == there) & (gap <= PAIRING * action.size))
 

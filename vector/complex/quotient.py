@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Ints, starts
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints
 from voronoi_tiles.paths.paths import LINE, QUAD, Paths
 from voronoi_tiles.vector.complex.corners import find_corners
 from voronoi_tiles.vector.complex.edge_points import represent
@@ -162,16 +162,14 @@ def build_quotient(action: Action, tiles: int, edges: Edges) -> Quotient:
     number = np.empty(len(edges), np.intp)
     number[kept] = np.arange(len(kept))
     symmetric = _stabilizers(edges, number, link)
-    ring = starts(edges.traced.ring[edges.start])
-    tile = edges.tile[ring]
     uses = EdgeUses(
         edge=number[edges.source[link]],
         motion=edges.by[link],
         backwards=edges.backwards[link],
         site=edges.site,
         beyond=edges.motion,
-        ring_offsets=np.append(ring, len(edges)),
-        tile_offsets=np.searchsorted(tile, np.arange(tiles + 1)),
+        ring_offsets=edges.ring_offsets,
+        tile_offsets=edges.tile[edges.ring_offsets[:-1]].searchsorted(np.arange(tiles + 1)),
     )
     ends = corners.take(kept), corners.take(edges.following[kept])
     # An edge on a mirror is straight, and needs no other symmetry.

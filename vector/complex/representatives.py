@@ -8,9 +8,9 @@ from functools import cached_property
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, Ints, offsets_of, ranges
-from voronoi_tiles.vector.motion_codes import Codes, composed, encode, images
-from voronoi_tiles.vector.motions import Action, Motion, reverses_orientation
+from voronoi_tiles.base.arrays import Complexes, Ints
+from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, code_of, composed, images
+from voronoi_tiles.vector.motions import Action, Motion
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,26 +44,23 @@ class Points:
 class Representatives:
     """The points that all others are images of: their positions, complex128 (m,), in the plane on which a group acts.
 
-    `stabilizer` has for those that motions of the group fix, by their number, these motions.
+    `stabilizer` has for those that motions of the group fix, by their number, the codes of these motions.
     """
 
     action: Action
     position: Complexes
-    stabilizer: dict[int, tuple[Motion, ...]]
+    stabilizer: dict[int, tuple[int, ...]]
 
     @cached_property
-    def _order(self) -> Ints:
-        """How many motions fix each representative, 0 where none but the identity does, intp (m,)."""
-        order = np.zeros(len(self.position), np.intp)
-        order[list(self.stabilizer)] = [len(motions) for motions in self.stabilizer.values()]
-        return order
+    def _fixing(self) -> tuple[Ints, Codes]:
+        """For each representative its row of stabilizers, -1 where it has none, behind them -1 for no point; the rows.
 
-    @cached_property
-    def _fixing(self) -> tuple[Codes, Ints]:
-        """The motions of all stabilizers, and where those of each representative begin."""
-        first = np.zeros(len(self.position), np.intp)
-        first[list(self.stabilizer)] = offsets_of([len(motions) for motions in self.stabilizer.values()])[:-1]
-        return encode([motion for motions in self.stabilizer.values() for motion in motions]), first
+        Rows are filled up with the identity.
+        """
+        row = np.full(len(self.position) + 1, -1)
+        row[list(self.stabilizer)] = np.arange(len(self.stabilizer))
+        width = max(map(len, self.stabilizer.values()))
+        return row, np.array([codes + (IDENTITY_CODE,) * (width - len(codes)) for codes in self.stabilizer.values()])
 
     def locate(self, points: Points, further: tuple[int, int] = (0, 0)) -> Complexes:
         """The positions of points, complex128 (n,); 0 where there is none.
@@ -78,16 +75,13 @@ class Representatives:
         """The motions of points; where several lead to one point, that which stands for all."""
         if not self.stabilizer:
             return points.motion
-        order = self._order[points.index]
-        special = np.flatnonzero((order > 0) & (points.index >= 0))
+        row, fixing = self._fixing
+        row = row[points.index]
+        special = (row >= 0).nonzero()[0]
         if not len(special):
             return points.motion
-        (fixing, first), counts = self._fixing, order[special]
-        motion = composed(
-            np.repeat(points.motion[special], counts), fixing[ranges(first[points.index[special]], counts)]
-        )
         result = points.motion.copy()
-        result[special] = np.minimum.reduceat(motion, offsets_of(counts)[:-1])
+        result[special] = composed(result[special, None], fixing[row[special]]).min(axis=1)
         return result
 
 
@@ -98,7 +92,7 @@ class Builder:
         self.action = action
         self._positions: list[Complexes] = []
         self._count = 0
-        self._stabilizer: dict[int, tuple[Motion, ...]] = {}
+        self._stabilizer: dict[int, tuple[int, ...]] = {}
 
     def add(self, positions: Complexes) -> Ints:
         """Add representatives; the result are their indices."""
@@ -109,31 +103,29 @@ class Builder:
     def fix(self, number: int, stabilizer: Sequence[Motion]) -> None:
         """Say that these motions fix a representative."""
         if len(stabilizer) > 1:
-            self._stabilizer[number] = tuple(stabilizer)
+            self._stabilizer[number] = tuple(map(code_of, stabilizer))
 
     def snapshot(self) -> Representatives:
         """The representatives so far."""
         return Representatives(self.action, np.concatenate(self._positions), dict(self._stabilizer))
 
 
-def fixed(action: Action, position: complex, stabilizer: Sequence[Motion], tangent: complex | None = None) -> complex:
-    """A point that motions fix, put exactly where they do: the mean of its images.
-
-    Onto a mirror it is moved along `tangent`, if one is given.
-    """
-    place = _centred(action, position, stabilizer)
-    if tangent is not None and any(map(reverses_orientation, stabilizer)) and len(stabilizer) == 2:
-        # A vertex on a mirror from which the site keeps little distance is known badly across the mirror, but is
-        # exactly on the other edge that ends there.
-        off = place - position
-        square = (tangent.conjugate() * off).real
-        if square != 0.0:
-            along = tangent * (abs(off) ** 2 / square)
-            if abs(along) <= 1e3 * abs(off):
-                return _centred(action, position + along, stabilizer)
-    return place
-
-
-def _centred(action: Action, position: complex, stabilizer: Sequence[Motion]) -> complex:
-    """The mean of a point's images, which all the motions fix."""
+def fixed(action: Action, position: complex, stabilizer: Sequence[Motion]) -> complex:
+    """A point that motions fix, put exactly where they do: the mean of its images."""
     return sum(action.apply_to_point(motion, position) for motion in stabilizer) / len(stabilizer)
+
+
+def on_mirror(action: Action, position: complex, stabilizer: Sequence[Motion], tangent: complex) -> complex:
+    """A point put onto a mirror along a tangent of an edge that ends there; `stabilizer` is its reflection's group.
+
+    A vertex on a mirror from which the site keeps little distance is known badly across the mirror, but is exactly on
+    the other edge that ends there. Where that is nearly at right angles to the way there, it is put onto the mirror
+    straight.
+    """
+    off = fixed(action, position, stabilizer) - position
+    square = (tangent.conjugate() * off).real
+    if square != 0.0:
+        along = tangent * (abs(off) ** 2 / square)
+        if abs(along) <= 1e3 * abs(off):
+            position += along
+    return fixed(action, position, stabilizer)
