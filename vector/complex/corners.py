@@ -6,7 +6,7 @@ Corner k is the one where edge k starts.
 from __future__ import annotations
 
 from collections import defaultdict
-from functools import cached_property, partial
+from functools import cached_property
 
 import numpy as np
 
@@ -56,9 +56,10 @@ def find_corners(builder: Builder, edges: Edges) -> Points:
                 for other, taken in reached.items():
                     at = ends.sharpened(builder.action, at, taken, other)
             stabilizer = _generated(fixing)
-            tangent = ends.across(corner) if len(stabilizer) == 2 and any(map(reverses_orientation, stabilizer)) else None
-            put = fixed if tangent is None else partial(on_mirror, tangent=tangent)
-            where[place] = put(builder.action, at, stabilizer)
+            mirror = len(stabilizer) == 2 and any(map(reverses_orientation, stabilizer))
+            along = ends.across(corner) if mirror else None
+            action = builder.action
+            where[place] = on_mirror(action, at, stabilizer, along) if along else fixed(action, at, stabilizer)
             builder.fix(int(numbers[corner]), stabilizer)
             motion[list(reached)] = [code_of(taken) for taken in reached.values()]
     return Points(numbers[least], motion)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Ints, counting, offsets_of, ranges
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints, offsets_of, ranges
 from voronoi_tiles.vector.arcs import parabola_controls
 from voronoi_tiles.vector.complex.edges import PAIRING, Edges
 from voronoi_tiles.vector.complex.representatives import Builder, Points, fixed
@@ -43,34 +43,16 @@ class _ArcRuns:
         """The last vertex of each run."""
         return self.offsets[1:] + np.arange(len(self.offsets) - 1)
 
-    def run(self, k: int) -> tuple[Ints, Complexes]:
-        """The arcs of one run and the vertices at their ends, as views."""
+    def run(self, k: int) -> tuple[Ints, Bools, Complexes]:
+        """The arcs of one run, whether they are curved, and the vertices at their ends, as views."""
         first, last = self.offsets[k : k + 2].tolist()
-        return self.arcs[first:last], self.vertex[first + k : last + k + 1]
+        return self.arcs[first:last], self.curved[first:last], self.vertex[first + k : last + k + 1]
 
     def replaced(self, others: Mapping[int, tuple[Ints, Bools, Complexes]]) -> _ArcRuns:
         """The runs with some of them exchanged for other arcs, curved or not, and vertices."""
-        counts = np.diff(self.offsets)
-        stays = np.ones(len(counts), bool)
-        stays[list(others)] = False
-        new_counts = counts.copy()
-        new_counts[~stays] = [len(others[k][0]) for k in np.flatnonzero(~stays).tolist()]
-        offsets = offsets_of(new_counts)
-        new = _ArcRuns(
-            np.empty(offsets[-1], np.intp),
-            np.empty(offsets[-1], bool),
-            np.empty(offsets[-1] + len(counts), complex),
-            offsets,
-        )
-        source, target = (ranges(runs.offsets[:-1][stays], counts[stays]) for runs in (self, new))
-        new.arcs[target], new.curved[target] = self.arcs[source], self.curved[source]
-        source, target = (ranges(runs.begin[stays], counts[stays] + 1) for runs in (self, new))
-        new.vertex[target] = self.vertex[source]
-        for k, (arcs, curved, vertex) in others.items():
-            first, last = offsets[k : k + 2].tolist()
-            new.arcs[first:last], new.curved[first:last] = arcs, curved
-            new.vertex[first + k : last + k + 1] = vertex
-        return new
+        runs = [others[k] if k in others else self.run(k) for k in range(len(self.offsets) - 1)]
+        arcs, curved, vertex = (np.concatenate(parts) for parts in zip(*runs, strict=True))
+        return _ArcRuns(arcs, curved, vertex, offsets_of([len(arcs) for arcs, _, _ in runs]))
 
 
 def represent(
@@ -92,117 +74,103 @@ def represent(
     if traced.nearly_touching:
         for k in range(len(kept)):
             if reversals.get(k, IDENTITY) is not None:
-                sharpen_within(traced, *runs.run(k))
-    total = np.diff(runs.offsets)
-    fixing: dict[int, tuple[Motion, Motion]] = {}
+                arcs, _, vertex = runs.run(k)
+                sharpen_within(traced, arcs, vertex)
     if reversals:
-        others = {}
-        for k, reversal in reversals.items():
-            arcs, vertex = runs.run(k)
-            if reversal is None:
-                total[k] = 1
-                others[k] = arcs[:1], np.zeros(1, bool), vertex[[0, -1]]
-            else:
-                vertex, arcs = _with_counterparts(action, reversal, vertex, arcs)
-                total[k] = len(arcs)
-                first, second = sorted((IDENTITY, reversal))
-                fixing[k] = first, second
-                others[k] = _first_half(action, traced, reversal, arcs, vertex, fixing[k])
-        runs = runs.replaced(others)
-    index = np.empty(len(runs.vertex), np.intp)
-    index[runs.begin], index[runs.end] = ends[0].index, ends[1].index
-    inner = np.ones(len(index), bool)
-    inner[runs.begin] = inner[runs.end] = False
-    centre = {k: int(runs.end[k]) for k in fixing if total[k] % 2 == 0}
-    inner[list(centre.values())] = True
-    index[inner] = builder.add(runs.vertex[inner])
-    for k, place in centre.items():
-        builder.fix(int(index[place]), fixing[k])
-    return _unfolded(ends, index, _controls(builder, traced, runs, fixing, total), runs, total, reversals)
+        runs = _symmetrized(action, traced, runs, reversals)
+    flips = {k: reversal for k, reversal in reversals.items() if reversal is not None}
+    # The vertices and the arcs as images of themselves and of others.
+    vertices, arcs_of = _folded(runs.offsets + np.arange(len(kept) + 1), flips), _folded(runs.offsets, flips)
+    begin, end = runs.begin, runs.end
+    inner = vertices.motion == IDENTITY_CODE
+    inner[begin] = inner[end] = False
+    number = np.full(len(inner), -1)
+    number[inner] = builder.add(runs.vertex[inner])
+    fixing = {k: sorted((IDENTITY, reversal)) for k, reversal in flips.items()}
+    for k, motions in fixing.items():
+        if (end[k] - begin[k]) % 2 == 0:
+            builder.fix(int(number[(begin[k] + end[k]) // 2]), motions)
+    control = _controls(builder, traced, runs, arcs_of.motion == IDENTITY_CODE, fixing)
+    vertices = Points(number[vertices.index], vertices.motion)
+    for corner, where in zip(ends, (begin, end), strict=True):
+        vertices.index[where], vertices.motion[where] = corner.index, corner.motion
+    return vertices, Points(control[arcs_of.index], arcs_of.motion), runs.arcs[arcs_of.index], runs.offsets
 
 
 def _runs(builder: Builder, edges: Edges, kept: Ints, ends: tuple[Points, Points]) -> _ArcRuns:
     """The arcs of edges and their vertices, those at the ends where the corners are."""
-    located = builder.snapshot().locate(ends[0].and_then(ends[1]))
-    counts = np.diff(edges.offsets)[kept]
+    counts = edges.counts[kept]
     arcs = edges.arcs[ranges(edges.offsets[kept], counts)]
-    runs = _ArcRuns(arcs, edges.traced.curved[arcs], np.empty(len(arcs) + len(kept), complex), offsets_of(counts))
-    runs.vertex[np.arange(len(arcs)) + np.repeat(np.arange(len(kept)), counts)] = edges.traced.vertex[arcs]
-    runs.vertex[runs.begin], runs.vertex[runs.end] = located[: len(kept)], located[len(kept) :]
+    vertex = edges.traced.vertex[edges.around[ranges(edges.offsets[kept] + kept, counts + 1)]]
+    runs = _ArcRuns(arcs, edges.traced.curved[arcs], vertex, offsets_of(counts))
+    located = builder.snapshot().locate(ends[0].and_then(ends[1]))
+    vertex[runs.begin], vertex[runs.end] = located[: len(kept)], located[len(kept) :]
     return runs
 
 
-def _controls(
-    builder: Builder, traced: Traced, runs: _ArcRuns, fixing: Mapping[int, tuple[Motion, Motion]], total: Ints
-) -> Ints:
-    """The control points of all arcs, -1 for lines; those in the middle of symmetric edges put where they are fixed."""
-    curved = runs.curved
-    run = np.repeat(np.arange(len(total)), np.diff(runs.offsets))
-    start, bent = (np.arange(len(curved)) + run)[curved], runs.arcs[curved]
-    position = parabola_controls(runs.vertex[start], runs.vertex[start + 1], traced.focus[bent], traced.directrix[bent])
-    control = np.full(len(curved), -1)
-    control[curved] = np.arange(len(position))
-    middle = {k: int(control[runs.offsets[k + 1] - 1]) for k in fixing if total[k] % 2}
-    for k, place in middle.items():
-        if place >= 0:
-            position[place] = fixed(builder.action, complex(position[place]), fixing[k])
-    control[curved] = numbers = builder.add(position)
-    for k, place in middle.items():
-        if place >= 0:
-            builder.fix(int(numbers[place]), fixing[k])
-    return control
+def _symmetrized(action: Action, traced: Traced, runs: _ArcRuns, reversals: Mapping[int, Motion | None]) -> _ArcRuns:
+    """The runs with those on mirrors one line, and with the middle of those reversed onto themselves where it belongs.
 
-
-def _unfolded(
-    ends: tuple[Points, Points],
-    index: Ints,
-    control: Ints,
-    runs: _ArcRuns,
-    total: Ints,
-    reversals: Mapping[int, Motion | None],
-) -> tuple[Points, Points, Ints, Ints]:
-    """The vertices, control points and arcs of whole edges, of `total` arcs each, and where the arcs of each begin.
-
-    Of what is reversed onto itself `runs` has the first half: `index` are the numbers of their vertices, `control`
-    those of the control points.
+    That is the vertex there, or the end of the arc there.
     """
-    reversal = np.full(len(total), IDENTITY_CODE)
-    for k, motion in reversals.items():
-        if motion is not None:
-            reversal[k] = code_of(motion)
-    symmetric = reversal != IDENTITY_CODE
-    offsets = offsets_of(total)
-    place, edge = counting(total)
-    folded = np.where(symmetric[edge], np.minimum(place, total[edge] - 1 - place), place)
-    at = runs.offsets[edge] + folded
-    controls = Points(control[at], np.where(folded != place, reversal[edge], IDENTITY_CODE))
-    arcs = runs.arcs[at]
-    place, edge = counting(total + 1)
-    folded = np.where(symmetric[edge], np.minimum(place, total[edge] - place), place)
-    vertices = Points(index[runs.begin[edge] + folded], np.where(folded != place, reversal[edge], IDENTITY_CODE))
-    for corner, bound in zip(ends, (offsets[:-1], offsets[1:]), strict=True):
-        where = bound + np.arange(len(total))
-        vertices.index[where], vertices.motion[where] = corner.index, corner.motion
-    return vertices, controls, arcs, offsets
+    others = {}
+    for k, reversal in reversals.items():
+        arcs, curved, vertex = runs.run(k)
+        if reversal is None:
+            curved[:] = False
+            if len(arcs) > 1:
+                others[k] = arcs[:1], curved[:1], vertex[[0, -1]]
+            continue
+        whole, chosen = _with_counterparts(action, reversal, vertex, arcs)
+        half, odd = divmod(len(chosen), 2)
+        if not odd:
+            whole[half] = fixed(action, complex(whole[half]), sorted((IDENTITY, reversal)))
+        elif half:
+            whole[half + 1] = action.apply_to_point(reversal, complex(whole[half]))
+        if len(chosen) < len(arcs):
+            others[k] = chosen, traced.curved[chosen], whole
+    return runs.replaced(others) if others else runs
 
 
-def _first_half(
-    action: Action,
-    traced: Traced,
-    reversal: Motion,
-    arcs: Ints,
-    vertex: Complexes,
-    fixing: tuple[Motion, ...],
-) -> tuple[Ints, Bools, Complexes]:
-    """The first half of an edge that a motion maps onto itself backwards: arcs, curved or not, and vertices."""
-    half, odd = divmod(len(arcs), 2)
-    vertex = vertex.copy()
-    if not odd:
-        vertex[half] = fixed(action, complex(vertex[half]), fixing)
-    elif half:
-        vertex[half + 1] = action.apply_to_point(reversal, complex(vertex[half]))
-    first = arcs[: half + odd]
-    return first, traced.curved[first], vertex[: len(first) + 1]
+def _folded(bounds: Ints, flips: Mapping[int, Motion]) -> Points:
+    """What the entries of runs are images of: in runs that motions reverse the second half of the first, else each of
+    itself.
+
+    Run k are the entries from `bounds[k]` up to, not including, `bounds[k + 1]`; `flips` has the motions of some.
+    """
+    folded = Points(np.arange(bounds[-1]), np.full(bounds[-1], IDENTITY_CODE))
+    for k, reversal in flips.items():
+        first, last = bounds[k : k + 2].tolist()
+        half = (last - first) // 2
+        folded.index[last - half : last] = folded.index[first : first + half][::-1]
+        folded.motion[last - half : last] = code_of(reversal)
+    return folded
+
+
+def _controls(
+    builder: Builder, traced: Traced, runs: _ArcRuns, own: Bools, fixing: Mapping[int, Sequence[Motion]]
+) -> Ints:
+    """The control points of those arcs that are their `own` images, -1 for lines.
+
+    Those in the middle of edges that the motions `fixing` map onto themselves are put where they are fixed.
+    """
+    bent = (runs.curved & own).nonzero()[0]
+    start = bent + np.arange(len(runs.begin)).repeat(runs.offsets[1:] - runs.offsets[:-1])[bent]
+    arcs = runs.arcs[bent]
+    position = parabola_controls(runs.vertex[start], runs.vertex[start + 1], traced.focus[arcs], traced.directrix[arcs])
+    control = np.full(len(runs.curved), -1)
+    control[bent] = np.arange(len(bent))
+    middle = {}
+    for k, motions in fixing.items():
+        first, last = runs.offsets[k : k + 2].tolist()
+        place = int(control[(first + last) // 2])
+        if (last - first) % 2 and place >= 0:
+            position[place] = fixed(builder.action, complex(position[place]), motions)
+            middle[place] = motions
+    control[bent] = numbers = builder.add(position)
+    for place, motions in middle.items():
+        builder.fix(int(numbers[place]), motions)
+    return control
 
 
 def _with_counterparts(action: Action, reversal: Motion, vertex: Complexes, arcs: Ints) -> tuple[Complexes, Ints]:
