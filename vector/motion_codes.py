@@ -13,7 +13,6 @@ import numpy as np
 import numpy.typing as npt
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Ints
-from voronoi_tiles.base.maps import move
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.vector.motions import IDENTITY, LINEAR_PARTS, Action, Motion, compose, inverse, to_operation
 
@@ -119,6 +118,12 @@ def images(action: Action, codes: Codes, z: Complexes, further: tuple[int, int] 
     linear, s, t = decode(codes)
     if further != (0, 0):
         s, t = s + further[0], t + further[1]
-    shift = action.cartesian(s / 2, t / 2)
-    unit, conj = action.isometries
-    return move(z, unit[linear], shift, conj[linear])
+    units, signs = action.isometries
+    # Spelt out as in `maps.move`, without the arrays between.
+    unit, x, y = units[linear], z.real, signs[linear] * z.imag
+    s, t, a, b = s / 2, t / 2, action.lattice.a, action.lattice.b
+    real = unit.real * x - unit.imag * y + (s * a.real + t * b.real)
+    result = np.empty(real.shape, complex)
+    result.real = real
+    result.imag = unit.imag * x + unit.real * y + (s * a.imag + t * b.imag)
+    return result

@@ -10,7 +10,7 @@ from typing import Final
 import numpy as np
 import numpy.typing as npt
 
-from voronoi_tiles.base.arrays import Bools, Complexes
+from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.base.maps import Isometry, move
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
@@ -85,10 +85,14 @@ class Action:
         return {m[:4]: (i.a, i.conj) for m, i in zip(self.motions, isometries, strict=True)}
 
     @cached_property
-    def isometries(self) -> tuple[Complexes, Bools]:
-        """For each of `LINEAR_PARTS` its unit complex number, NaN where it is none of the group's, and conjugation."""
-        found = [self.linear.get(linear, (complex("nan"), False)) for linear in LINEAR_PARTS]
-        return np.array([unit for unit, _ in found]), np.array([conj for _, conj in found])
+    def isometries(self) -> tuple[Complexes, Floats]:
+        """For each of `LINEAR_PARTS` its unit complex number, NaN where it is none of the group's; -1 if it conjugates.
+
+        Else 1.
+        """
+        none = complex("nan"), False
+        unit, conj = zip(*(self.linear.get(linear, none) for linear in LINEAR_PARTS), strict=True)
+        return np.array(unit), 1.0 - 2.0 * np.array(conj)
 
     @cached_property
     def reduced(self) -> tuple[tuple[int, int], tuple[int, int]]:

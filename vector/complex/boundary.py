@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Ints, backwards, counting, next_in_ring, offsets_of, ranges
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints, backwards, counting, counts_of, next_in_ring, offsets_of, ranges
 from voronoi_tiles.vector.arcs import Neighbour
 from voronoi_tiles.vector.complex.quotient import Quotient
 from voronoi_tiles.vector.complex.representatives import Points, Representatives
@@ -49,7 +49,7 @@ class TileBoundaries:
     def of(cls, quotient: Quotient) -> TileBoundaries:
         """The boundaries of all base tiles."""
         uses = quotient.uses
-        counts = np.diff(quotient.offsets)[uses.edge]
+        counts = counts_of(quotient.offsets)[uses.edge]
         place, use = counting(counts)
         edge, back = uses.edge[use], uses.backwards[use]
         # Run through backwards, arc k starts where it ends else: at vertex k + 1.
@@ -58,7 +58,8 @@ class TileBoundaries:
         motions = quotient.vertex.motion[start], quotient.control.motion[arc]
         start_motion, control_motion = composed(uses.motion[use], np.array(motions))
         use_offsets = offsets_of(counts)
-        tile = np.repeat(np.arange(len(uses.tile_offsets) - 1), np.diff(uses.ring_offsets[uses.tile_offsets]))
+        tiles = np.arange(len(uses.tile_offsets))
+        tile = tiles[:-1].repeat(counts_of(uses.ring_offsets[uses.tile_offsets]))
         face, numbers = _numbered(tile, uses.site, uses.beyond)
         beside, site, beyond = np.array([*numbers]).T
         return cls(
@@ -73,7 +74,7 @@ class TileBoundaries:
             face=face[use],
             site=site,
             motion=beyond,
-            face_offsets=np.searchsorted(beside, np.arange(len(uses.tile_offsets))),
+            face_offsets=beside.searchsorted(tiles),
         )
 
     def of_tile(self, tile: int) -> TileBoundaries:
@@ -109,7 +110,7 @@ class TileBoundaries:
         start, control, focus, first, second = self._located(turn, (motion[4], motion[5]), curved)
         end, directrix = start[next_in_ring(offsets)], np.array((first, second)).T
         control = np.where(curved, control, (start + end) / 2)
-        face = self.face - np.repeat(self.face_offsets[:-1], np.diff(offsets[self.tile_offsets]))
+        face = self.face - self.face_offsets[:-1].repeat(counts_of(offsets[self.tile_offsets]))
         if reverses_orientation(motion):
             # A motion that turns the plane over turns the rings round: run through each backwards.
             order = backwards(offsets)

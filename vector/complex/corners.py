@@ -69,11 +69,13 @@ def _motions(least: Ints, one: Ints, two: Ints, by: Codes) -> Codes:
     """For each corner a motion that takes the first of its orbit, `least`, there, by way of links between corners."""
     motion = np.full(len(least), IDENTITY_CODE)
     reached = least == np.arange(len(least))
-    source, image, by = (np.concatenate(pair) for pair in ((one, two), (two, one), (by, inverted(by))))
     while not reached.all():
-        link = np.flatnonzero(reached[source] & ~reached[image])
-        motion[image[link]] = composed(by[link], motion[source[link]])
-        reached[image[link]] = True
+        link = (reached[one] & ~reached[two]).nonzero()[0]
+        if len(link):
+            motion[two[link]] = composed(by[link], motion[one[link]])
+            reached[two[link]] = True
+        else:
+            one, two, by = two, one, inverted(by)  # links lead on against their direction only
     return motion
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Ints, offsets_of, ranges
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints, counts_of, offsets_of, ranges
 from voronoi_tiles.vector.arcs import parabola_controls
 from voronoi_tiles.vector.complex.edges import PAIRING, Edges
 from voronoi_tiles.vector.complex.representatives import Builder, Points, fixed
@@ -155,7 +155,7 @@ def _controls(
     Those in the middle of edges that the motions `fixing` map onto themselves are put where they are fixed.
     """
     bent = (runs.curved & own).nonzero()[0]
-    start = bent + np.arange(len(runs.begin)).repeat(runs.offsets[1:] - runs.offsets[:-1])[bent]
+    start = bent + np.arange(len(runs.begin)).repeat(counts_of(runs.offsets))[bent]
     arcs = runs.arcs[bent]
     position = parabola_controls(runs.vertex[start], runs.vertex[start + 1], traced.focus[arcs], traced.directrix[arcs])
     control = np.full(len(runs.curved), -1)

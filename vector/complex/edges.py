@@ -11,7 +11,7 @@ from functools import cached_property
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Ints, counting, next_in_ring, offsets_of
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints, counting, counts_of, next_in_ring, offsets_of
 from voronoi_tiles.base.tolerance import PROOF_LIMIT
 from voronoi_tiles.vector.complex.edge_cuts import Cuts, cut_further
 from voronoi_tiles.vector.complex.left_out_edges import without
@@ -68,12 +68,12 @@ class Edges:
     @property
     def counts(self) -> Ints:
         """The number of arcs of each edge."""
-        return self.offsets[1:] - self.offsets[:-1]
+        return counts_of(self.offsets)
 
     @cached_property
     def source(self) -> Ints:
         """The edge that each link comes from."""
-        return np.arange(len(self)).repeat(self.links[1:] - self.links[:-1])
+        return np.arange(len(self)).repeat(counts_of(self.links))
 
     @cached_property
     def around(self) -> Ints:
@@ -171,7 +171,7 @@ def _without_short_edges(traced: Traced, limit: float) -> Edges:
     long = np.maximum.reduceat(extent, edges.offsets[:-1] + np.arange(len(edges))) > limit
     if long.all():
         return edges
-    long |= np.repeat(~np.logical_or.reduceat(long, edges.ring_offsets[:-1]), np.diff(edges.ring_offsets))
+    long |= np.repeat(~np.logical_or.reduceat(long, edges.ring_offsets[:-1]), counts_of(edges.ring_offsets))
     if long.all():
         return edges
     return _between(without(traced, np.sort(edges.arcs[np.repeat(long, edges.counts)])))
@@ -192,10 +192,10 @@ def _between(traced: Traced, cuts: Cuts | None = None) -> Edges:
     # Edges start at the cuts, and each ring begins with its first one.
     start = cuts.nonzero()[0]
     ring_offsets = start.searchsorted(offsets)
-    skipped, sizes = start[ring_offsets[:-1]] - offsets[:-1], offsets[1:] - offsets[:-1]
+    skipped, sizes = start[ring_offsets[:-1]] - offsets[:-1], counts_of(offsets)
     arcs = np.arange(len(traced)) + skipped.repeat(sizes)
     arcs -= np.where(arcs >= offsets[1:].repeat(sizes), sizes.repeat(sizes), 0)
-    begins = start - skipped.repeat(ring_offsets[1:] - ring_offsets[:-1])
+    begins = start - skipped.repeat(counts_of(ring_offsets))
     none = np.zeros(0, np.intp)
     return Edges(
         traced=traced,

@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, next_in_ring, ranges, starts
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, counts_of, next_in_ring, ranges, starts
 from voronoi_tiles.base.maps import move
 from voronoi_tiles.base.tolerance import EPSILON
 from voronoi_tiles.vector.arcs import parabola_controls
@@ -149,7 +149,7 @@ def with_curves(
     bounds = np.concatenate((starts(ring), [len(ring)]))
     traced = Traced(
         vertex=boundary.vertex[kept],
-        ring=np.arange(len(bounds) - 1).repeat(bounds[1:] - bounds[:-1]),
+        ring=np.arange(len(bounds) - 1).repeat(counts_of(bounds)),
         ring_tile=node_site[first[0, bounds[:-1]]],
         site=node_site[first[1]],
         copy=copy,
@@ -167,19 +167,20 @@ def _without_seams(ring: Ints, curve: Ints) -> Ints:
 
     `ring` (intp, n) is the ring of each arc, `curve` (intp, m x n) what determines its curve.
     """
-    first = starts(ring)
+    bounds = np.concatenate((starts(ring), [len(ring)]))
+    first = bounds[:-1]
     before = np.arange(-1, len(ring) - 1)
-    before[first] = np.concatenate((first[1:], [len(ring)])) - 1
+    before[first] = bounds[1:] - 1
     fresh = (curve != curve[:, before]).any(axis=0)
     whole = ~np.logical_or.reduceat(fresh, first)
     if whole.any():
-        fresh |= whole.repeat(np.diff(first, append=len(ring)))
+        fresh |= whole.repeat(counts_of(bounds))
     return fresh.nonzero()[0]
 
 
 def _in_order(traced: Traced) -> Traced:
     """The boundaries in the order of their tiles, outer rings before holes."""
-    first, sizes = traced.offsets[:-1], np.diff(traced.offsets)
+    first, sizes = traced.offsets[:-1], counts_of(traced.offsets)
     start, end = traced.vertex, traced.vertex[traced.following]
     twice = start.real * end.imag - start.imag * end.real
     bent = np.flatnonzero(traced.curved)

@@ -19,6 +19,11 @@ def offsets_of(counts: ArrayLike) -> Ints:
     return offsets
 
 
+def counts_of(offsets: Ints) -> Ints:
+    """The lengths of rows that stand one after the other, from where they begin and the last ends; see `offsets_of`."""
+    return offsets[1:] - offsets[:-1]
+
+
 def plane(points: Complexes) -> Floats:
     """Points as rows of x and y, float64 (..., 2)."""
     return np.stack((points.real, points.imag), axis=-1)
