@@ -86,13 +86,15 @@ class Action:
 
     @cached_property
     def isometries(self) -> tuple[Complexes, Floats]:
-        """For each of `LINEAR_PARTS` its unit complex number, NaN where it is none of the group's; -1 if it conjugates.
+        """For each of `LINEAR_PARTS` its unit complex number, and -1 where it conjugates, else 1.
 
-        Else 1.
+        The unit complex number is NaN where the linear part is none of the group's.
         """
-        none = complex("nan"), False
-        unit, conj = zip(*(self.linear.get(linear, none) for linear in LINEAR_PARTS), strict=True)
-        return np.array(unit), 1.0 - 2.0 * np.array(conj)
+        unit, sign = np.full(len(LINEAR_PARTS), complex("nan")), np.ones(len(LINEAR_PARTS))
+        for linear, (number, conj) in self.linear.items():
+            k = LINEAR_PARTS.index(linear)
+            unit[k], sign[k] = number, -1.0 if conj else 1.0
+        return unit, sign
 
     @cached_property
     def reduced(self) -> tuple[tuple[int, int], tuple[int, int]]:

@@ -7,7 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Ints, backwards, counting, counts_of, next_in_ring, offsets_of, ranges
+from voronoi_tiles.base.arrays import (
+    Bools,
+    Complexes,
+    Ints,
+    backwards,
+    counting,
+    counts_of,
+    next_in_ring,
+    offsets_of,
+    ranges,
+)
 from voronoi_tiles.vector.arcs import Neighbour
 from voronoi_tiles.vector.complex.quotient import Quotient
 from voronoi_tiles.vector.complex.representatives import Points, Representatives

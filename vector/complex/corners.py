@@ -40,15 +40,15 @@ def find_corners(builder: Builder, edges: Edges) -> Points:
     careful[least[one[composed(by, motion[one]) != motion[two]]]] = True
     if edges.traced.nearly_touching:
         careful[least[_near_touching(edges)]] = True
-    first = np.flatnonzero(least == np.arange(len(edges)))
+    first = (least == np.arange(len(edges))).nonzero()[0]
     where = edges.traced.vertex[edges.start[first]]
     numbers = np.empty(len(edges), np.intp)
     numbers[first] = builder.add(where)
     if careful.any():
-        asked = careful[least[one]]
+        asked = careful[least[one]] & (by != IDENTITY_CODE)  # the identity leads back only
         related = _related(one[asked], two[asked], by[asked])
         ends = _Ends(edges)
-        for place in np.flatnonzero(careful[first]).tolist():
+        for place in careful[first].nonzero()[0].tolist():
             corner = int(first[place])
             reached, fixing = _orbit(corner, related)
             at = complex(where[place])

@@ -133,10 +133,10 @@ def _symmetrized(action: Action, traced: Traced, runs: _ArcRuns, reversals: Mapp
 
 
 def _folded(bounds: Ints, flips: Mapping[int, Motion]) -> Points:
-    """What the entries of runs are images of: in runs that motions reverse the second half of the first, else each of
-    itself.
+    """What the entries of runs are images of: themselves, or in the second half of reversed runs those of the first.
 
-    Run k are the entries from `bounds[k]` up to, not including, `bounds[k + 1]`; `flips` has the motions of some.
+    Run k are the entries from `bounds[k]` up to, not including, `bounds[k + 1]`; `flips` has the motions that reverse
+    some of the runs onto themselves.
     """
     folded = Points(np.arange(bounds[-1]), np.full(bounds[-1], IDENTITY_CODE))
     for k, reversal in flips.items():

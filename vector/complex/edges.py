@@ -77,7 +77,10 @@ class Edges:
 
     @cached_property
     def around(self) -> Ints:
-        """The arcs of each edge and the one that starts where it ends: of edge k from `offsets[k] + k`, intp (n + m)."""
+        """The arcs of each edge, and behind them the one that starts where it ends, intp (n + m).
+
+        Those of edge k begin at `offsets[k] + k`.
+        """
         edge = np.arange(len(self))
         around = np.empty(len(self.arcs) + len(self), np.intp)
         around[np.arange(len(self.arcs)) + edge.repeat(self.counts)] = self.arcs
