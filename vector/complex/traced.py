@@ -15,6 +15,7 @@ from voronoi_tiles.vector.cells.cells import Parts
 from voronoi_tiles.vector.cells.half_edges import Contour
 from voronoi_tiles.vector.cells.pencils import Rows
 from voronoi_tiles.vector.cells.trace import Boundary
+from voronoi_tiles.vector.complex.handovers import sharpen_handovers
 from voronoi_tiles.vector.copies import Copies
 from voronoi_tiles.vector.motion_codes import Codes, encode
 
@@ -138,8 +139,8 @@ def with_curves(
     # What half-edges and corners lie on: segments, and behind them nodes.
     carrier = np.where(item < half_edges, item >> 1, half_edges + first)
     kept = _without_seams(boundary.ring, np.array((carrier[0], copy, carrier[1])))
-    first, copy, ring = first[:, kept], copy[kept], boundary.ring[kept]
-    second = np.concatenate((contour.target, contour.corner_node))[item[:, kept]]
+    item, first, copy, ring = item[:, kept], first[:, kept], copy[kept], boundary.ring[kept]
+    second = np.concatenate((contour.target, contour.corner_node))[item]
     node_here, node_there = first == second
     # The first and the second end of the elements here and beyond.
     ends = contour.nodes[np.array((first, second))]
@@ -147,8 +148,10 @@ def with_curves(
     here, there = ends[:, 0], ends[:, 1]
     curved = node_here != node_there
     bounds = np.concatenate((starts(ring), [len(ring)]))
+    vertex = boundary.vertex[kept]
+    sharpen_handovers(vertex, bounds, copy, copies, contour, item, ends)
     traced = Traced(
-        vertex=boundary.vertex[kept],
+        vertex=vertex,
         ring=np.arange(len(bounds) - 1).repeat(counts_of(bounds)),
         ring_tile=node_site[first[0, bounds[:-1]]],
         site=node_site[first[1]],
