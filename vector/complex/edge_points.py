@@ -109,9 +109,10 @@ def _runs(builder: Builder, edges: Edges, kept: Ints, ends: tuple[Points, Points
 
 
 def _symmetrized(action: Action, traced: Traced, runs: _ArcRuns, reversals: Mapping[int, Motion | None]) -> _ArcRuns:
-    """The runs with those on mirrors one line, and with the middle of those reversed onto themselves where it belongs.
+    """The runs of edges that motions map onto themselves made so, in place where their numbers of arcs stay.
 
-    That is the vertex there, or the end of the arc there.
+    Those on mirrors become one line. In those that are reversed the middle is put where the motion leaves it: a vertex,
+    or the second end of an arc.
     """
     others = {}
     for k, reversal in reversals.items():
@@ -127,7 +128,7 @@ def _symmetrized(action: Action, traced: Traced, runs: _ArcRuns, reversals: Mapp
             whole[half] = fixed(action, complex(whole[half]), sorted((IDENTITY, reversal)))
         elif half:
             whole[half + 1] = action.apply_to_point(reversal, complex(whole[half]))
-        if len(chosen) < len(arcs):
+        if chosen is not arcs:
             others[k] = chosen, traced.curved[chosen], whole
     return runs.replaced(others) if others else runs
 

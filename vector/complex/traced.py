@@ -129,7 +129,8 @@ def with_curves(
 ) -> Traced:
     """The boundaries of all tiles, with the curve of each arc: the bisector of two elements, here and beyond.
 
-    Arcs in a row that lie on one curve are one arc; rings are in the order of their tiles, outer ones before holes.
+    Arcs in a row that lie on one curve are one arc; vertices where nearly parallel segments hand over are sharpened.
+    Rings are in the order of their tiles, outer ones before holes.
     `rows`, `contour` and `parts` are those of all sites, `node_site` (intp, m) is the site of each node.
     """
     row, copy = parts.row[boundary.part], parts.copy[boundary.part]
@@ -138,8 +139,10 @@ def with_curves(
     first = np.concatenate((contour.source, contour.corner_node))[item]
     # What half-edges and corners lie on: segments, and behind them nodes.
     carrier = np.where(item < half_edges, item >> 1, half_edges + first)
-    kept = _without_seams(boundary.ring, np.array((carrier[0], copy, carrier[1])))
-    item, first, copy, ring = item[:, kept], first[:, kept], copy[kept], boundary.ring[kept]
+    bounds = np.concatenate((starts(boundary.ring), [len(boundary.ring)]))
+    kept = _without_seams(bounds, np.array((carrier[0], copy, carrier[1])))
+    vertex, item, first, copy = boundary.vertex[kept], item[:, kept], first[:, kept], copy[kept]
+    bounds = kept.searchsorted(bounds)
     second = np.concatenate((contour.target, contour.corner_node))[item]
     node_here, node_there = first == second
     # The first and the second end of the elements here and beyond.
@@ -147,8 +150,6 @@ def with_curves(
     ends[:, 1] = move(ends[:, 1], copies.unit[copy], copies.shift[copy], copies.conj[copy])
     here, there = ends[:, 0], ends[:, 1]
     curved = node_here != node_there
-    bounds = np.concatenate((starts(ring), [len(ring)]))
-    vertex = boundary.vertex[kept]
     sharpen_handovers(vertex, bounds, copy, copies, contour, item, ends)
     traced = Traced(
         vertex=vertex,
@@ -165,14 +166,14 @@ def with_curves(
     return traced if (traced.ring_tile[1:] > traced.ring_tile[:-1]).all() else _in_order(traced)
 
 
-def _without_seams(ring: Ints, curve: Ints) -> Ints:
+def _without_seams(bounds: Ints, curve: Ints) -> Ints:
     """The arcs without those that go on along the curve of the one before; of a ring with one curve only, all.
 
-    `ring` (intp, n) is the ring of each arc, `curve` (intp, m x n) what determines its curve.
+    The arcs of ring r are those from `bounds[r]` up to, not including, `bounds[r + 1]`; `curve` (intp, m x n) is what
+    determines the curve of each of the n arcs.
     """
-    bounds = np.concatenate((starts(ring), [len(ring)]))
     first = bounds[:-1]
-    before = np.arange(-1, len(ring) - 1)
+    before = np.arange(-1, int(bounds[-1]) - 1)
     before[first] = bounds[1:] - 1
     fresh = (curve != curve[:, before]).any(axis=0)
     whole = ~np.logical_or.reduceat(fresh, first)
