@@ -56,7 +56,7 @@ def encode(motions: npt.ArrayLike) -> Codes:
     rows = np.asarray(motions, np.int64).reshape(-1, 6)
     shift = rows[:, 4:]
     assert not len(rows) or np.abs(shift).max() <= _HALF // 2, "a translation that no cell is skew enough for"
-    return _BY_KEY[rows[:, :4] @ _DIGITS + 40] + (shift @ _PLACES + _ORIGIN)
+    return np.asarray(_BY_KEY[rows[:, :4] @ _DIGITS + 40] + (shift @ _PLACES + _ORIGIN))
 
 
 def code_of(motion: Motion) -> int:
@@ -121,9 +121,9 @@ def images(action: Action, codes: Codes, z: Complexes, further: tuple[int, int] 
     units, signs = action.isometries
     # Spelt out as in `maps.move`, without the arrays between.
     unit, x, y = units[linear], z.real, signs[linear] * z.imag
-    s, t, a, b = s / 2, t / 2, action.lattice.a, action.lattice.b
-    real = unit.real * x - unit.imag * y + (s * a.real + t * b.real)
+    i, j, a, b = s / 2, t / 2, action.lattice.a, action.lattice.b
+    real = unit.real * x - unit.imag * y + (i * a.real + j * b.real)
     result = np.empty(real.shape, complex)
     result.real = real
-    result.imag = unit.imag * x + unit.real * y + (s * a.imag + t * b.imag)
+    result.imag = unit.imag * x + unit.real * y + (i * a.imag + j * b.imag)
     return result

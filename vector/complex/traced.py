@@ -179,7 +179,7 @@ def _without_seams(bounds: Ints, curve: Ints) -> Ints:
     whole = ~np.logical_or.reduceat(fresh, first)
     if whole.any():
         fresh |= whole.repeat(counts_of(bounds))
-    return fresh.nonzero()[0]
+    return np.flatnonzero(fresh)
 
 
 def _in_order(traced: Traced) -> Traced:
