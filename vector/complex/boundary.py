@@ -154,55 +154,46 @@ class TileBoundaries:
         where it is beyond. NaN where such a tile has no edge there, or one of another number of arcs. The control point
         of a line is that of a quadratic Bezier curve, the middle.
         """
+        partner = self._partners(symmetry)
+        # The edges of each face, and `there` those that come from beyond, whose arcs are put in the order of ours.
+        first, sizes = self.use_offsets[:-1], np.diff(self.use_offsets)
+        of = self.face[first]
+        begin = offsets_of(np.bincount(of, minlength=len(partner)))
+        counts = np.where(partner >= 0, np.diff(begin)[partner], 0)
+        there = of.argsort(kind="stable")[ranges(begin[partner], counts)]
+        face = np.repeat(np.arange(len(partner)), counts)
+        place, edge = counting(sizes[there])
+        by = self.motion[face][edge]
+        turned = reversing(by)
+        arc = first[there][edge] + np.where(turned, place, sizes[there][edge] - 1 - place)
+        # Edges are told apart by their face, their ends, and their first arc. All points are located at once.
+        following, points, control = next_in_ring(self.ring_offsets), self.start.and_then(self.control), len(self.face)
+        ours = points.take(np.concatenate((first, following[first + sizes - 1], following[first], control + first)))
+        theirs = points.take(np.concatenate((arc, following[arc], control + arc))).moved(np.tile(by, 3))
+        places = self.representatives.locate(ours.and_then(theirs))
+        one, two, over = places[len(ours) :].reshape(3, -1)
+        low, high = np.where(turned, one, two), np.where(turned, two, one)
+        at = offsets_of(sizes[there])
+        here = np.lexsort((*places[: len(ours)].reshape(4, -1)[::-1], of))
+        order = np.lexsort((over[at[:-1]], high[at[:-1]], high[at[1:] - 1], low[at[:-1]], face))
+        bounds, of = offsets_of(counts), of[here]
+        row = np.arange(len(here)) + (bounds - begin)[of]
+        matched = row < bounds[of + 1]
+        use, edge = here[matched], order[row[matched]]
+        same = sizes[use] == sizes[there[edge]]
+        use, edge = use[same], edge[same]
+        over = np.where(self.control.index[arc] >= 0, over, (one + two) / 2)
+        result = np.full((3, len(self.face)), np.nan + 0j)
+        result[:, ranges(first[use], sizes[use])] = np.stack((low, over, high))[:, ranges(at[edge], sizes[use])]
+        return result[0], result[1], result[2]
+
+    def _partners(self, symmetry: SiteSymmetry) -> Ints:
+        """Of each face that of the tile beyond, at the place of its site, which faces this one; -1 where none does."""
         tile = np.repeat(np.arange(len(self.face_offsets) - 1), np.diff(self.face_offsets))
         back = symmetry.canonical(tile, inverted(self.motion))
         _, numbers = _numbered(tile, self.site, self.motion)
         asked = zip(self.site.tolist(), tile.tolist(), back.tolist(), strict=True)
-        partner = np.array([numbers.get(face, -1) for face in asked])
-        following = next_in_ring(self.ring_offsets)
-        first, last = self.use_offsets[:-1], self.use_offsets[1:] - 1
-        of = self.face[first]
-        by_face = np.argsort(of, kind="stable")
-        begin = np.searchsorted(of[by_face], np.arange(len(tile) + 1))
-        known = np.flatnonzero(partner >= 0)
-        counts = np.diff(begin)[partner[known]]
-        there = by_face[ranges(begin[:-1][partner[known]], counts)]
-        face = np.repeat(known, counts)
-        by = self.motion[face]
-        turned = reversing(by)
-        # Edges are told apart by their face, their ends, and their first arc: here, and as they come from beyond.
-        here = self._order(of, (first, following[last], following[first], first), IDENTITY_CODE)
-        begins, stops = first[there], following[last[there]]
-        ends = np.where(turned, begins, stops), np.where(turned, stops, begins)
-        second, arc = np.where(turned, following[begins], last[there]), np.where(turned, begins, last[there])
-        order = self._order(face, (*ends, second, arc), by)
-        there, face, turned = there[order], face[order], turned[order]
-        rank = np.arange(len(here)) - begin[of[here]]
-        low, high = (np.searchsorted(face, of[here], side) for side in ("left", "right"))
-        sizes = np.diff(self.use_offsets)
-        matched = low + rank < high
-        row = np.where(matched, low + rank, 0)
-        matched[matched] = sizes[there[row[matched]]] == sizes[here[matched]]
-        use, row = here[matched], row[matched]
-        place, k = counting(sizes[use])
-        mine = first[use][k] + place
-        edge, over, by = there[row][k], turned[row][k], self.motion[face[row]][k]
-        arc = np.where(over, first[edge] + place, last[edge] - place)
-        result = np.full((3, len(self.face)), np.nan + 0j)
-        one, two = (self.representatives.locate(self.start.take(at).moved(by)) for at in (arc, following[arc]))
-        control = self.control.take(arc).moved(by)
-        result[0, mine], result[2, mine] = np.where(over, one, two), np.where(over, two, one)
-        result[1, mine] = np.where(control.index >= 0, self.representatives.locate(control), (one + two) / 2)
-        return result[0], result[1], result[2]
-
-    def _order(self, face: Ints, arcs: tuple[Ints, Ints, Ints, Ints], by: Codes | int) -> Ints:
-        """The order of rows by their faces, then by where the first three arcs start and the last's control point is.
-
-        All are moved by one motion, or one of each row.
-        """
-        locate = self.representatives.locate
-        starts = [locate(self.start.take(arc).moved(by)) for arc in arcs[:3]]
-        return np.lexsort((locate(self.control.take(arcs[3]).moved(by)), *starts[::-1], face))
+        return np.array([numbers.get(face, -1) for face in asked])
 
     def _located(self, turn: int, further: tuple[int, int], curved: Bools) -> Complexes:
         """Starts, control points, foci and both points of directrices under a motion, (5, n); 0 for what lines lack.
