@@ -1,7 +1,8 @@
 """Where an outline crosses itself.
 
-A run of arcs that all go to the right, or all up, cannot cross itself: only arcs whose boxes meet and that are not of
-one such run are looked at, which are few. Whether chords cross is decided by the exact signs of areas.
+Only arcs whose boxes meet are looked at. Of few arcs these are boxes with upright sides, of each pair; of many, boxes
+that lie as the arcs do, around groups of arcs first, and a run of arcs that all go to the right, or all up, cannot
+cross itself. Whether chords cross is decided by the exact signs of areas.
 """
 
 from __future__ import annotations
@@ -12,11 +13,12 @@ from fractions import Fraction
 import numpy as np
 import numpy.typing as npt
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, counting
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, counting, owned_ranges
 from voronoi_tiles.base.tolerance import EPSILON, PROOF_LIMIT
 from voronoi_tiles.vector.all_arcs import AllArcs
 from voronoi_tiles.vector.box_tree import Boxes, boxes_around
 
+_FEW = 1 << 14  # pairs of arcs: up to so many are looked at without groups
 _WIDTH = 8  # consecutive arcs of a group, and groups of a larger group
 _MARGIN = 1e-9  # of boxes, relative to the extent of all
 _AT_ONCE = 1 << 15  # pairs of groups: their parts' take tens of megabytes
@@ -93,6 +95,8 @@ def _cross_far(a: Complexes, b: Complexes, c: Complexes, d: Complexes, limit: fl
     Of an overlap, as of a spike that turns back upon itself, the middle counts.
     """
     result = np.zeros(len(a), bool)
+    if not len(a):
+        return result
     at_c, at_d, at_a, at_b = areas(a, b, c), areas(a, b, d), areas(c, d, a), areas(c, d, b)
     proper = np.flatnonzero((np.sign(at_c) * np.sign(at_d) < 0.0) & (np.sign(at_a) * np.sign(at_b) < 0.0))
     point = a[proper] + (b - a)[proper] * (at_a[proper] / (at_a[proper] - at_b[proper]))
@@ -178,7 +182,27 @@ def _cross(u: Complexes, v: Complexes) -> Floats:
 
 
 def candidate_pairs(arcs: AllArcs) -> tuple[Ints, Ints]:
-    """The pairs i < j of arcs of one outline that may cross: a join of groups of groups of arcs with themselves."""
+    """The pairs i < j of arcs of one outline that may cross."""
+    after, last = np.arange(1, len(arcs) + 1), np.searchsorted(arcs.tile, arcs.tile, side="right")
+    return _of_all(arcs, *owned_ranges(after, last)) if (last - after).sum() <= _FEW else _of_groups(arcs)
+
+
+def _of_all(arcs: AllArcs, j: Ints, i: Ints) -> tuple[Ints, Ints]:
+    """Those of the pairs whose upright boxes have a point in common that is on no side of either.
+
+    On a side of its box an arc has but an end. A box without width or height has no such sides.
+    """
+    points = np.stack((arcs.start, arcs.control, arcs.end))
+    for coordinate in (points.real, points.imag):
+        low, high = coordinate.min(axis=0), coordinate.max(axis=0)
+        one_low, one_high, two_low, two_high = low[i], high[i], low[j], high[j]
+        meet = (one_low < two_high) & (two_low < one_high) | (one_low == two_high) & (two_low == one_high)
+        i, j = i[meet], j[meet]
+    return i, j
+
+
+def _of_groups(arcs: AllArcs) -> tuple[Ints, Ints]:
+    """The pairs by a join of groups of groups of arcs with themselves."""
     levels, margin = _levels(arcs)
     i, j = np.divmod(np.arange(len(levels[-1]) ** 2), len(levels[-1]))
     i, j = levels[-1].possible(i[i <= j], j[i <= j], margin)

@@ -10,12 +10,20 @@ import pytest
 import shapely
 from helpers.outlines import RIGHT, polygon
 
+from voronoi_tiles.vector import crossings
 from voronoi_tiles.vector.all_arcs import AllArcs
 from voronoi_tiles.vector.arcs import Arc, LineArc, ParabolaArc
 from voronoi_tiles.vector.crossings import areas, candidate_pairs, count_crossings
 from voronoi_tiles.vector.outline import Outline
 
 SIZE = 100.0
+
+
+@pytest.fixture(autouse=True, params=["few", "many"])
+def _search(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Few arcs are looked at as few, and as if they were many."""
+    if request.param == "many":
+        monkeypatch.setattr(crossings, "_FEW", -1)
 
 
 def count(*rings: list[Arc], others: tuple[Outline, ...] = ()) -> int:
