@@ -30,7 +30,7 @@ from voronoi_tiles.vector.tessellation import LocalTile
 _PARAMETERS = np.array([0.0, 0.25, 0.5, 0.75])
 # So many times the limit of an error an element may be farther than the nearest one and still be taken into account.
 _SLACK = 10.0
-_NEAR = 0.05  # of the cell's width: how far the compiled search moves on before it chooses copies anew
+_NEAR = 0.12  # of the cell's width: how far the compiled search moves on before it chooses copies anew
 _AT_ONCE = 1 << 20  # pairs of a point and an element: tens of megabytes
 
 _ARGUMENTS = (

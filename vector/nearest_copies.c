@@ -211,19 +211,20 @@ int64_t proof_nearest(int64_t count, const Complex *points, int64_t motions, con
     for (int64_t k = 0; k < count && !failed; k += size) {
         Known known = {0.0, slack, INFINITY, INFINITY, zero};
         Complex middle = zero;
-        size = count - k < BLOCK ? count - k : BLOCK;
-        for (int64_t b = 0; b < size; b++) {
-            middle.x += points[k + b].x / (double)size;
-            middle.y += points[k + b].y / (double)size;
-        }
-        for (int64_t b = 0; b < size; b++) {
-            double x = points[k + b].x - middle.x, y = points[k + b].y - middle.y, away = sqrt(x * x + y * y);
-            known.radius = away > known.radius ? away : known.radius;
-        }
-        if (!(known.radius <= near / 2.0)) {
-            size = 1;
-            middle = points[k];
+        /* Fewer points where these are far apart, for they have few elements in common. */
+        for (size = count - k < BLOCK ? count - k : BLOCK;; size = (size + 1) / 2) {
+            middle = zero;
             known.radius = 0.0;
+            for (int64_t b = 0; b < size; b++) {
+                middle.x += points[k + b].x / (double)size;
+                middle.y += points[k + b].y / (double)size;
+            }
+            for (int64_t b = 0; b < size; b++) {
+                double x = points[k + b].x - middle.x, y = points[k + b].y - middle.y, away = sqrt(x * x + y * y);
+                known.radius = away > known.radius ? away : known.radius;
+            }
+            if (size == 1 || known.radius <= near / 4.0)
+                break;
         }
         double x = middle.x - anchor.x, y = middle.y - anchor.y, away = sqrt(x * x + y * y);
         if (!chosen || !(away + known.radius <= near)) {
