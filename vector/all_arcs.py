@@ -52,20 +52,17 @@ class AllArcs:
         sums are taken in twice the precision, so that neither thin tiles nor such far from the origin lose digits.
         """
         return fsum(
-            times * self._six_areas(np.flatnonzero(copies[self.tile] == times)) / 6
-            for times in np.unique(copies).tolist()
+            times * self._six_areas(np.flatnonzero(copies[self.tile] == times)) / 6 for times in set(copies.tolist())
         )
 
     def _six_areas(self, arc: Ints) -> float:
         """Six times the area that some of the rings enclose."""
-        start, end, bent = self.start[arc], self.end[arc], self.curved[arc]
-        control = self.control[arc][bent]
+        start, control, end, bent = self.start[arc], self.control[arc], self.end[arc], self.curved[arc]
         # Three times a line's product; of a curve that of its chord, and twice those of its legs.
-        u = np.concatenate((start, start[~bent], start[bent], control))
-        v = np.concatenate((end, end[~bent], control, end[bent]))
-        times = np.where(np.arange(len(u)) < len(start), 1.0, 2.0)
-        gain, gain_error = _product(times * u.real, v.imag)
-        loss, loss_error = _product(times * u.imag, v.real)
+        u = np.concatenate((start, 2 * start, 2 * control[bent]))
+        v = np.concatenate((end, np.where(bent, control, end), end[bent]))
+        gain, gain_error = _product(u.real, v.imag)
+        loss, loss_error = _product(u.imag, v.real)
         return _sum(np.concatenate((gain, -loss)), float((gain_error - loss_error).sum()))
 
     def sample(self, t: Floats) -> Complexes:
@@ -86,6 +83,7 @@ class AllArcs:
         return np.where(t == 0.0, start, np.where(t == 1.0, end, point))
 
 
+_FEW = 512  # numbers that are summed one by one
 _SPLITTER = 134217729.0  # 2**27 + 1 cuts a float64 into two halves of 26 bits
 
 
@@ -99,15 +97,15 @@ def _product(a: Floats, b: Floats) -> tuple[Floats, Floats]:
 
 
 def _sum(values: Floats, error: float) -> float:
-    """The sum of numbers and of what was lost before, in twice the precision: pair by pair, what is lost beside it.
+    """The sum of numbers and of what was lost before, in twice the precision.
 
-    The error of a sum is that of Knuth's TwoSum.
+    Many are added pair by pair, what is lost beside it: the error of a sum is that of Knuth's TwoSum.
     """
-    while len(values) > 1:
+    while len(values) > _FEW:
         half = len(values) // 2
         a, b, rest = values[:half], values[half : 2 * half], values[2 * half :]
         total = a + b
         part = total - a
         error += float(((a - (total - part)) + (b - part)).sum())
         values = np.append(total, rest)
-    return float(values.sum()) + error
+    return fsum([*values.tolist(), error])
