@@ -66,11 +66,12 @@ class AllArcs:
         return _sum(np.concatenate((gain, -loss)), float((gain_error - loss_error).sum()))
 
     def sample(self, t: Floats) -> Complexes:
-        """The points of all arcs at parameters t (k,) from 0 to less than 1, the start exactly: complex128 (n, k)."""
-        points = self.start[:, None] * (1 - t) + self.end[:, None] * t
-        start, control, end = (z[self.curved, None] for z in (self.start, self.control, self.end))
-        points[self.curved] = start * (1 - t) ** 2 + control * (2 * t * (1 - t)) + end * t**2
-        return points
+        """The points of all arcs at parameters t (k,) from 0 to less than 1, the start exactly: complex128 (n, k).
+
+        A line is a curve whose control point is its middle.
+        """
+        start, control, end = self.start[:, None], self.control[:, None], self.end[:, None]
+        return start * (1 - t) ** 2 + control * (2 * t * (1 - t)) + end * t**2
 
     def at(self, arc: Ints, t: Floats) -> Complexes:
         """Points of arcs at their parameter 0 ... 1, the ends exactly; arc and t are (m,)."""
