@@ -6,6 +6,7 @@ It is the proof's own: the engine finds its candidates in another way.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -38,19 +39,18 @@ class Boxes:
         return len(self.centre)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class BoxTree:
     """Elements, each moved by a lattice vector so that its middle lies in one cell about 0, and boxes around them.
 
     What is longer than half a cell is cut into parts. `start` and `chord` (complex128, n) are the elements or parts in
-    these places; `element` (intp, n) says of which of those given. `levels[0]` are the same as boxes without width; the
-    last level has at most WIDTH. None reaches beyond `reach` from 0 in coordinates of the reduced basis.
+    these places; `element` (intp, n) says of which of those given. None reaches beyond `reach` from 0 in coordinates of
+    the reduced basis.
     """
 
     start: Complexes
     chord: Complexes
     element: Ints
-    levels: tuple[Boxes, ...]
     reach: float
 
     @classmethod
@@ -71,13 +71,17 @@ class BoxTree:
         if len(low) > _FEW:
             order = z_order(middle - vector)
             low, high, element = low[order], high[order], element[order]
-        levels = [_segments(low, high)]
-        width = WIDTH
+        return cls(low, high - low, element, reach=0.5 + float((share / count).max()) / 2)
+
+    @cached_property
+    def levels(self) -> tuple[Boxes, ...]:
+        """The elements or parts as boxes without width, and boxes around them, up to a level of at most WIDTH."""
+        ends = np.stack((self.start, self.start + self.chord))
+        levels, width = [_segments(*ends)], WIDTH
         while len(levels[-1]) > WIDTH:
-            levels.append(boxes_around(np.stack((low, high)), width))
+            levels.append(boxes_around(ends, width))
             width *= WIDTH
-        reach = 0.5 + float((share / count).max()) / 2
-        return cls(low, high - low, element, tuple(levels), reach)
+        return tuple(levels)
 
 
 def combination(p: complex, q: complex, x: Floats, y: Floats) -> Complexes:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from voronoi_tiles.base import kernels
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, offsets_of
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints
 from voronoi_tiles.base.box_join import z_order
 from voronoi_tiles.base.maps import Isometry, move
 from voronoi_tiles.base.operations import Operation
@@ -36,8 +36,8 @@ _AT_ONCE = 1 << 20  # pairs of a point and an element: tens of megabytes
 _ARGUMENTS = (
     *(kernels.INT, kernels.COMPLEXES, kernels.INT, kernels.COMPLEXES, kernels.COMPLEXES, kernels.BOOLS),
     *(kernels.COMPLEXES, kernels.FLOATS, kernels.INTS, kernels.FLOAT, kernels.FLOAT),
-    *(kernels.INT, kernels.INTS, kernels.COMPLEXES, kernels.COMPLEXES, kernels.FLOATS, kernels.FLOATS),
-    *(kernels.COMPLEXES, kernels.COMPLEXES, kernels.INTS, kernels.INTS, kernels.COMPLEXES, kernels.COMPLEXES),
+    *(kernels.INT, kernels.COMPLEXES, kernels.COMPLEXES, kernels.INTS),
+    *(kernels.INTS, kernels.COMPLEXES, kernels.COMPLEXES),
     *(kernels.COMPLEXES, kernels.INTS, kernels.FLOATS),
 )
 
@@ -59,14 +59,18 @@ def errors_of_distance(
     of = np.repeat(order, len(_PARAMETERS))
     points = arcs.sample(_PARAMETERS)[order].ravel()
     tile = arcs.tile[of]
-    beyond, unit, shift, conj = _neighbours(lattice, tiles)
+    operations = [lattice.isometry(operation) for operation in group.operations]
+    neighbour, site, isometries = _neighbours(lattice, tiles)
+    unit, shift, conj = inverses([*operations, *isometries])
+    beyond, first = neighbour[of], len(operations)
+    by = first + beyond
     claims = Claims(
         near=points - vector[tile],
-        places=np.stack((points, move(points, unit[of], shift[of], conj[of]))),
-        sites=np.stack((tile, beyond[of])),
+        places=np.stack((points, move(points, unit[by], shift[by], conj[by]))),
+        sites=np.stack((tile, np.array(site)[beyond])),
     )
-    motions = inverses([lattice.isometry(operation) for operation in group.operations])
     slack = _SLACK * limit
+    motions = unit[:first], shift[:first], conj[:first]
     found = distances_of_claims(lattice, motions, BoxTree.of(lattice, start, end), sites, claims, slack)
     here, there = (
         sites.complete(distance, found[0] + slack, *side)
@@ -114,8 +118,10 @@ class Sites:
 
     def complete(self, known: Floats, enough: Floats, places: Complexes, site: Ints) -> Floats:
         """The distance of each place from a site: as `known` up to `enough`; beyond, of all elements of the site."""
-        result = known.copy()
         missed = np.flatnonzero(known > enough)
+        if not len(missed):
+            return known
+        result = known.copy()
         for number in np.unique(site[missed]).tolist():
             chosen = missed[site[missed] == number]
             elements = slice(*np.searchsorted(self.site, (number, number + 1)).tolist())
@@ -140,16 +146,13 @@ def distances_of_claims(
         among = (sites.among(found, *side) for side in zip(claims.places, claims.sites, strict=True))
         return np.stack((found.distance, *among))
     near = _NEAR * lattice.reduced.det / max(map(abs, lattice.reduced_basis))
-    levels = tree.levels
     result = np.empty((3, len(claims.near)))
     failed = compiled(
         *(len(claims.near), claims.near, len(motions[0]), *motions),
         *(np.array(lattice.reduced_basis), np.stack(lattice.reduced.fractional(np.array([1, 1j])))),
         *(np.array(steps_around(lattice, tree, (_NEAR, _NEAR))), near, slack),
-        *(len(levels), offsets_of([len(boxes) for boxes in levels])),
-        *(np.concatenate(column) for column in zip(*((b.centre, b.axis) for b in levels), strict=True)),
-        *(np.concatenate(column) for column in zip(*((b.half_length, b.half_width) for b in levels), strict=True)),
-        *(tree.start, tree.chord, tree.element, sites.site, sites.start, sites.chord),
+        *(len(tree.start), tree.start, tree.chord, tree.element),
+        *(sites.site, sites.start, sites.chord),
         *(claims.places, claims.sites, result),
     )
     if failed:
@@ -166,22 +169,17 @@ def _elements(tile: LocalTile) -> tuple[Complexes, Complexes]:
     return np.concatenate((start, points)), np.concatenate((end, points))
 
 
-def _neighbours(lattice: Lattice, tiles: Sequence[LocalTile]) -> tuple[Ints, Complexes, Complexes, Bools]:
-    """For each arc the site of its neighbour, and the isometry that takes the neighbour back to that site.
-
-    The numbers of sites, intp (n,), and the isometries as unit and shift, complex128 (n,), and conj, bool (n,).
-    """
+def _neighbours(lattice: Lattice, tiles: Sequence[LocalTile]) -> tuple[Ints, list[int], list[Isometry]]:
+    """For each arc the number of its neighbour, intp (n,); of each neighbour its site and what takes that to it."""
     number = {tile.name: k for k, tile in enumerate(tiles)}
-    isometries: dict[Operation, Isometry] = {}
-    rows, sites, motions, which = [], [], [], 0
+    known: dict[Operation, Isometry] = {}
+    neighbours: list[Ints] = []
+    sites, isometries = [], []
     for tile in tiles:
-        rows.append(tile.outline.neighbour + which)
-        which += len(tile.outline.neighbours)
+        neighbours.append(tile.outline.neighbour + len(sites))
         for name, operation in tile.outline.neighbours:
-            if operation not in isometries:
-                isometries[operation] = lattice.isometry(operation)
+            if operation not in known:
+                known[operation] = lattice.isometry(operation)
             sites.append(number[name])
-            motions.append(isometries[operation])
-    row = np.concatenate(rows)
-    unit, shift, conj = inverses(motions)
-    return np.array(sites)[row], unit[row], shift[row], conj[row]
+            isometries.append(known[operation])
+    return np.concatenate(neighbours), sites, isometries

@@ -2,24 +2,32 @@
 
    The two inequalities that leave boxes out are those that stand there, and the distances are taken by the same
    operations in the same order: of each point the same pairs are found, all those whose element has a copy that is no
-   farther than the nearest one and the slack. What else is looked at on the way is another matter, and does not show. */
+   farther than the nearest one and the slack. Which boxes are looked at on the way is another matter and does not show:
+   they are made here as in box_tree.py, but rounding may differ by far less than the slack. */
 
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
 
 #define WIDTH 8 /* boxes in a box of the next level, as in box_tree.py */
+#define DEPTH 20
 #define BLOCK 16 /* points of a block */
 
 typedef struct {
     double x, y;
 } Complex;
 
+/* All centre + x axis + y i axis with |x| <= half_length and |y| <= half_width; |axis| = 1. */
 typedef struct {
-    int64_t levels;
-    const int64_t *first; /* of each level's boxes, and where the last level's end */
-    const Complex *centre, *axis;
-    const double *half_length, *half_width;
+    Complex centre, axis;
+    double half_length, half_width;
+} Box;
+
+/* The entries as boxes without width, and boxes of each WIDTH boxes of the level before, up to a level of at most
+   WIDTH: those of one level stand from its `first` up to that of the next. No tree has more than DEPTH levels. */
+typedef struct {
+    int64_t levels, first[DEPTH + 1];
+    Box *box;
 } Tree;
 
 /* One copy of the tree: the image of a point under a motion, less the shift; no box of it is nearer to the anchor. */
@@ -65,25 +73,109 @@ static double beyond(double value, double half)
     return value > half ? value - half : value < -half ? value + half : 0.0;
 }
 
-static double square(const Tree *tree, int64_t box, Complex point)
+static double square(const Box *box, Complex point)
 {
-    double x = point.x - tree->centre[box].x, y = point.y - tree->centre[box].y;
-    double u = tree->axis[box].x, v = tree->axis[box].y;
-    double along = fabs(x * u + y * v) - tree->half_length[box];
-    double across = fabs(y * u - x * v) - tree->half_width[box];
+    double x = point.x - box->centre.x, y = point.y - box->centre.y;
+    double u = box->axis.x, v = box->axis.y;
+    double along = fabs(x * u + y * v) - box->half_length;
+    double across = fabs(y * u - x * v) - box->half_width;
     along = along > 0.0 ? along : 0.0;
     across = across > 0.0 ? across : 0.0;
     return along * along + across * across;
 }
 
-static Seen look(const Tree *tree, int64_t level, int64_t box, Complex point)
+static Seen look(const Tree *tree, int64_t level, int64_t number, Complex point)
 {
-    double x = point.x - tree->centre[box].x, y = point.y - tree->centre[box].y;
-    double u = tree->axis[box].x, v = tree->axis[box].y;
-    double along = beyond(x * u + y * v, tree->half_length[box]);
-    double across = beyond(y * u - x * v, tree->half_width[box]);
-    Seen seen = {level, box, sqrt(along * along + across * across), {along * u - across * v, along * v + across * u}};
+    const Box *box = tree->box + number;
+    double x = point.x - box->centre.x, y = point.y - box->centre.y;
+    double u = box->axis.x, v = box->axis.y;
+    double along = beyond(x * u + y * v, box->half_length);
+    double across = beyond(y * u - x * v, box->half_width);
+    Seen seen = {level, number, sqrt(along * along + across * across), {along * u - across * v, along * v + across * u}};
     return seen;
+}
+
+/* A segment as a box. */
+static Box box_of(Complex start, Complex chord)
+{
+    double length = sqrt(chord.x * chord.x + chord.y * chord.y);
+    Box box = {{start.x + chord.x / 2.0, start.y + chord.y / 2.0}, {1.0, 0.0}, length / 2.0, 0.0};
+    if (length > 0.0) {
+        box.axis.x = chord.x / length;
+        box.axis.y = chord.y / length;
+    }
+    return box;
+}
+
+/* The end `k` of segments: first both of one, then both of the next. */
+static Complex end_of(const Complex *start, const Complex *chord, int64_t k)
+{
+    Complex end = start[k / 2];
+    if (k % 2) {
+        end.x += chord[k / 2].x;
+        end.y += chord[k / 2].y;
+    }
+    return end;
+}
+
+/* The box around segments along their principal axis: as the square of a direction does not know its sign, that is the
+   root of the sum of the squares of all vectors from the mean. */
+static Box box_around(int64_t count, const Complex *start, const Complex *chord)
+{
+    Complex mean = {0.0, 0.0}, sum = {0.0, 0.0};
+    double left = INFINITY, right = -INFINITY, below = INFINITY, above = -INFINITY;
+    for (int64_t k = 0; k < 2 * count; k++) {
+        Complex end = end_of(start, chord, k);
+        mean.x += end.x / (double)(2 * count);
+        mean.y += end.y / (double)(2 * count);
+    }
+    for (int64_t k = 0; k < 2 * count; k++) {
+        Complex end = end_of(start, chord, k);
+        double x = end.x - mean.x, y = end.y - mean.y;
+        sum.x += x * x - y * y;
+        sum.y += 2.0 * x * y;
+    }
+    double size = sqrt(sum.x * sum.x + sum.y * sum.y), u = 1.0, v = 0.0;
+    if (size > 0.0) {
+        u = sqrt((1.0 + sum.x / size) / 2.0);
+        v = sqrt((1.0 - sum.x / size) / 2.0);
+        v = sum.y < 0.0 ? -v : v;
+    }
+    for (int64_t k = 0; k < 2 * count; k++) {
+        Complex end = end_of(start, chord, k);
+        double x = end.x - mean.x, y = end.y - mean.y, along = x * u + y * v, across = y * u - x * v;
+        left = along < left ? along : left;
+        right = along > right ? along : right;
+        below = across < below ? across : below;
+        above = across > above ? across : above;
+    }
+    double along = (left + right) / 2.0, across = (below + above) / 2.0;
+    Box box = {{mean.x + (along * u - across * v), mean.y + (along * v + across * u)}, {u, v}, (right - left) / 2.0,
+               (above - below) / 2.0};
+    return box;
+}
+
+/* 0 where there is no memory for it. */
+static int grow(Tree *tree, int64_t count, const Complex *start, const Complex *chord)
+{
+    int64_t boxes = 0, width = 1, here = WIDTH + 1;
+    for (tree->levels = 0; here > WIDTH; width *= WIDTH) {
+        here = (count - 1) / width + 1;
+        tree->first[tree->levels++] = boxes;
+        boxes += here;
+    }
+    tree->first[tree->levels] = boxes;
+    tree->box = malloc((size_t)boxes * sizeof(Box));
+    if (tree->box == NULL)
+        return 0;
+    Box *box = tree->box;
+    for (int64_t k = 0; k < count; k++)
+        *box++ = box_of(start[k], chord[k]);
+    width = WIDTH;
+    for (int64_t level = 1; level < tree->levels; level++, width *= WIDTH)
+        for (int64_t k = 0; k < count; k += width)
+            *box++ = box_around(count - k < width ? count - k : width, start + k, chord + k);
+    return 1;
 }
 
 static Complex image(Complex point, Complex unit, Complex shift, int conj, Complex less)
@@ -137,10 +229,10 @@ static int possible(const Known *known, const Seen *seen)
 }
 
 /* Go down one copy of the tree: the entries that can be nearest to a point of the block are appended to the list. Of
-   each level at most WIDTH boxes wait at once, and no tree has 20 levels. */
+   each level at most WIDTH boxes wait at once. */
 static int descend(const Tree *tree, Complex middle, Known *known, Found found, List *list)
 {
-    Seen stack[WIDTH * 20];
+    Seen stack[WIDTH * DEPTH];
     int64_t waiting = 0, top = tree->levels - 1, before = list->count;
     known->of_copy = INFINITY;
     for (int64_t box = tree->first[top]; box < tree->first[top + 1]; box++)
@@ -168,7 +260,7 @@ static int descend(const Tree *tree, Complex middle, Known *known, Found found, 
         int64_t below = waiting;
         double bound = known->of_all + 2.0 * (known->radius + known->slack), squares[WIDTH];
         for (int64_t box = begin; box < end; box++)
-            squares[box - begin] = square(tree, box, middle);
+            squares[box - begin] = square(tree->box + box, middle);
         for (int64_t box = begin; box < end; box++) {
             if (squares[box - begin] > bound * bound)
                 continue;
@@ -197,16 +289,15 @@ static int descend(const Tree *tree, Complex middle, Known *known, Found found, 
    `near` from the place for which they were chosen, up to `steps` around it. 0 if all went well. */
 int64_t proof_nearest(int64_t count, const Complex *points, int64_t motions, const Complex *unit, const Complex *shift,
                       const uint8_t *conj, const Complex *basis, const double *fractional, const int64_t *steps,
-                      double near, double slack, int64_t levels, const int64_t *first, const Complex *centre,
-                      const Complex *axis, const double *half_length, const double *half_width, const Complex *start,
-                      const Complex *chord, const int64_t *element, const int64_t *site, const Complex *site_start,
+                      double near, double slack, int64_t elements, const Complex *start, const Complex *chord,
+                      const int64_t *element, const int64_t *site, const Complex *site_start,
                       const Complex *site_chord, const Complex *places, const int64_t *sites, double *result)
 {
-    Tree tree = {levels, first, centre, axis, half_length, half_width};
+    Tree tree;
     List entries = {NULL, 0, 0}, pairs = {NULL, 0, 0};
     int64_t m = steps[0], n = steps[1], copies = motions * (2 * m + 1) * (2 * n + 1);
     Copy *copy = malloc((size_t)copies * sizeof(Copy));
-    int64_t failed = copy == NULL, chosen = 0, size;
+    int64_t failed = !grow(&tree, elements, start, chord) || copy == NULL, chosen = 0, size;
     Complex anchor = {0.0, 0.0}, zero = {0.0, 0.0};
     for (int64_t k = 0; k < count && !failed; k += size) {
         Known known = {0.0, slack, INFINITY, INFINITY, zero};
@@ -244,8 +335,8 @@ int64_t proof_nearest(int64_t count, const Complex *points, int64_t motions, con
                         next->shift.y = p * basis[0].y + q * basis[1].y;
                         next->nearest = INFINITY;
                         Complex from = {w.x - next->shift.x, w.y - next->shift.y};
-                        for (int64_t box = first[levels - 1]; box < first[levels]; box++) {
-                            double distance = look(&tree, levels - 1, box, from).distance;
+                        for (int64_t box = tree.first[tree.levels - 1]; box < tree.first[tree.levels]; box++) {
+                            double distance = look(&tree, tree.levels - 1, box, from).distance;
                             next->nearest = distance < next->nearest ? distance : next->nearest;
                         }
                     }
@@ -292,6 +383,7 @@ int64_t proof_nearest(int64_t count, const Complex *points, int64_t motions, con
             result[2 * count + b] = least[1];
         }
     }
+    free(tree.box);
     free(copy);
     free(entries.items);
     free(pairs.items);
