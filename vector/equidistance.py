@@ -12,7 +12,6 @@ from voronoi_tiles.base import kernels
 from voronoi_tiles.base.arrays import Complexes, Floats, Ints
 from voronoi_tiles.base.box_join import z_order
 from voronoi_tiles.base.maps import Isometry, move
-from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.vector.all_arcs import AllArcs
 from voronoi_tiles.vector.box_tree import BoxTree, combination
@@ -172,14 +171,11 @@ def _elements(tile: LocalTile) -> tuple[Complexes, Complexes]:
 def _neighbours(lattice: Lattice, tiles: Sequence[LocalTile]) -> tuple[Ints, list[int], list[Isometry]]:
     """For each arc the number of its neighbour, intp (n,); of each neighbour its site and what takes that to it."""
     number = {tile.name: k for k, tile in enumerate(tiles)}
-    known: dict[Operation, Isometry] = {}
     neighbours: list[Ints] = []
-    sites, isometries = [], []
+    sites: list[int] = []
+    isometries: list[Isometry] = []
     for tile in tiles:
         neighbours.append(tile.outline.neighbour + len(sites))
-        for name, operation in tile.outline.neighbours:
-            if operation not in known:
-                known[operation] = lattice.isometry(operation)
-            sites.append(number[name])
-            isometries.append(known[operation])
+        sites += [number[name] for name, _ in tile.outline.neighbours]
+        isometries += [lattice.isometry(operation) for _, operation in tile.outline.neighbours]
     return np.concatenate(neighbours), sites, isometries

@@ -50,7 +50,7 @@ def winding_numbers(arcs: AllArcs, points: Complexes, tile: Ints) -> Ints:
     """
     order = np.lexsort((points.imag, tile))
     key = tile[order] + 1j * points.imag[order]
-    heights = np.stack((arcs.start.imag, np.where(arcs.curved, arcs.control.imag, arcs.start.imag), arcs.end.imag))
+    heights = np.stack((arcs.start, arcs.control, arcs.end)).imag
     first = np.searchsorted(key, arcs.tile + 1j * heights.min(axis=0), side="left")
     last = np.searchsorted(key, arcs.tile + 1j * heights.max(axis=0), side="right")
     beside, arc = owned_ranges(first, last)
@@ -71,18 +71,14 @@ def _turns(start: Complexes, control: Complexes, end: Complexes, curved: Bools) 
     What meets the point, or an end at its height, is decided as if the point were a little farther to the right and,
     less than that, farther up.
     """
-    chord = end - start
-    across = _cross(start, end)
+    chord, across = end - start, _cross(start, end)
     side = np.where(across != 0.0, across, np.where(chord.imag != 0.0, -chord.imag, chord.real))
-    upwards = (start.imag <= 0.0) & (end.imag > 0.0) & (side > 0.0)
-    downwards = (end.imag <= 0.0) & (start.imag > 0.0) & (side < 0.0)
-    turns = upwards.astype(np.intp) - downwards
-    bent = np.flatnonzero(curved)
-    start, control, end = start[bent], control[bent], end[bent]
-    s, t, r = _cross(control, end), -across[bent], _cross(start, control)
+    rising = (start.imag <= 0.0).astype(np.intp) - (end.imag <= 0.0)
+    turns = np.where(rising * side > 0.0, rising, 0)
+    s, t, r = _cross(control, end), -across, _cross(start, control)
     sign = np.sign(s + t + r)
-    between = (s * sign > 0.0) & (r * sign > 0.0) & (side[bent] * sign < 0.0) & (t * t < 4.0 * s * r)
-    turns[bent] += (sign * between).astype(np.intp)
+    between = curved & (s * sign > 0.0) & (r * sign > 0.0) & (side * sign < 0.0) & (t * t < 4.0 * s * r)
+    turns[between] += sign[between].astype(np.intp)
     return turns
 
 
