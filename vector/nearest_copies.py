@@ -111,10 +111,10 @@ class _CopySearch:
         """The distances, and the pairs."""
         bundle, level = len(self.radii) - 1, len(self.tree.levels) - 1
         frontier = self._prune(bundle, self.tree.levels[level], self._begin())
-        sizes = [float(np.median(boxes.half_length)) for boxes in self.tree.levels]
+        sizes = [_middle(boxes.half_length) for boxes in self.tree.levels]
         while level or bundle > 1:
             # Whichever is larger is divided.
-            if level and (bundle == 1 or sizes[level] >= float(np.median(self.radii[bundle]))):
+            if level and (bundle == 1 or sizes[level] >= _middle(self.radii[bundle])):
                 level -= 1
                 self._descend(frontier, len(self.tree.levels[level]))
             else:
@@ -204,6 +204,11 @@ class _CopySearch:
         # Without the points with which the last bundle was filled up.
         keep = np.flatnonzero((distance <= nearest[point] + self.slack) & (point < self.count))
         return nearest[: self.count], point[keep], self.tree.element[frontier.box[keep]]
+
+
+def _middle(values: Floats) -> float:
+    """The value that half of the others do not exceed."""
+    return float(np.sort(values)[len(values) // 2])
 
 
 def steps_around(lattice: Lattice, tree: BoxTree, spread: Sequence[float]) -> tuple[int, int]:
