@@ -187,12 +187,6 @@ static Complex image(Complex point, Complex unit, Complex shift, int conj, Compl
     return result;
 }
 
-static int by_distance(const void *one, const void *two)
-{
-    double a = ((const Copy *)one)->nearest, b = ((const Copy *)two)->nearest;
-    return (a > b) - (a < b);
-}
-
 static int append(List *list, Found found)
 {
     if (list->count == list->size) {
@@ -322,26 +316,27 @@ int64_t proof_nearest(int64_t count, const Complex *points, int64_t motions, con
             chosen = 1;
             anchor = middle;
             away = 0.0;
-            Copy *next = copy;
+            int64_t known_copies = 0;
             for (int64_t g = 0; g < motions; g++) {
                 Complex w = image(anchor, unit[g], shift[g], conj[g], zero);
                 double s = rint(fractional[0] * w.x + fractional[1] * w.y);
                 double t = rint(fractional[2] * w.x + fractional[3] * w.y);
                 for (int64_t i = -m; i <= m; i++)
-                    for (int64_t j = -n; j <= n; j++, next++) {
+                    for (int64_t j = -n; j <= n; j++) {
                         double p = s + (double)i, q = t + (double)j;
-                        next->motion = g;
-                        next->shift.x = p * basis[0].x + q * basis[1].x;
-                        next->shift.y = p * basis[0].y + q * basis[1].y;
-                        next->nearest = INFINITY;
-                        Complex from = {w.x - next->shift.x, w.y - next->shift.y};
+                        Copy next = {g, {p * basis[0].x + q * basis[1].x, p * basis[0].y + q * basis[1].y}, INFINITY};
+                        Complex from = {w.x - next.shift.x, w.y - next.shift.y};
                         for (int64_t box = tree.first[tree.levels - 1]; box < tree.first[tree.levels]; box++) {
                             double distance = look(&tree, tree.levels - 1, box, from).distance;
-                            next->nearest = distance < next->nearest ? distance : next->nearest;
+                            next.nearest = distance < next.nearest ? distance : next.nearest;
                         }
+                        /* The nearest first. */
+                        int64_t place = known_copies++;
+                        for (; place > 0 && copy[place - 1].nearest > next.nearest; place--)
+                            copy[place] = copy[place - 1];
+                        copy[place] = next;
                     }
             }
-            qsort(copy, (size_t)copies, sizeof(Copy), by_distance);
         }
         entries.count = 0;
         for (const Copy *next = copy; next < copy + copies && !failed; next++) {
