@@ -63,10 +63,7 @@ class BoxTree:
         chord = (end - start)[element]
         low, high = start[element] + part / count[element] * chord, start[element] + (part + 1) / count[element] * chord
         middle = (low + high) / 2
-        x, y = lattice.reduced.fractional(middle)
-        x, y = np.round(x), np.round(y)
-        p, q = lattice.reduced_basis
-        vector = combination(p, q, x, y)
+        vector = towards_zero(lattice, middle)
         low, high = low - vector, high - vector
         if len(low) > _FEW:
             order = z_order(middle - vector)
@@ -76,12 +73,17 @@ class BoxTree:
     @cached_property
     def levels(self) -> tuple[Boxes, ...]:
         """The elements or parts as boxes without width, and boxes around them, up to a level of at most WIDTH."""
-        ends = np.stack((self.start, self.start + self.chord))
+        ends = np.array((self.start, self.start + self.chord))
         levels, width = [_segments(*ends)], WIDTH
         while len(levels[-1]) > WIDTH:
             levels.append(boxes_around(ends, width))
             width *= WIDTH
         return tuple(levels)
+
+
+def towards_zero(lattice: Lattice, points: Complexes) -> Complexes:
+    """The lattice vectors that are to be taken from points so that they lie in one cell about 0, complex128 (n,)."""
+    return combination(*lattice.reduced_basis, *map(np.rint, lattice.reduced.fractional(points)))
 
 
 def combination(p: complex, q: complex, x: Floats, y: Floats) -> Complexes:

@@ -192,7 +192,7 @@ def _of_all(arcs: AllArcs, j: Ints, i: Ints) -> tuple[Ints, Ints]:
 
     On a side of its box an arc has but an end. A box without width or height has no such sides.
     """
-    points = np.stack((arcs.start, arcs.control, arcs.end))
+    points = np.array((arcs.start, arcs.control, arcs.end))
     for coordinate in (points.real, points.imag):
         low, high = coordinate.min(axis=0), coordinate.max(axis=0)
         one_low, one_high, two_low, two_high = low[i], high[i], low[j], high[j]

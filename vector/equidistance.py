@@ -14,7 +14,7 @@ from voronoi_tiles.base.box_join import z_order
 from voronoi_tiles.base.maps import Isometry, move
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.vector.all_arcs import AllArcs
-from voronoi_tiles.vector.box_tree import BoxTree, combination
+from voronoi_tiles.vector.box_tree import BoxTree, towards_zero
 from voronoi_tiles.vector.nearest_copies import (
     Motions,
     NearestCopies,
@@ -53,7 +53,7 @@ def errors_of_distance(
     sites = Sites(np.repeat(np.arange(len(tiles)), [len(one) for one, _ in elements]), start, end - start)
     # One node for each site, and the lattice vector that takes it near 0.
     node = np.array([tile.nodes[0] for tile in tiles])
-    vector = combination(*lattice.reduced_basis, *map(np.round, lattice.reduced.fractional(node)))
+    vector = towards_zero(lattice, node)
     order = _side_by_side(arcs, node - vector)
     of = np.repeat(order, len(_PARAMETERS))
     points = arcs.sample(_PARAMETERS)[order].ravel()
@@ -65,8 +65,8 @@ def errors_of_distance(
     by = first + beyond
     claims = Claims(
         near=points - vector[tile],
-        places=np.stack((points, move(points, unit[by], shift[by], conj[by]))),
-        sites=np.stack((tile, np.array(site)[beyond])),
+        places=np.array((points, move(points, unit[by], shift[by], conj[by]))),
+        sites=np.array((tile, np.array(site)[beyond])),
     )
     slack = _SLACK * limit
     motions = unit[:first], shift[:first], conj[:first]
@@ -148,7 +148,7 @@ def distances_of_claims(
     result = np.empty((3, len(claims.near)))
     failed = compiled(
         *(len(claims.near), claims.near, len(motions[0]), *motions),
-        *(np.array(lattice.reduced_basis), np.stack(lattice.reduced.fractional(np.array([1, 1j])))),
+        *(np.array(lattice.reduced_basis), np.array(lattice.reduced.fractional(np.array([1, 1j])))),
         *(np.array(steps_around(lattice, tree, (_NEAR, _NEAR))), near, slack),
         *(len(tree.start), tree.start, tree.chord, tree.element),
         *(sites.site, sites.start, sites.chord),

@@ -50,7 +50,7 @@ def winding_numbers(arcs: AllArcs, points: Complexes, tile: Ints) -> Ints:
     """
     order = np.lexsort((points.imag, tile))
     key = tile[order] + 1j * points.imag[order]
-    heights = np.stack((arcs.start, arcs.control, arcs.end)).imag
+    heights = np.array((arcs.start, arcs.control, arcs.end)).imag
     first = np.searchsorted(key, arcs.tile + 1j * heights.min(axis=0), side="left")
     last = np.searchsorted(key, arcs.tile + 1j * heights.max(axis=0), side="right")
     beside, arc = owned_ranges(first, last)

@@ -156,35 +156,36 @@ class TileBoundaries:
         """
         partner = self._partners(symmetry)
         # The edges of each face, and `there` those that come from beyond, whose arcs are put in the order of ours.
-        first, sizes = self.use_offsets[:-1], np.diff(self.use_offsets)
+        first, sizes = self.use_offsets[:-1], self.use_offsets[1:] - self.use_offsets[:-1]
         of = self.face[first]
         begin = offsets_of(np.bincount(of, minlength=len(partner)))
-        counts = np.where(partner >= 0, np.diff(begin)[partner], 0)
+        counts = np.where(partner >= 0, (begin[1:] - begin[:-1])[partner], 0)
         there = of.argsort(kind="stable")[ranges(begin[partner], counts)]
-        face = np.repeat(np.arange(len(partner)), counts)
-        place, edge = counting(sizes[there])
+        face = np.arange(len(partner)).repeat(counts)
+        size = sizes[there]
+        place, edge = counting(size)
         by = self.motion[face][edge]
         turned = reversing(by)
-        arc = first[there][edge] + np.where(turned, place, sizes[there][edge] - 1 - place)
+        arc = first[there][edge] + np.where(turned, place, size[edge] - 1 - place)
         # Edges are told apart by their face, their ends, and their first arc. All points are located at once.
         following, points, control = next_in_ring(self.ring_offsets), self.start.and_then(self.control), len(self.face)
         ours = points.take(np.concatenate((first, following[first + sizes - 1], following[first], control + first)))
-        theirs = points.take(np.concatenate((arc, following[arc], control + arc))).moved(np.tile(by, 3))
+        theirs = points.take(np.concatenate((arc, following[arc], control + arc))).moved(np.concatenate((by, by, by)))
         places = self.representatives.locate(ours.and_then(theirs))
         one, two, over = places[len(ours) :].reshape(3, -1)
         low, high = np.where(turned, one, two), np.where(turned, two, one)
-        at = offsets_of(sizes[there])
+        at = offsets_of(size)
         here = np.lexsort((*places[: len(ours)].reshape(4, -1)[::-1], of))
         order = np.lexsort((over[at[:-1]], high[at[:-1]], high[at[1:] - 1], low[at[:-1]], face))
         bounds, of = offsets_of(counts), of[here]
         row = np.arange(len(here)) + (bounds - begin)[of]
         matched = row < bounds[of + 1]
         use, edge = here[matched], order[row[matched]]
-        same = sizes[use] == sizes[there[edge]]
+        same = sizes[use] == size[edge]
         use, edge = use[same], edge[same]
         over = np.where(self.control.index[arc] >= 0, over, (one + two) / 2)
         result = np.full((3, len(self.face)), np.nan + 0j)
-        result[:, ranges(first[use], sizes[use])] = np.stack((low, over, high))[:, ranges(at[edge], sizes[use])]
+        result[:, ranges(first[use], sizes[use])] = np.array((low, over, high))[:, ranges(at[edge], sizes[use])]
         return result[0], result[1], result[2]
 
     def _partners(self, symmetry: SiteSymmetry) -> Ints:

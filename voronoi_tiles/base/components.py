@@ -22,5 +22,6 @@ def components(count: int, first: Ints, last: Ints) -> Ints:
         if (one == two).all():
             return least
         np.minimum.at(least, np.maximum(one, two), np.minimum(one, two))
-        while (least[least] != least).any():
-            least = least[least]
+        further = least[least]
+        while (further != least).any():
+            least, further = further, further[further]
