@@ -56,19 +56,21 @@ class BoxTree:
     @classmethod
     def of(cls, lattice: Lattice, start: Complexes, end: Complexes) -> BoxTree:
         """The tree of elements from `start` to `end`, complex128 (m,), m > 0; equal ends are a point."""
-        x, y = lattice.reduced.fractional(end - start)
-        share = np.maximum(np.abs(x), np.abs(y))
-        count = np.maximum(np.ceil(share / _LONGEST), 1.0).astype(np.intp)
-        part, element = counting(count)
-        chord = (end - start)[element]
-        low, high = start[element] + part / count[element] * chord, start[element] + (part + 1) / count[element] * chord
+        low, high, element = start, end, np.arange(len(start))
+        share = np.maximum(*map(np.abs, lattice.reduced.fractional(end - start)))
+        if share.max() > _LONGEST:
+            count = np.maximum(np.ceil(share / _LONGEST), 1.0).astype(np.intp)
+            part, element = counting(count)
+            step = ((end - start) / count)[element]
+            low, share = start[element] + part * step, share / count
+            high = low + step
         middle = (low + high) / 2
         vector = towards_zero(lattice, middle)
         low, high = low - vector, high - vector
         if len(low) > _FEW:
             order = z_order(middle - vector)
             low, high, element = low[order], high[order], element[order]
-        return cls(low, high - low, element, reach=0.5 + float((share / count).max()) / 2)
+        return cls(low, high - low, element, reach=0.5 + float(share.max()) / 2)
 
     @cached_property
     def levels(self) -> tuple[Boxes, ...]:

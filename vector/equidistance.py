@@ -14,7 +14,7 @@ from voronoi_tiles.base.box_join import z_order
 from voronoi_tiles.base.maps import Isometry, move
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.vector.all_arcs import AllArcs
-from voronoi_tiles.vector.box_tree import BoxTree, towards_zero
+from voronoi_tiles.vector.box_tree import BoxTree
 from voronoi_tiles.vector.nearest_copies import (
     Motions,
     NearestCopies,
@@ -33,11 +33,11 @@ _NEAR = 0.12  # of the cell's width: how far the compiled search moves on before
 _AT_ONCE = 1 << 20  # pairs of a point and an element: tens of megabytes
 
 _ARGUMENTS = (
-    *(kernels.INT, kernels.COMPLEXES, kernels.INT, kernels.COMPLEXES, kernels.COMPLEXES, kernels.BOOLS),
-    *(kernels.COMPLEXES, kernels.FLOATS, kernels.INTS, kernels.FLOAT, kernels.FLOAT),
+    *(kernels.INT, kernels.COMPLEXES, kernels.INTS),
+    *(kernels.INT, kernels.COMPLEXES, kernels.COMPLEXES, kernels.BOOLS, kernels.COMPLEXES),
+    *(kernels.INT, kernels.INT, kernels.FLOAT, kernels.FLOAT),
     *(kernels.INT, kernels.COMPLEXES, kernels.COMPLEXES, kernels.INTS),
-    *(kernels.INTS, kernels.COMPLEXES, kernels.COMPLEXES),
-    *(kernels.COMPLEXES, kernels.INTS, kernels.FLOATS),
+    *(kernels.INTS, kernels.COMPLEXES, kernels.COMPLEXES, kernels.FLOATS),
 )
 
 
@@ -51,11 +51,8 @@ def errors_of_distance(
     elements = [_elements(tile) for tile in tiles]
     start, end = (np.concatenate(ends) for ends in zip(*elements, strict=True))
     sites = Sites(np.repeat(np.arange(len(tiles)), [len(one) for one, _ in elements]), start, end - start)
-    # One node for each site, and the lattice vector that takes it near 0.
-    node = np.array([tile.nodes[0] for tile in tiles])
-    vector = towards_zero(lattice, node)
-    order = _side_by_side(arcs, node - vector)
-    of = np.repeat(order, len(_PARAMETERS))
+    order = _side_by_side(arcs, np.array([tile.nodes[0] for tile in tiles]))
+    of = order.repeat(len(_PARAMETERS))
     points = arcs.sample(_PARAMETERS)[order].ravel()
     tile = arcs.tile[of]
     operations = [lattice.isometry(operation) for operation in group.operations]
@@ -64,7 +61,6 @@ def errors_of_distance(
     beyond, first = neighbour[of], len(operations)
     by = first + beyond
     claims = Claims(
-        near=points - vector[tile],
         places=np.array((points, move(points, unit[by], shift[by], conj[by]))),
         sites=np.array((tile, np.array(site)[beyond])),
     )
@@ -90,11 +86,10 @@ def _side_by_side(arcs: AllArcs, places: Complexes) -> Ints:
 class Claims(NamedTuple):
     """Points of edges, n of them, and which two sites they claim to be as near to as to none.
 
-    `near` are the points, complex128 (n,), those of each tile moved by a lattice vector to where its site is near 0. In
-    `places`, complex128 (2, n), they stand in the places in which the sites `sites` (intp, 2 x n) are where they are.
+    In `places`, complex128 (2, n), the points stand in the places in which the sites `sites` (intp, 2 x n) are where
+    they are.
     """
 
-    near: Complexes
     places: Complexes
     sites: Ints
 
@@ -141,18 +136,17 @@ def distances_of_claims(
     """
     compiled = kernels.kernel("proof_nearest", *_ARGUMENTS)
     if compiled is None:
-        found = nearest_copies(lattice, motions, tree, claims.near, slack)
+        found = nearest_copies(lattice, motions, tree, claims.places[0], slack)
         among = (sites.among(found, *side) for side in zip(claims.places, claims.sites, strict=True))
         return np.stack((found.distance, *among))
     near = _NEAR * lattice.reduced.det / max(map(abs, lattice.reduced_basis))
-    result = np.empty((3, len(claims.near)))
+    count = claims.places.shape[1]
+    result = np.empty((3, count))
     failed = compiled(
-        *(len(claims.near), claims.near, len(motions[0]), *motions),
-        *(np.array(lattice.reduced_basis), np.array(lattice.reduced.fractional(np.array([1, 1j])))),
-        *(np.array(steps_around(lattice, tree, (_NEAR, _NEAR))), near, slack),
+        *(count, claims.places, claims.sites, len(motions[0]), *motions, np.array(lattice.reduced_basis)),
+        *(*steps_around(lattice, tree, (_NEAR, _NEAR)), near, slack),
         *(len(tree.start), tree.start, tree.chord, tree.element),
-        *(sites.site, sites.start, sites.chord),
-        *(claims.places, claims.sites, result),
+        *(sites.site, sites.start, sites.chord, result),
     )
     if failed:
         raise MemoryError

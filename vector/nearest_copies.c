@@ -278,18 +278,20 @@ static int descend(const Tree *tree, Complex middle, Known *known, Found found, 
 }
 
 /* For `count` points the distance from the nearest copy of any element, and the distances of their `places`, two rows,
-   from the nearest element of their `sites`, two rows, among the pairs found; `result` has three rows. `fractional` is
-   the matrix that gives coordinates of the reduced basis `basis`; copies are chosen anew where points are farther than
-   `near` from the place for which they were chosen, up to `steps` around it. 0 if all went well. */
-int64_t proof_nearest(int64_t count, const Complex *points, int64_t motions, const Complex *unit, const Complex *shift,
-                      const uint8_t *conj, const Complex *basis, const double *fractional, const int64_t *steps,
+   from the nearest element of their `sites`, two rows, among the pairs found; `result` has three rows. Copies are chosen
+   anew where points are farther than `near` from the place for which they were chosen: the motions followed by up to
+   m and n steps along the vectors of the reduced `basis`. The first row of places are the points. 0 if all went well. */
+int64_t proof_nearest(int64_t count, const Complex *places, const int64_t *sites, int64_t motions, const Complex *unit,
+                      const Complex *shift, const uint8_t *conj, const Complex *basis, int64_t m, int64_t n,
                       double near, double slack, int64_t elements, const Complex *start, const Complex *chord,
                       const int64_t *element, const int64_t *site, const Complex *site_start,
-                      const Complex *site_chord, const Complex *places, const int64_t *sites, double *result)
+                      const Complex *site_chord, double *result)
 {
+    const Complex *points = places, p = basis[0], q = basis[1];
+    double det = p.x * q.y - p.y * q.x;
     Tree tree;
     List entries = {NULL, 0, 0}, pairs = {NULL, 0, 0};
-    int64_t m = steps[0], n = steps[1], copies = motions * (2 * m + 1) * (2 * n + 1);
+    int64_t copies = motions * (2 * m + 1) * (2 * n + 1);
     Copy *copy = malloc((size_t)copies * sizeof(Copy));
     int64_t failed = !grow(&tree, elements, start, chord) || copy == NULL, chosen = 0, size;
     Complex anchor = {0.0, 0.0}, zero = {0.0, 0.0};
@@ -319,12 +321,11 @@ int64_t proof_nearest(int64_t count, const Complex *points, int64_t motions, con
             int64_t known_copies = 0;
             for (int64_t g = 0; g < motions; g++) {
                 Complex w = image(anchor, unit[g], shift[g], conj[g], zero);
-                double s = rint(fractional[0] * w.x + fractional[1] * w.y);
-                double t = rint(fractional[2] * w.x + fractional[3] * w.y);
+                double s = rint((w.x * q.y - w.y * q.x) / det), t = rint((p.x * w.y - p.y * w.x) / det);
                 for (int64_t i = -m; i <= m; i++)
                     for (int64_t j = -n; j <= n; j++) {
-                        double p = s + (double)i, q = t + (double)j;
-                        Copy next = {g, {p * basis[0].x + q * basis[1].x, p * basis[0].y + q * basis[1].y}, INFINITY};
+                        double x = s + (double)i, y = t + (double)j;
+                        Copy next = {g, {x * p.x + y * q.x, x * p.y + y * q.y}, INFINITY};
                         Complex from = {w.x - next.shift.x, w.y - next.shift.y};
                         for (int64_t box = tree.first[tree.levels - 1]; box < tree.first[tree.levels]; box++) {
                             double distance = look(&tree, tree.levels - 1, box, from).distance;

@@ -47,7 +47,7 @@ def problem(name: str, kind: str, number: int, seed: int) -> tuple[Any, ...]:
         points = np.round(2 * points) / 2
     motions = inverses([lattice.isometry(operation) for operation in GROUPS[name].operations])
     places = np.stack((points, move(points, *(part[-1] for part in motions))))
-    claims = Claims(points, places, random.integers(0, 3, (2, len(points))))
+    claims = Claims(places, random.integers(0, 3, (2, len(points))))
     return lattice, motions, BoxTree.of(lattice, start, end), Sites(site, start, end - start), claims, SLACK
 
 
