@@ -61,9 +61,8 @@ class AllArcs:
         # Three times a line's product; of a curve that of its chord, and twice those of its legs.
         u = np.concatenate((start, 2 * start, 2 * control[bent]))
         v = np.concatenate((end, np.where(bent, control, end), end[bent]))
-        gain, gain_error = _product(u.real, v.imag)
-        loss, loss_error = _product(u.imag, v.real)
-        return _sum(np.concatenate((gain, -loss)), float((gain_error - loss_error).sum()))
+        product, error = _product(np.concatenate((u.real, -u.imag)), np.concatenate((v.imag, v.real)))
+        return _sum(product, float(error.sum()))
 
     def sample(self, t: Floats) -> Complexes:
         """The points of all arcs at parameters t (k,) from 0 to less than 1, the start exactly: complex128 (n, k).

@@ -54,6 +54,8 @@ def _folded(arcs: AllArcs, limit: float) -> int:
     """The number of curves that turn back upon themselves: their control point lies beyond an end, on its line."""
     u, v = arcs.control - arcs.start, arcs.end - arcs.control
     turned = np.flatnonzero(u.real * v.real + u.imag * v.imag < 0.0)
+    if not len(turned):
+        return 0
     turned = turned[np.minimum(np.abs(u[turned]), np.abs(v[turned])) > 2 * limit]
     return int((areas(arcs.start[turned], arcs.control[turned], arcs.end[turned]) == 0.0).sum())
 

@@ -328,9 +328,10 @@ int64_t proof_nearest(int64_t count, const Complex *places, const int64_t *sites
                         Copy next = {g, {x * p.x + y * q.x, x * p.y + y * q.y}, INFINITY};
                         Complex from = {w.x - next.shift.x, w.y - next.shift.y};
                         for (int64_t box = tree.first[tree.levels - 1]; box < tree.first[tree.levels]; box++) {
-                            double distance = look(&tree, tree.levels - 1, box, from).distance;
-                            next.nearest = distance < next.nearest ? distance : next.nearest;
+                            double nearer = square(tree.box + box, from);
+                            next.nearest = nearer < next.nearest ? nearer : next.nearest;
                         }
+                        next.nearest = sqrt(next.nearest);
                         /* The nearest first. */
                         int64_t place = known_copies++;
                         for (; place > 0 && copy[place - 1].nearest > next.nearest; place--)
