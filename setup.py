@@ -29,6 +29,7 @@ SOURCES = [
     "raster/block_lists.c",
     "vector/cells/cells.c",
     "vector/nearest_copies.c",
+    "vector/strayed.c",
 ]
 """The C files, each beside what it computes in numpy; a new one is a line here."""
 

@@ -14,6 +14,7 @@ from voronoi_tiles.base.box_join import z_order
 from voronoi_tiles.base.maps import Isometry, move
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.vector.all_arcs import AllArcs
+from voronoi_tiles.vector.all_nodes import AllNodes
 from voronoi_tiles.vector.box_tree import BoxTree
 from voronoi_tiles.vector.nearest_copies import (
     Motions,
@@ -42,15 +43,14 @@ _ARGUMENTS = (
 
 
 def errors_of_distance(
-    group: WallpaperGroup, lattice: Lattice, tiles: Sequence[LocalTile], arcs: AllArcs, limit: float
+    group: WallpaperGroup, lattice: Lattice, tiles: Sequence[LocalTile], nodes: AllNodes, arcs: AllArcs, limit: float
 ) -> tuple[float, float]:
     """The largest error of equidistance, and by how much any copy is too near, in units, over points of all edges.
 
-    `arcs` are those of the tiles, `limit` is what the proof accepts of either.
+    `nodes` and `arcs` are those of the tiles, `limit` is what the proof accepts of either.
     """
-    elements = [_elements(tile) for tile in tiles]
-    start, end = (np.concatenate(ends) for ends in zip(*elements, strict=True))
-    sites = Sites(np.repeat(np.arange(len(tiles)), [len(one) for one, _ in elements]), start, end - start)
+    owner, start, end = nodes.elements()
+    sites = Sites(owner, start, end - start)
     order = _side_by_side(arcs, np.array([tile.nodes[0] for tile in tiles]))
     of = order.repeat(len(_PARAMETERS))
     points = arcs.sample(_PARAMETERS)[order].ravel()
@@ -151,15 +151,6 @@ def distances_of_claims(
     if failed:
         raise MemoryError
     return result
-
-
-def _elements(tile: LocalTile) -> tuple[Complexes, Complexes]:
-    """The two ends of the site's elements: of its segments, and twice the same of nodes that are in none."""
-    alone = np.ones(len(tile.nodes), bool)
-    alone[tile.segments] = False
-    points = tile.nodes[alone]
-    start, end = tile.nodes[tile.segments].T
-    return np.concatenate((start, points)), np.concatenate((end, points))
 
 
 def _neighbours(lattice: Lattice, tiles: Sequence[LocalTile]) -> tuple[Ints, list[int], list[Isometry]]:

@@ -21,6 +21,7 @@ from voronoi_tiles.base.tolerance import PROOF_LIMIT
 from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.vector.all_arcs import AllArcs
+from voronoi_tiles.vector.all_nodes import AllNodes
 from voronoi_tiles.vector.crossings import count_crossings
 from voronoi_tiles.vector.equidistance import errors_of_distance
 from voronoi_tiles.vector.strayed import strayed_parts
@@ -106,15 +107,16 @@ def prove(group: WallpaperGroup, lattice: Lattice, records: Sequence[TileRecord]
     size = max(abs(lattice.a), abs(lattice.b))
     tiles = [record.local() for record in records]
     arcs = AllArcs.of([tile.outline for tile in tiles])
+    nodes = AllNodes.of(tiles)
     copies = np.array([group.order // len(record.symmetry) for record in records])
-    equidistance, emptiness = errors_of_distance(group, lattice, tiles, arcs, PROOF_LIMIT * size)
+    equidistance, emptiness = errors_of_distance(group, lattice, tiles, nodes, arcs, PROOF_LIMIT * size)
     return ProofReport(
         area=abs(arcs.area(copies) - lattice.det) / lattice.det,
         equidistance=equidistance / size,
         emptiness=emptiness / size,
         open_joints=open_joints(arcs),
         crossings=count_crossings(arcs, size),
-        strayed=strayed_parts(tiles, arcs, size),
+        strayed=strayed_parts(tiles, nodes, arcs, size),
         unshared=_unshared(arcs, records[0].tessellation.counterparts()),
     )
 

@@ -6,9 +6,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from voronoi_tiles.base import kernels
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, owned_ranges
 from voronoi_tiles.base.components import components
 from voronoi_tiles.vector.all_arcs import AllArcs
+from voronoi_tiles.vector.all_nodes import AllNodes
 from voronoi_tiles.vector.nearest import distance_to_arcs
 from voronoi_tiles.vector.outline import Outline
 from voronoi_tiles.vector.tessellation import LocalTile
@@ -17,23 +19,45 @@ from voronoi_tiles.vector.tessellation import LocalTile
 _UNDECIDED = 1e-7
 
 
-def strayed_parts(tiles: Sequence[LocalTile], arcs: AllArcs, size: float) -> int:
+_ARGUMENTS = (
+    *(kernels.INT, kernels.COMPLEXES, kernels.INTS, kernels.INT, kernels.INTS),
+    *(kernels.INT, kernels.COMPLEXES, kernels.COMPLEXES, kernels.COMPLEXES, kernels.BOOLS, kernels.INTS),
+    kernels.INTS,
+)
+
+
+def strayed_parts(tiles: Sequence[LocalTile], nodes: AllNodes, arcs: AllArcs, size: float) -> int:
     """The number of connected parts of sites around which the outlines of their tiles do not run exactly once.
 
-    `arcs` are those of the tiles, `size` is the length of the cell's longer vector. A part meets no edge, so one of its
-    nodes stands for all. Where copies are a distance d apart, the edge between them is known to eps R^2 / d at a
-    distance R: a node nearer to an outline than the root of eps times the cell cannot be told to be inside or outside,
-    and is passed over.
+    `nodes` and `arcs` are those of the tiles, `size` is the length of the cell's longer vector. A part meets no edge,
+    so one of its nodes stands for all. Where copies are a distance d apart, the edge between them is known to
+    eps R^2 / d at a distance R: a node nearer to an outline than the root of eps times the cell cannot be told to be
+    inside or outside, and is passed over.
     """
-    counts = np.array([len(tile.nodes) for tile in tiles])
-    before = (np.cumsum(counts) - counts).tolist()
-    ends = np.concatenate([tile.segments + first for tile, first in zip(tiles, before, strict=True)])
-    # The least node of each part.
-    chosen = np.flatnonzero(components(int(counts.sum()), *ends.T) == np.arange(counts.sum()))
-    nodes = np.concatenate([tile.nodes for tile in tiles])[chosen]
-    of = np.repeat(np.arange(len(tiles)), counts)[chosen]
-    outside = np.flatnonzero(winding_numbers(arcs, nodes, of) != 1)
-    return sum(_is_far(tiles[of[k]].outline, nodes[k], _UNDECIDED * size) for k in outside.tolist())
+    outside = np.flatnonzero(windings_of_parts(nodes, arcs) != 1)
+    return sum(_is_far(tiles[nodes.tile[k]].outline, nodes.position[k], _UNDECIDED * size) for k in outside.tolist())
+
+
+def windings_of_parts(nodes: AllNodes, arcs: AllArcs) -> Ints:
+    """How often outlines run counter-clockwise around the parts of their sites: intp (n,), of each part's least node.
+
+    For all other nodes it is 1. A compiled kernel gives the same.
+    """
+    compiled = kernels.kernel("proof_windings", *_ARGUMENTS)
+    count = len(nodes.position)
+    if compiled is None:
+        result = np.ones(count, np.intp)
+        part = np.flatnonzero(components(count, *nodes.segments.T) == np.arange(count))
+        result[part] = winding_numbers(arcs, nodes.position[part], nodes.tile[part])
+        return result
+    result = np.empty(count, np.intp)
+    failed = compiled(
+        *(count, nodes.position, nodes.tile, len(nodes.segments), nodes.segments),
+        *(len(arcs), arcs.start, arcs.control, arcs.end, arcs.curved, arcs.tile, result),
+    )
+    if failed:
+        raise MemoryError
+    return result
 
 
 def _is_far(outline: Outline, point: complex, distance: float) -> bool:

@@ -14,6 +14,7 @@ from voronoi_tiles.base.maps import move
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.groups.wallpaper import GROUPS
 from voronoi_tiles.vector.all_arcs import AllArcs
+from voronoi_tiles.vector.all_nodes import AllNodes
 from voronoi_tiles.vector.box_tree import BoxTree
 from voronoi_tiles.vector.equidistance import Claims, Sites, distances_of_claims, errors_of_distance
 from voronoi_tiles.vector.nearest_copies import distances, inverses
@@ -92,5 +93,6 @@ def test_what_is_no_number_is_no_small_error() -> None:
         start[2] = wrong
         vars(tile)["outline"] = replace(tile.outline, start=start)
         with np.errstate(invalid="ignore"):
-            error, _ = errors_of_distance(read.group, read.lattice, [tile], AllArcs.of([tile.outline]), 1e-11)
+            of_tile = [tile], AllNodes.of([tile]), AllArcs.of([tile.outline])
+            error, _ = errors_of_distance(read.group, read.lattice, *of_tile, 1e-11)
         assert not error <= 1

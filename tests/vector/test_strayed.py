@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,9 +12,10 @@ from numpy.typing import NDArray
 
 from voronoi_tiles.paths.winding import winding
 from voronoi_tiles.vector.all_arcs import AllArcs
+from voronoi_tiles.vector.all_nodes import AllNodes
 from voronoi_tiles.vector.arcs import Arc, LineArc, ParabolaArc
 from voronoi_tiles.vector.outline import Outline
-from voronoi_tiles.vector.strayed import strayed_parts, winding_numbers
+from voronoi_tiles.vector.strayed import strayed_parts, winding_numbers, windings_of_parts
 
 
 @dataclass(frozen=True)
@@ -60,15 +62,38 @@ def test_points_on_chords(bulge: float, turn: complex) -> None:
         assert winding_number(Outline.from_rings([ring]), turn * x) == (bulge > 0)
 
 
-def test_parts_that_strayed() -> None:
+@pytest.mark.parametrize("path", ["as it is", "numpy"])
+def test_parts_that_strayed(path: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Each connected part counts once, one on the outline not at all, and those of another tile as well."""
+    if path == "numpy":
+        monkeypatch.setenv("VORONOI_TILES_KERNELS", path)
+
+    def strayed(*tiles: _SiteInOutline) -> int:
+        given: Any = tiles
+        return strayed_parts(given, AllNodes.of(given), AllArcs.of([tile.outline for tile in tiles]), 10.0)
+
     square = Outline.from_rings([polygon(0j, 10 + 0j, 10 + 10j, 10j)])
     nodes = np.array([1 + 1j, 2 + 2j, 12 + 2j, 13 + 2j, 5 - 3j, 10 + 5j, 10 + 1e-9 + 4j, -1 + 5j])
     segments = np.array([[0, 1], [3, 2]])
     inside = _SiteInOutline(np.array([5 + 5j]), np.zeros((0, 2), np.intp), square)
-    tiles = [inside, _SiteInOutline(nodes, segments, square)]
-    arcs = AllArcs.of([square, square])
-    assert strayed_parts(tiles, arcs, 10.0) == 3  # type: ignore[arg-type]
-    assert strayed_parts(tiles[:1], AllArcs.of([square]), 10.0) == 0  # type: ignore[arg-type]
+    assert strayed(inside, _SiteInOutline(nodes, segments, square)) == 3
+    assert strayed(inside) == 0
     turned = Outline.from_rings([polygon(0j, 10j, 10 + 10j, 10 + 0j)])
-    assert strayed_parts(tiles[:1], AllArcs.of([turned]), 10.0) == 1  # type: ignore[arg-type]
+    assert strayed(_SiteInOutline(inside.nodes, inside.segments, turned)) == 1
+
+
+@pytest.mark.usefixtures("compiled")
+@pytest.mark.parametrize("seed", range(4))
+def test_the_kernel_gives_the_same(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of outlines that cross themselves at will; many nodes lie on them or at the heights of their ends."""
+    random = np.random.default_rng(seed)
+    tiles: Any = []
+    for number in random.integers(1, 40, 12).tolist():
+        nodes = np.round(2 * random.uniform(-6, 6, number)) / 2 + 1j * random.integers(-6, 7, number)
+        segments = random.integers(0, number, (int(random.integers(0, number)), 2))
+        tiles.append(_SiteInOutline(nodes, segments, wild(random, int(random.integers(2, 30)))))
+    nodes, arcs = AllNodes.of(tiles), AllArcs.of([tile.outline for tile in tiles])
+    compiled = windings_of_parts(nodes, arcs)
+    monkeypatch.setenv("VORONOI_TILES_KERNELS", "numpy")
+    assert compiled.tolist() == windings_of_parts(nodes, arcs).tolist()
+    assert len(set(compiled.tolist())) > 4
