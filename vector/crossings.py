@@ -1,8 +1,9 @@
 """Where an outline crosses itself.
 
-Only arcs whose boxes meet are looked at. Of few arcs these are boxes with upright sides, of each pair; of many, boxes
-that lie as the arcs do, around groups of arcs first, and a run of arcs that all go to the right, or all up, cannot
-cross itself. Whether chords cross is decided by the exact signs of areas.
+Only arcs whose boxes meet are looked at. These boxes have upright sides, and are passed from left to right; where many
+are above each other, as of long teeth that lean, they lie as the arcs do, around groups of arcs first, and a run of
+arcs that all go to the right, or all up, cannot cross itself. Whether chords cross is decided by the exact signs of
+areas.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from voronoi_tiles.base.tolerance import EPSILON, PROOF_LIMIT
 from voronoi_tiles.vector.all_arcs import AllArcs
 from voronoi_tiles.vector.box_tree import Boxes, boxes_around
 
-_FEW = 1 << 14  # pairs of arcs: up to so many are looked at without groups
+_FEW = 6  # arcs above or below an arc, on average: of more of them groups are made
 _WIDTH = 8  # consecutive arcs of a group, and groups of a larger group
 _MARGIN = 1e-9  # of boxes, relative to the extent of all
 _AT_ONCE = 1 << 15  # pairs of groups: their parts' take tens of megabytes
@@ -185,22 +186,22 @@ def _cross(u: Complexes, v: Complexes) -> Floats:
 
 def candidate_pairs(arcs: AllArcs) -> tuple[Ints, Ints]:
     """The pairs i < j of arcs of one outline that may cross."""
-    after, last = np.arange(1, len(arcs) + 1), np.searchsorted(arcs.tile, arcs.tile, side="right")
-    return _of_all(arcs, *owned_ranges(after, last)) if (last - after).sum() <= _FEW else _of_groups(arcs)
-
-
-def _of_all(arcs: AllArcs, j: Ints, i: Ints) -> tuple[Ints, Ints]:
-    """Those of the pairs whose upright boxes have a point in common that is on no side of either.
-
-    On a side of its box an arc has but an end. A box without width or height has no such sides.
-    """
     points = np.array((arcs.start, arcs.control, arcs.end))
-    for coordinate in (points.real, points.imag):
-        low, high = coordinate.min(axis=0), coordinate.max(axis=0)
-        one_low, one_high, two_low, two_high = low[i], high[i], low[j], high[j]
-        meet = (one_low < two_high) & (two_low < one_high) | (one_low == two_high) & (two_low == one_high)
+    left, right = points.real.min(axis=0), points.real.max(axis=0)
+    # Each arc with those of its tile that begin farther to the right, before it ends.
+    order = np.lexsort((left, arcs.tile))
+    tile, begin = arcs.tile[order], np.arange(1, len(arcs) + 1)
+    end = np.searchsorted(tile + 1j * left[order], tile + 1j * right[order], side="right")
+    end = np.maximum(end, begin)  # where a result is wrong, and no number
+    if (end - begin).sum() > _FEW * len(arcs):
+        return _of_groups(arcs)
+    later, earlier = owned_ranges(begin, end)
+    i, j = order[earlier], order[later]
+    for low, high in ((left, right), (points.imag.min(axis=0), points.imag.max(axis=0))):
+        # On a side of its upright box an arc has but an end; a box without width or height has no such sides.
+        meet = (low[i] < high[j]) & (low[j] < high[i]) | (low[i] == high[j]) & (low[j] == high[i])
         i, j = i[meet], j[meet]
-    return i, j
+    return np.minimum(i, j), np.maximum(i, j)
 
 
 def _of_groups(arcs: AllArcs) -> tuple[Ints, Ints]:

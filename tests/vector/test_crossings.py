@@ -19,10 +19,10 @@ from voronoi_tiles.vector.outline import Outline
 SIZE = 100.0
 
 
-@pytest.fixture(autouse=True, params=["few", "many"])
+@pytest.fixture(autouse=True, params=["swept", "in groups"])
 def _search(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Few arcs are looked at as few, and as if they were many."""
-    if request.param == "many":
+    """Arcs are looked at as they are, and as if many were above each other."""
+    if request.param == "in groups":
         monkeypatch.setattr(crossings, "_FEW", -1)
 
 
