@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import fsum
+from math import fsum, isnan
 
 import numpy as np
 
@@ -108,4 +108,5 @@ def _sum(values: Floats, error: float) -> float:
         part = total - a
         error += float(((a - (total - part)) + (b - part)).sum())
         values = np.append(total, rest)
-    return fsum([*values.tolist(), error])
+    # The error of a product that is no number is none.
+    return error if isnan(error) else fsum([*values.tolist(), error])

@@ -54,6 +54,8 @@ def errors_of_distance(
     order = _side_by_side(arcs, np.array([tile.nodes[0] for tile in tiles]))
     of = order.repeat(len(_PARAMETERS))
     points = arcs.sample(_PARAMETERS)[order].ravel()
+    if not np.isfinite(points).all():  # of a result that is wrong
+        return np.inf, np.inf
     tile = arcs.tile[of]
     operations = [lattice.isometry(operation) for operation in group.operations]
     neighbour, site, isometries = _neighbours(lattice, tiles)

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from helpers.outlines import RIGHT
+from helpers.outlines import RIGHT, polygon
 
 from voronoi_tiles.vector.all_arcs import AllArcs
 from voronoi_tiles.vector.arcs import Arc, LineArc, ParabolaArc
@@ -54,3 +54,11 @@ def test_arcs_stand_outline_after_outline() -> None:
     assert arcs.ring_offsets.tolist() == [0, 2, 3, 4]
     assert arcs.tile.tolist() == [0, 0, 0, 1]
     assert arcs.at(np.array([0, 3, 3, 3]), np.array([0.25, 0.0, 0.5, 1.0])).tolist() == [0.25, 0, 1 + 0.5j, 2]
+
+
+@pytest.mark.parametrize("wrong", [complex("nan"), complex("inf"), complex(0, float("-inf"))])
+@pytest.mark.filterwarnings("ignore:invalid value:RuntimeWarning")
+def test_the_area_of_what_is_no_number_is_none(wrong: complex) -> None:
+    """Neither a number, which could be right, nor an error."""
+    arcs = AllArcs.of([Outline.from_rings([polygon(0j, 3 + 0j, wrong, 2 + 5j)])])
+    assert np.isnan(arcs.area(np.array([4])))
