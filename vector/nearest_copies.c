@@ -136,10 +136,12 @@ static Box box_around(int64_t count, const Complex *start, const Complex *chord)
         sum.y += 2.0 * x * y;
     }
     double size = sqrt(sum.x * sum.x + sum.y * sum.y), u = 1.0, v = 0.0;
-    if (size > 0.0) {
+    if (size > 0.0 && sum.x >= 0.0) {
         u = sqrt((1.0 + sum.x / size) / 2.0);
+        v = sum.y / size / (2.0 * u);
+    } else if (size > 0.0) {
         v = sqrt((1.0 - sum.x / size) / 2.0);
-        v = sum.y < 0.0 ? -v : v;
+        u = sum.y / size / (2.0 * v);
     }
     for (int64_t k = 0; k < 2 * count; k++) {
         Complex end = end_of(start, chord, k);
