@@ -100,5 +100,6 @@ def test_a_kernel_takes_only_the_arrays_that_it_is_made_for(wrong: np.ndarray) -
     with pytest.raises(TypeError, match="contiguous arrays of float64"):
         kernels.FLOATS.from_param(wrong)
     right = np.array([1.0, 2.0, 4.0])
-    address = kernels.FLOATS.from_param(right)
-    assert [*ctypes.cast(address, ctypes.POINTER(ctypes.c_double))[0:3]] == [1.0, 2.0, 4.0]
+    for right.flags.writeable in (True, False):
+        address = kernels.FLOATS.from_param(right)
+        assert [*ctypes.cast(address, ctypes.POINTER(ctypes.c_double))[0:3]] == [1.0, 2.0, 4.0]
