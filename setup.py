@@ -28,6 +28,7 @@ SOURCES = [
     "voronoi_tiles/base/kernels.c",
     "raster/block_lists.c",
     "vector/cells/cells.c",
+    "vector/cells/hierarchy.c",
     "vector/nearest_copies.c",
     "vector/strayed.c",
 ]

@@ -11,7 +11,7 @@ import numpy as np
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
 from voronoi_tiles.base.tolerance import EPSILON
 from voronoi_tiles.vector.cells.half_edges import Contour
-from voronoi_tiles.vector.cells.hierarchy import Hierarchy
+from voronoi_tiles.vector.cells.hierarchy import FEW, Hierarchy
 from voronoi_tiles.vector.cells.images import Images
 from voronoi_tiles.vector.cells.pencils import Rows
 from voronoi_tiles.vector.cells.provisional import Bounds, Provisional, bisector
@@ -21,7 +21,6 @@ from voronoi_tiles.vector.copies import Copies
 _SLACK = 1e-9
 # Corners begin with the elements that stand so far beside theirs, where there are more elements than a few.
 _BESIDE = np.array([-2, -1, 1, 2])
-_FEW = 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,10 +68,10 @@ def move_levels(hierarchy: Hierarchy, copies: Copies) -> list[Level]:
     return result
 
 
-def uncertainty(hierarchy: Hierarchy, copies: Copies) -> float:
-    """By how much coordinates, and their differences, may be off: 16 ulps of the largest."""
-    top = Images.of(hierarchy.bundle[: hierarchy.level[1]], copies)
-    return 16.0 * EPSILON * float(np.abs(top.moved(hierarchy.start[: hierarchy.level[1]], copies)).max())
+def uncertainty(top: Level) -> float:
+    """By how much coordinates, and their differences, may be off: 16 ulps of the largest, among the boxes on top."""
+    x, y = top.start.real, top.start.imag
+    return 16.0 * EPSILON * float(np.sqrt(x * x + y * y).max())
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,7 +94,7 @@ def seeds_of(rows: Rows, contour: Contour, hierarchy: Hierarchy) -> Complexes:
     elements are few this does not pay, and there are none.
     """
     count = len(hierarchy.element)
-    if count <= _FEW:
+    if count <= FEW:
         return np.zeros((len(rows), 0), complex)
     half_edges = len(contour.source)
     element = np.where(rows.corner < half_edges, rows.corner >> 1, half_edges // 2 + (rows.corner - half_edges) // 4)

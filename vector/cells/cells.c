@@ -54,7 +54,8 @@ typedef struct {
     const double *radius;
     const point *anchor_start, *anchor_end;
     const int64_t *box_bundle, *child, *level, *element;
-    double covering_radius, rounding;
+    double covering_radius;
+    double rounding; /* set with the pairs of the first level */
 } input;
 
 /* numpy's minimum and maximum hand NaN on. */
@@ -164,7 +165,7 @@ static box box_of(const input *in, int64_t place)
     d.direction.y = chord.y * inverse;
     d.middle.x = (start.x + end.x) / 2;
     d.middle.y = (start.y + end.y) / 2;
-    d.radius = d.length / 2 + in->radius[place] + in->rounding;
+    d.radius = d.length / 2 + in->radius[place];
     return d;
 }
 
@@ -439,7 +440,7 @@ static void set_pair(const input *in, pair *c, isometry to, const box *d, int64_
 static int is_far(const provisional *p, isometry to, const box *d)
 {
     point away = minus(move(to, d->middle), p->around_middle);
-    double reach = (p->around + d->radius) * (1.0 + SLACK);
+    double reach = (p->around + d->radius + p->in->rounding) * (1.0 + SLACK);
     return away.x * away.x + away.y * away.y > reach * reach;
 }
 
@@ -512,17 +513,23 @@ static void swap(work *w)
     w->pairs[1] = room;
 }
 
-/* The pairs with which every row begins: the boxes of the first level in all copies. */
-static int set_tops(work *w, const input *in)
+/* The pairs with which every row begins, the boxes of the first level in all copies; and by how much coordinates, and
+   their differences, may be off: 16 ulps of the largest. */
+static int set_tops(work *w, input *in)
 {
     int64_t copy, k, room = 0;
+    double farthest = 0.0;
     for (copy = 0; copy < in->copies; copy++)
         for (k = in->level[0]; k < in->level[1]; k++)
             if (in->box_bundle[k] == in->bundle[copy]) {
+                point start;
                 if (!grow(&w->top, &room, w->tops + 1, sizeof(pair)))
                     return 0;
-                set_pair(in, &w->top[w->tops++], of_copy(in, copy), &w->box[k], copy, k);
+                set_pair(in, &w->top[w->tops], of_copy(in, copy), &w->box[k], copy, k);
+                start = w->top[w->tops++].start;
+                farthest = most(farthest, sqrt(start.x * start.x + start.y * start.y));
             }
+    in->rounding = 16.0 * EPSILON * farthest;
     return 1;
 }
 
@@ -1141,7 +1148,7 @@ int64_t cells_bound(int64_t rows, const int64_t *half_edge, const int64_t *corne
                     const int64_t *bundle, int64_t levels, const double *start, const double *end,
                     const double *radius, const double *anchor_start, const double *anchor_end,
                     const int64_t *box_bundle, const int64_t *child, const int64_t *level, const int64_t *element,
-                    double covering_radius, double rounding, int64_t first, int64_t capacity, int64_t *out_row,
+                    double covering_radius, int64_t first, int64_t capacity, int64_t *out_row,
                     int64_t *out_copy, int64_t *out_item, double *out_begin, double *out_end, int64_t *progress)
 {
     input in = {half_edge, corner, (const point *)origin, (const point *)axis, low, high, (const point *)base0,
@@ -1150,7 +1157,7 @@ int64_t cells_bound(int64_t rows, const int64_t *half_edge, const int64_t *corne
                 (const point *)direction, length, corner_node, (const point *)arriving, (const point *)leaving, turn,
                 bounding, copies, bundles, (const point *)unit, (const point *)shift, conj, bundle, levels,
                 (const point *)start, (const point *)end, radius, (const point *)anchor_start,
-                (const point *)anchor_end, box_bundle, child, level, element, covering_radius, rounding};
+                (const point *)anchor_end, box_bundle, child, level, element, covering_radius, 0.0};
     output out = {out_row, out_copy, out_item, (point *)out_begin, (point *)out_end, 0, capacity};
     work w;
     int64_t row, status = 0;

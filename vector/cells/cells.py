@@ -45,7 +45,7 @@ _ARGUMENTS: tuple[Any, ...] = (
     *(INT, INTS, INTS, COMPLEXES, COMPLEXES, FLOATS, FLOATS, *[COMPLEXES] * 6, FLOATS),
     *(INT, COMPLEXES, INTS, INTS, COMPLEXES, FLOATS, INTS, COMPLEXES, COMPLEXES, FLOATS, BOOLS),
     *(INT, INT, COMPLEXES, COMPLEXES, BOOLS, INTS),
-    *(INT, COMPLEXES, COMPLEXES, FLOATS, COMPLEXES, COMPLEXES, INTS, INTS, INTS, INTS, FLOAT, FLOAT),
+    *(INT, COMPLEXES, COMPLEXES, FLOATS, COMPLEXES, COMPLEXES, INTS, INTS, INTS, INTS, FLOAT),
     *(INT, INT, INTS, INTS, INTS, COMPLEXES, COMPLEXES, INTS),
 )
 _UNBOUNDED, _TOUCHING = -1, -2
@@ -79,12 +79,11 @@ def bound_cells(rows: Rows, contour: Contour, copies: Copies, node_bundle: Ints,
     unbounded, TouchingElementsError where a node lies on another copy.
     """
     hierarchy = build_hierarchy(contour, node_bundle)
-    rounding = uncertainty(hierarchy, copies)
     compiled = kernel("cells_bound", *_ARGUMENTS)
     if compiled is not None:
-        return _bound_compiled(compiled, rows, contour, copies, hierarchy, covering_radius, rounding)
+        return _bound_compiled(compiled, rows, contour, copies, hierarchy, covering_radius)
     around, levels = surround(contour, copies, node_bundle), move_levels(hierarchy, copies)
-    seeds, found = seeds_of(rows, contour, hierarchy), []
+    rounding, seeds, found = uncertainty(levels[0]), seeds_of(rows, contour, hierarchy), []
     waiting = [(start, min(start + _CHUNK, len(rows))) for start in range(0, len(rows), _CHUNK)][::-1]
     while waiting:
         start, stop = waiting.pop()
@@ -109,11 +108,10 @@ def _bound_compiled(
     copies: Copies,
     hierarchy: Hierarchy,
     covering_radius: float,
-    rounding: float,
 ) -> Parts:
     """The same by the compiled kernel, row by row."""
     of_rows = [getattr(rows, name) for name in Rows.__slots__]
-    of_contour = [np.ascontiguousarray(getattr(contour, name)) for name in _OF_CONTOUR]
+    of_contour = [getattr(contour, name) for name in _OF_CONTOUR]
     of_copies = copies.bundles, copies.unit, copies.shift, copies.conj, copies.bundle
     of_hierarchy = [getattr(hierarchy, name) for name in Hierarchy.__slots__]
     found, first, progress, more = [], 0, np.zeros(2, np.intp), _ROOM
@@ -123,7 +121,7 @@ def _bound_compiled(
         begin, end = np.empty(room, complex), np.empty(room, complex)
         status = compiled(
             *(len(rows), *of_rows, len(contour.source), *of_contour, len(copies), *of_copies),
-            *(len(hierarchy.level) - 1, *of_hierarchy, covering_radius, rounding),
+            *(len(hierarchy.level) - 1, *of_hierarchy, covering_radius),
             *(first, room, row, copy, item, begin, end, progress),
         )
         if status:

@@ -72,7 +72,7 @@ def trace_contour(nodes: Complexes, segments: Ints) -> Contour:
     """
     count = len(segments)
     source = segments.reshape(-1)
-    target = segments[:, ::-1].reshape(-1)
+    target = np.ascontiguousarray(segments[:, ::-1]).reshape(-1)
     step = nodes[target] - nodes[source]
     length = np.abs(step)
     direction = step / length
