@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, offsets_of
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, offsets_of, starts
+from voronoi_tiles.base.kernels import BOOLS, COMPLEXES, INT, INTS, kernel
 from voronoi_tiles.base.neighbours import Neighbours
 from voronoi_tiles.base.tolerance import SAME_POINT
 from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, modulo_lattice
+
+# Copies for which the compiled kernel has room at first, and what it takes, as in copies.c.
+_ROOM = 100
+_ARGUMENTS: tuple[Any, ...] = (
+    *(INT, INTS, COMPLEXES, BOOLS, INTS, INT, COMPLEXES, INTS, COMPLEXES, INTS),
+    *(INT, INTS, COMPLEXES, COMPLEXES, BOOLS, INTS),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -193,26 +203,51 @@ def copies_near(action: Action, placed: list[Placed], bundle: Ints) -> Copies:
     translated copy would be nearer. So z - y lies in 2 V: few copies are left, however long or skew the cell. It is
     asked of what sites and copies extend over across the sides of V.
     """
-    p, q = action.lattice.reduced_basis
-    across = np.array([p, q, p + q if (p.conjugate() * q).real < 0 else p - q])[:, None]
     numbers = bundle.tolist()
     named = [placed[numbers.index(number)].representatives for number in range(max(numbers) + 1)]
-    of = np.repeat(np.arange(len(named)), [len(some) for some in named])
-    motions = np.array([motion for some in named for motion in some])
     linear = [action.linear[motion[:4]] for some in named for motion in some]
-    unit, conj = np.array([u for u, _ in linear]), np.array([c for _, c in linear])
+    motions = _Motions(
+        np.array([motion for some in named for motion in some]),
+        np.array([unit for unit, _ in linear]),
+        np.array([conj for _, conj in linear]),
+        np.repeat(np.arange(len(named)), [len(some) for some in named]),
+    )
+    nodes = np.concatenate([site.nodes for site in placed])
+    node_bundle = np.repeat(bundle, [len(site.nodes) for site in placed])
+    compiled = kernel("copies_near", *_ARGUMENTS)
+    near = _copies_near if compiled is None else partial(_copies_near_compiled, compiled)
+    return near(action, motions, nodes, node_bundle)
+
+
+class _Motions(NamedTuple):
+    """The motions of which copies are translates, bundle after bundle, the identity first in each.
+
+    `motion` (int64, n x 6) is z -> unit z, or unit conj(z) where `conj`, and a translation, of the bundle `bundle`
+    (complex128, bool and intp, n).
+    """
+
+    motion: npt.NDArray[np.int64]
+    unit: Complexes
+    conj: Bools
+    bundle: Ints
+
+
+def _copies_near(action: Action, motions: _Motions, nodes: Complexes, node_bundle: Ints) -> Copies:
+    """The copies of the sites with these nodes; `node_bundle` (intp, m) is the bundle of each."""
+    p, q = action.lattice.reduced_basis
+    across = np.array([p, q, p + q if (p.conjugate() * q).real < 0 else p - q])[:, None]
+    motion, unit, conj, of = motions
     # A moved point is along r where the point itself is along r moved back: r / unit, or its mirror image.
     along = across * unit.conj()
     along.imag[:, conj] *= -1.0
     low, high = np.empty((2, *along.shape))
-    for number in range(len(named)):
+    still = starts(of)
+    for number in of[still].tolist():
         chosen = of == number
-        nodes = np.concatenate([site.nodes for site, own in zip(placed, numbers, strict=True) if own == number])
-        low[:, chosen], high[:, chosen] = _extents(nodes, along[:, chosen])
-    still = np.searchsorted(of, np.arange(len(named)))  # the first motion of every bundle is the identity
+        low[:, chosen], high[:, chosen] = _extents(nodes[node_bundle == number], along[:, chosen])
     least, most = low[:, still].min(axis=1, keepdims=True), high[:, still].max(axis=1, keepdims=True)
     bound = np.abs(across) ** 2 * (1 + 1e-9) + (high - low + most - least) / 2
-    shift = action.cartesian(motions[:, 4] / 2, motions[:, 5] / 2)
+    shift = action.cartesian(motion[:, 4] / 2, motion[:, 5] / 2)
     away = _inner(across, shift) + (low + high - least - most) / 2
     # By the inverse of the Gram matrix: how many steps along p and q lead near, and how many there are to try.
     product = p.conjugate() * q
@@ -224,12 +259,27 @@ def copies_near(action: Action, placed: list[Placed], bundle: Ints) -> Copies:
     offset = (away - vectors @ near)[:, :, None] + (vectors @ steps)[:, None]
     which, step = np.nonzero((np.abs(offset) <= bound[:, :, None]).all(axis=0))
     steps = np.array(action.reduced).T @ (steps[:, step] - near[:, which].astype(int))
-    motions = motions[which]
-    motions[:, 4:] += 2 * steps.T
-    order = np.argsort((motions != IDENTITY).any(axis=1), kind="stable")
-    motions, which = motions[order], which[order]
-    shift = action.cartesian(motions[:, 4] / 2, motions[:, 5] / 2)
-    return Copies(motions, unit[which], shift, conj[which], of[which])
+    motion = motion[which]
+    motion[:, 4:] += 2 * steps.T
+    order = np.argsort((motion != IDENTITY).any(axis=1), kind="stable")
+    motion, which = motion[order], which[order]
+    shift = action.cartesian(motion[:, 4] / 2, motion[:, 5] / 2)
+    return Copies(motion, unit[which], shift, conj[which], of[which])
+
+
+def _copies_near_compiled(
+    compiled: Callable[..., int], action: Action, motions: _Motions, nodes: Complexes, node_bundle: Ints
+) -> Copies:
+    """The same by the compiled kernel."""
+    lattice = np.array([action.lattice.a, action.lattice.b, *action.lattice.reduced_basis])
+    given = len(motions.motion), *motions, len(nodes), nodes, node_bundle, lattice, np.array(action.reduced)
+    count, room = _ROOM, 0
+    while room < count:
+        room = count
+        motion, bundle = np.empty((room, 6), np.int64), np.empty(room, np.intp)
+        unit, shift, conj = np.empty(room, complex), np.empty(room, complex), np.empty(room, bool)
+        count = compiled(*given, room, motion, unit, shift, conj, bundle)
+    return Copies(motion[:count], unit[:count], shift[:count], conj[:count], bundle[:count])
 
 
 def _inner(one: Complexes, other: Complexes) -> Floats:
