@@ -29,6 +29,7 @@ SOURCES = [
     "raster/block_lists.c",
     "vector/cells/cells.c",
     "vector/cells/hierarchy.c",
+    "vector/cells/trace.c",
     "vector/copies.c",
     "vector/nearest_copies.c",
     "vector/strayed.c",

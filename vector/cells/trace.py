@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Ints, next_in_ring, starts
+from voronoi_tiles.base.kernels import BOOLS, COMPLEXES, FLOAT, INT, INTS, kernel
 from voronoi_tiles.base.neighbours import Neighbours
 from voronoi_tiles.vector.cells.cells import Parts
 from voronoi_tiles.vector.cells.half_edges import Contour
 from voronoi_tiles.vector.cells.pencils import Rows
+
+# What the compiled kernels take, as in trace.c; what they answer.
+_OF_LINKS: tuple[Any, ...] = (
+    *(INTS, INTS, INT, INTS, INTS, INTS, COMPLEXES, COMPLEXES, INT, INTS, INTS, INT, INTS, INTS, INT),
+    *(INTS, BOOLS, BOOLS, COMPLEXES, COMPLEXES, INTS),
+)
+_OF_RINGS: tuple[Any, ...] = (INT, INTS, BOOLS, COMPLEXES, INTS, INT, FLOAT, INTS, COMPLEXES, INTS)
+_OPEN = -1
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +40,22 @@ class OpenBoundaryError(ArithmeticError):
     """The parts do not close to rings, which happens only where copies touch or cross."""
 
 
+class _Links(NamedTuple):
+    """How the parts chain up; one entry for each.
+
+    `following` (intp) is the next part where that is plain from the order of the contour, else -1; `inner` tells which
+    face their own site, and `entered` (bool) which are the next one of some part. `start` and `end` (complex128) are
+    the ends counter-clockwise around the tile, `site` (intp) is whose tile that is.
+    """
+
+    following: Ints
+    inner: Bools
+    entered: Bools
+    start: Complexes
+    end: Complexes
+    site: Ints
+
+
 def trace_boundary(rows: Rows, contour: Contour, parts: Parts, node_site: Ints, bundles: int, null: float) -> Boundary:
     """The rings to which those parts chain up that face another site or copy.
 
@@ -37,26 +63,42 @@ def trace_boundary(rows: Rows, contour: Contour, parts: Parts, node_site: Ints, 
     nodes, and the first `bundles` copies are the sites where they were placed. Arcs whose ends are no farther apart
     than `null` are left out. Raises OpenBoundaryError where the parts do not close to rings, or a tile has none.
     """
-    straight = rows.straight[parts.row]
-    # Counter-clockwise around the tile, x falls along half-edges and rises along corners.
-    start, end = np.where(straight, parts.end, parts.begin), np.where(straight, parts.begin, parts.end)
-    node = np.concatenate((contour.source, contour.corner_node))
-    site = node_site[node[np.where(rows.straight, rows.half_edge, len(contour.source) + rows.corner)]][parts.row]
-    inner = (parts.copy < bundles) & (node_site[node[parts.item]] == site)
-    following = _links(rows, contour, parts, inner, straight)
-    outer = np.flatnonzero(~inner)
-    loose = outer[following[outer] < 0]
-    entered = np.zeros(len(inner), bool)
-    entered[following[outer][following[outer] >= 0]] = True
-    entries = outer[~entered[outer]]
+    links = _links(rows, contour, parts, node_site, bundles)
+    if (~links.inner & ((links.following < 0) | ~links.entered)).any():
+        _close(links)
+    return _rings(links, int(node_site[-1]) + 1, null)
+
+
+def _close(links: _Links) -> None:
+    """Chain up what faces other sites or copies and has no next part yet, in place; by where parts start and end."""
+    following, inner, entered, start, end, site = links
+    loose, entries = np.flatnonzero(~inner & (following < 0)), np.flatnonzero(~inner & ~entered)
     following[loose] = entries[_match(end[loose], start[entries], site[loose], site[entries])]
+
+
+def _rings(links: _Links, sites: int, null: float) -> Boundary:
+    """The rings to which the parts of so many sites chain up, each with its arcs that are longer than `null`."""
+    following, inner, _, start, _, site = links
+    compiled = kernel("trace_rings", *_OF_RINGS)
+    if compiled is None:
+        return _walk(links, sites, null)
+    part, vertex, ring = np.empty(len(site), np.intp), np.empty(len(site), complex), np.empty(len(site), np.intp)
+    count = compiled(len(site), following, inner.copy(), start, site, sites, null, part, vertex, ring)
+    if count < 0:
+        raise OpenBoundaryError if count == _OPEN else MemoryError
+    return Boundary(part[:count], vertex[:count], ring[:count])
+
+
+def _walk(links: _Links, sites: int, null: float) -> Boundary:
+    """The same without the kernel."""
+    following, inner, _, start, _, site = links
     # A walk along a permutation is a loop of look-ups: a list is quicker at it than any array trick.
     successor = following.tolist()
     seen = inner.tolist()
     order: list[int] = []
     ring: list[int] = []
     number = 0
-    for first in outer.tolist():
+    for first in np.flatnonzero(~inner).tolist():
         if seen[first]:
             continue
         k = first
@@ -66,15 +108,38 @@ def trace_boundary(rows: Rows, contour: Contour, parts: Parts, node_site: Ints, 
             ring.append(number)
             k = successor[k]
         number += 1
-    boundary = _without_null(np.array(order, np.intp), start[order], np.array(ring, np.intp), null)
-    if not np.bincount(site[boundary.part], minlength=node_site[-1] + 1).all():
+    part = np.array(order, np.intp)
+    boundary = _without_null(part, start[part], np.array(ring, np.intp), null)
+    if not np.bincount(site[boundary.part], minlength=sites).all():
         raise OpenBoundaryError
     return boundary
 
 
-def _links(rows: Rows, contour: Contour, parts: Parts, inner: Bools, straight: Bools) -> Ints:
-    """For each outer part the next one where that is plain from the order of the contour, else -1."""
+def _links(rows: Rows, contour: Contour, parts: Parts, node_site: Ints, bundles: int) -> _Links:
+    """How the parts chain up as far as that is plain from the order of the contour."""
+    compiled = kernel("trace_links", *_OF_LINKS)
+    if compiled is None:
+        return _plain_links(rows, contour, parts, node_site, bundles)
     count = len(parts.row)
+    (following, site), (inner, entered) = np.empty((2, count), np.intp), np.empty((2, count), np.bool_)
+    start, end = np.empty((2, count), complex)
+    links = _Links(following, inner, entered, start, end, site)
+    of_parts = (getattr(parts, name) for name in Parts.__slots__)
+    of_contour = len(contour.source), contour.source, contour.following, len(contour.corner_node), contour.corner_node
+    if compiled(rows.half_edge, rows.corner, count, *of_parts, *of_contour, node_site, bundles, *links):
+        raise MemoryError
+    return links
+
+
+def _plain_links(rows: Rows, contour: Contour, parts: Parts, node_site: Ints, bundles: int) -> _Links:
+    """The same without the kernel."""
+    count = len(parts.row)
+    straight = rows.straight[parts.row]
+    # Counter-clockwise around the tile, x falls along half-edges and rises along corners.
+    start, end = np.where(straight, parts.end, parts.begin), np.where(straight, parts.begin, parts.end)
+    node = np.concatenate((contour.source, contour.corner_node))
+    site = node_site[node[np.where(rows.straight, rows.half_edge, len(contour.source) + rows.corner)]][parts.row]
+    inner = (parts.copy < bundles) & (node_site[node[parts.item]] == site)
     following = np.full(count, -1)
     same = np.flatnonzero(parts.row[1:] == parts.row[:-1])
     falling, rising = same[straight[same]], same[~straight[same]]
@@ -104,7 +169,9 @@ def _links(rows: Rows, contour: Contour, parts: Parts, inner: Bools, straight: B
     lone = np.arange(half_edges, len(contour.corner_node))
     following[corner_last[lone]] = corner_first[lone - 1 + 4 * ((lone - half_edges) % 4 == 0)]
     following[inner | inner[following]] = -1
-    return following
+    entered = np.zeros(count, bool)
+    entered[following[following >= 0]] = True
+    return _Links(following, inner, entered, start, end, site)
 
 
 def _ends(owner: Ints, count: int, opening: Ints, closing: Ints, first: Ints, last: Ints) -> tuple[Ints, Ints]:
@@ -164,7 +231,8 @@ def _without_null(part: Ints, vertex: Complexes, ring: Ints, null: float) -> Bou
     """The boundary without arcs that have no length, and without rings that have no other."""
     while len(part):
         following = next_in_ring(np.append(starts(ring), len(ring)))
-        kept = np.abs(vertex[following] - vertex) > null
+        step = vertex[following] - vertex
+        kept = np.sqrt(step.real * step.real + step.imag * step.imag) > null
         if kept.all():
             break
         part, vertex, ring = part[kept], vertex[kept], ring[kept]
