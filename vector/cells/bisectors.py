@@ -350,25 +350,26 @@ def _below_bounds(rows: Rows, bounds: Bounds, functions: PartialQuadratics) -> I
     p, q = _coordinates(rows.axis, away)
     square = away.real**2 + away.imag**2
     of_half_edge, of_corner = _height_of_corner(p, np.where(straight, q, 1.0)), _distance_of_corner(p, q, square)
-    quadratics = [np.where(straight, *either) for either in zip(of_half_edge, of_corner, strict=True)]
+    a, b, c, m = (np.where(straight, *either) for either in zip(of_half_edge, of_corner, strict=True))
     # A point that is near is known to fewer digits.
     doubt = 4.0 * bounds.rounding / np.where(straight, q, np.sqrt(square))
     some = functions.take(index)
-    kept = np.isnan(bounds.point[0].real)[some.row]
-    ends = rows.low, *bounds.cut, rows.high
-    for k in range(3):
-        limits = tuple(coefficients[k] for coefficients in quadratics)
-        kept |= _below(rows, some, limits, doubt[k], ends[k], ends[k + 1])
+    ends = np.stack((rows.low, *bounds.cut, rows.high))
+    kept = _below(rows, some, (a, b, c, m), doubt, ends[:-1], ends[1:]).any(axis=0)
+    kept |= np.isnan(bounds.point[0].real)[some.row]
     return np.asarray(index[kept])
 
 
 def _below(
     rows: Rows, functions: PartialQuadratics, limits: Quadratics, doubt: Floats, begin: Floats, end: Floats
 ) -> Bools:
-    """Which functions somewhere between the begin and end of their row fall below its limit, give or take a doubt."""
+    """Which functions somewhere between the begin and end of their row fall below its limit, give or take a doubt.
+
+    Of a row there may be several limits, each with a doubt, a begin and an end, along a first axis.
+    """
     row = functions.row
-    low, high = np.maximum(functions.low, begin[row]), np.minimum(functions.high, end[row])
-    a0, b0, c0, m0 = (coefficient[row] for coefficient in limits)
+    low, high = np.maximum(functions.low, begin[..., row]), np.minimum(functions.high, end[..., row])
+    a0, b0, c0, m0 = (coefficient[..., row] for coefficient in limits)
     x, y = low - m0, high - m0
     limit_low, limit_high = c0 + x * (b0 + x * a0), c0 + y * (b0 + y * a0)
     u, v = low - functions.m, high - functions.m
@@ -383,4 +384,4 @@ def _below(
         dip = np.where(inside, over_low + slope * step / 2.0, over_low)
     least = np.minimum(np.minimum(over_low, over_high), dip)
     terms = np.abs(limit_low) + np.abs(limit_high) + np.where(rows.straight[row], 0.0, np.abs(a0) + np.abs(b0))
-    return np.asarray((least <= (_SLACK + doubt[row]) * terms) & (low <= high))
+    return np.asarray((least <= (_SLACK + doubt[..., row]) * terms) & (low <= high))

@@ -28,13 +28,17 @@ class Images:
     @classmethod
     def of(cls, bundle: Ints, copies: Copies) -> Images:
         """The images of things of these bundles, intp (k,), in the order of the things in each copy."""
+        things, several = len(bundle), len(copies)
+        if copies.bundles == 1:
+            rank, number = np.arange(things), np.arange(several)
+            return cls(np.tile(rank, several), np.repeat(number, things), number * things, rank)
         order = np.argsort(bundle, kind="stable")
         offsets = offsets_of(np.bincount(bundle, minlength=copies.bundles))
         count = np.diff(offsets)[copies.bundle]
         rank = np.empty_like(order)
         rank[order] = np.arange(len(order)) - np.repeat(offsets[:-1], np.diff(offsets))
         thing = order[ranges(offsets[copies.bundle], count)]
-        return cls(thing, np.repeat(np.arange(len(copies)), count), offsets_of(count)[:-1], rank)
+        return cls(thing, np.repeat(np.arange(several), count), offsets_of(count)[:-1], rank)
 
     def place(self, copy: Ints, thing: Ints) -> Ints:
         """Where the images of things in copies stand, intp (k,)."""
