@@ -102,15 +102,12 @@ def place(action: Action, sites: Sequence[NodedSite]) -> list[Placed]:
 
 def _nearly_fixed(action: Action, points: Complexes, within: float) -> list[int]:
     """The numbers of all points that some motion and a translation of the lattice may leave within a distance."""
-    x, y = action.lattice.fractional(points[:, None])
-    a, b, c, d, s, t = np.array(action.motions).T
-    steps = (a - 1) * x + b * y + s / 2, c * x + (d - 1) * y + t / 2
-    i, j = (np.abs(step - np.round(step)) for step in steps)
+    motions, places = np.array(action.motions), np.array(action.lattice.fractional(points))
+    steps = motions[:, :4].reshape(-1, 2, 2) @ places + motions[:, 4:, None] / 2 - places
     # How far the distance is at most in fractional coordinates.
-    u, v = abs(action.lattice.b), abs(action.lattice.a)
-    limit = within / abs(action.lattice.det)
-    near = (i <= limit * u) & (j <= limit * v)
-    return np.flatnonzero(near[:, 1:].any(axis=1)).tolist()
+    limit = within / action.lattice.det * np.array([[abs(action.lattice.b)], [abs(action.lattice.a)]])
+    near = (np.abs(steps - np.round(steps)) <= limit).all(axis=1)
+    return np.flatnonzero(near[1:].any(axis=0)).tolist()
 
 
 def _representatives(action: Action, stabilizer: tuple[Motion, ...]) -> tuple[Motion, ...]:

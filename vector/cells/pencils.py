@@ -103,6 +103,8 @@ def make_rows(contour: Contour, covering_radius: float, without: Bools) -> Rows:
 
 def _divide(size: Floats) -> tuple[Ints, Ints, Floats]:
     """The parts, of size at most 1, of things of these sizes: the thing, the part's number, the count of its parts."""
+    if size.max(initial=0.0) <= 1.0:
+        return np.arange(len(size)), np.zeros(len(size), np.intp), np.ones(len(size))
     parts = np.maximum(np.ceil(size), 1.0)
     part, thing = counting(parts.astype(np.intp))
     return thing, part, parts[thing]

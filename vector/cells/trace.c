@@ -16,13 +16,78 @@ typedef struct {
     int64_t first, last;
 } span;
 
-/* Write for each part the next one where that is plain from the order of the contour, else -1; whether it faces its own
-   site; whether it is the next one of another part; its start and end, counter-clockwise around its tile; its site. The
-   result is 0, or NO_MEMORY. */
+/* A part that has no next one, by where it ends, or is none's, by where it starts. */
+typedef struct {
+    int64_t site, part;
+    double along;
+    point at;
+} loose;
+
+static int by_place(const void *one, const void *two)
+{
+    const loose *a = one, *b = two;
+    if (a->site != b->site)
+        return a->site < b->site ? -1 : 1;
+    if (a->along != b->along)
+        return a->along < b->along ? -1 : 1;
+    return a->part < b->part ? -1 : 1;
+}
+
+/* Chain up the loose ends of each site with its starts, where their order along one direction tells how (`_match`). */
+static int match(int64_t parts, point slant, const uint8_t *inner, const point *start, const point *end,
+                 const int64_t *site, int64_t *following, uint8_t *entered)
+{
+    int64_t ends = 0, starts = 0, k;
+    loose *left, *right;
+    for (k = 0; k < parts; k++) {
+        ends += !inner[k] && following[k] < 0;
+        starts += !inner[k] && !entered[k];
+    }
+    if (!ends || ends != starts)
+        return 1;
+    left = malloc((size_t)(2 * ends) * sizeof *left);
+    if (!left)
+        return 0;
+    right = left + ends;
+    ends = starts = 0;
+    for (k = 0; k < parts; k++) {
+        loose z = {site[k], k, 0.0, end[k]};
+        z.along = z.at.x * slant.x - z.at.y * slant.y;
+        if (!inner[k] && following[k] < 0)
+            left[ends++] = z;
+        z.at = start[k];
+        z.along = z.at.x * slant.x - z.at.y * slant.y;
+        if (!inner[k] && !entered[k])
+            right[starts++] = z;
+    }
+    qsort(left, (size_t)ends, sizeof *left, by_place);
+    qsort(right, (size_t)ends, sizeof *right, by_place);
+    for (k = 0; k < ends && left[k].site == right[k].site; k++)
+        ;
+    if (k == ends) {
+        double before = INFINITY;
+        for (k = 0; k < ends; k++) {
+            double x = left[k].at.x - right[k].at.x, y = left[k].at.y - right[k].at.y, gap = sqrt(x * x + y * y);
+            double after = INFINITY;
+            if (k + 1 < ends && left[k + 1].site == left[k].site)
+                after = fmin(left[k + 1].along - right[k].along, right[k + 1].along - left[k].along);
+            if (gap < after && gap < before) {
+                following[left[k].part] = right[k].part;
+                entered[right[k].part] = 1;
+            }
+            before = after;
+        }
+    }
+    free(left);
+    return 1;
+}
+
+/* Write for each part the next one where that is plain, else -1; whether it faces its own site; whether it is the next
+   one of another part; its start and end, counter-clockwise around its tile; its site. The result is 0, or NO_MEMORY. */
 int64_t trace_links(const int64_t *half_edge, const int64_t *corner, int64_t parts, const int64_t *row, const int64_t *copy,
                     const int64_t *item, const double *begins, const double *ends,
                     int64_t half_edges, const int64_t *source, const int64_t *next, int64_t corners,
-                    const int64_t *corner_node, const int64_t *node_site, int64_t bundles, int64_t *following,
+                    const int64_t *corner_node, const int64_t *node_site, int64_t bundles, double slant_x, double slant_y, int64_t *following,
                     uint8_t *inner, uint8_t *entered, double *starts_out, double *ends_out, int64_t *site)
 {
     const point *begin = (const point *)begins, *end = (const point *)ends;
@@ -72,7 +137,10 @@ int64_t trace_links(const int64_t *half_edge, const int64_t *corner, int64_t par
             else
                 entered[following[k]] = 1;
         }
-    return 0;
+    {
+        point slant = {slant_x, slant_y};
+        return match(parts, slant, inner, start_, end_, site, following, entered) ? 0 : NO_MEMORY;
+    }
 }
 
 /* Write the rings to which the parts chain up that are not `seen`, without arcs that are no longer than `null`: their

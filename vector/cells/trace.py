@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -17,10 +18,12 @@ from voronoi_tiles.vector.cells.pencils import Rows
 # What the compiled kernels take, as in trace.c; what they answer.
 _OF_LINKS: tuple[Any, ...] = (
     *(INTS, INTS, INT, INTS, INTS, INTS, COMPLEXES, COMPLEXES, INT, INTS, INTS, INT, INTS, INTS, INT),
-    *(INTS, BOOLS, BOOLS, COMPLEXES, COMPLEXES, INTS),
+    *(FLOAT, FLOAT, INTS, BOOLS, BOOLS, COMPLEXES, COMPLEXES, INTS),
 )
 _OF_RINGS: tuple[Any, ...] = (INT, INTS, BOOLS, COMPLEXES, INTS, INT, FLOAT, INTS, COMPLEXES, INTS)
 _OPEN = -1
+# Turns the plane so that no mirror and no row of copies is upright.
+_SLANT = cmath.exp(1j)
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,9 +46,9 @@ class OpenBoundaryError(ArithmeticError):
 class _Links(NamedTuple):
     """How the parts chain up; one entry for each.
 
-    `following` (intp) is the next part where that is plain from the order of the contour, else -1; `inner` tells which
-    face their own site, and `entered` (bool) which are the next one of some part. `start` and `end` (complex128) are
-    the ends counter-clockwise around the tile, `site` (intp) is whose tile that is.
+    `following` (intp) is the next part where that is plain, else -1; `inner` tells which face their own site, and
+    `entered` (bool) which are the next one of some part. `start` and `end` (complex128) are the ends counter-clockwise
+    around the tile, `site` (intp) is whose tile that is.
     """
 
     following: Ints
@@ -70,10 +73,17 @@ def trace_boundary(rows: Rows, contour: Contour, parts: Parts, node_site: Ints, 
 
 
 def _close(links: _Links) -> None:
-    """Chain up what faces other sites or copies and has no next part yet, in place; by where parts start and end."""
+    """Chain up what is left, in place: ends and starts of a site that are each other's nearest, then those still left.
+
+    Raises OpenBoundaryError where a site has not as many starts as ends.
+    """
     following, inner, entered, start, end, site = links
     loose, entries = np.flatnonzero(~inner & (following < 0)), np.flatnonzero(~inner & ~entered)
-    following[loose] = entries[_match(end[loose], start[entries], site[loose], site[entries])]
+    if not np.array_equal(np.sort(site[loose]), np.sort(site[entries])):
+        raise OpenBoundaryError
+    for tile in np.unique(site[loose]).tolist():
+        some, others = loose[site[loose] == tile], entries[site[entries] == tile]
+        following[some] = others[_nearest(end[some], start[others])]
 
 
 def _rings(links: _Links, sites: int, null: float) -> Boundary:
@@ -116,7 +126,7 @@ def _walk(links: _Links, sites: int, null: float) -> Boundary:
 
 
 def _links(rows: Rows, contour: Contour, parts: Parts, node_site: Ints, bundles: int) -> _Links:
-    """How the parts chain up as far as that is plain from the order of the contour."""
+    """How the parts chain up, as far as it is plain from the order of the contour and from where they start and end."""
     compiled = kernel("trace_links", *_OF_LINKS)
     if compiled is None:
         return _plain_links(rows, contour, parts, node_site, bundles)
@@ -126,7 +136,9 @@ def _links(rows: Rows, contour: Contour, parts: Parts, node_site: Ints, bundles:
     links = _Links(following, inner, entered, start, end, site)
     of_parts = (getattr(parts, name) for name in Parts.__slots__)
     of_contour = len(contour.source), contour.source, contour.following, len(contour.corner_node), contour.corner_node
-    if compiled(rows.half_edge, rows.corner, count, *of_parts, *of_contour, node_site, bundles, *links):
+    if compiled(
+        rows.half_edge, rows.corner, count, *of_parts, *of_contour, node_site, bundles, _SLANT.real, _SLANT.imag, *links
+    ):
         raise MemoryError
     return links
 
@@ -171,7 +183,9 @@ def _plain_links(rows: Rows, contour: Contour, parts: Parts, node_site: Ints, bu
     following[inner | inner[following]] = -1
     entered = np.zeros(count, bool)
     entered[following[following >= 0]] = True
-    return _Links(following, inner, entered, start, end, site)
+    links = _Links(following, inner, entered, start, end, site)
+    _match(links)
+    return links
 
 
 def _ends(owner: Ints, count: int, opening: Ints, closing: Ints, first: Ints, last: Ints) -> tuple[Ints, Ints]:
@@ -183,48 +197,39 @@ def _ends(owner: Ints, count: int, opening: Ints, closing: Ints, first: Ints, la
     return result[0], result[1]
 
 
-# Turns the plane so that no mirror and no row of copies is upright.
-_SLANT = np.exp(1j)
+def _match(links: _Links) -> None:
+    """Chain up, in place, the loose ends of each site with its starts, where their order along one direction tells how.
 
-
-def _match(ends: Complexes, begins: Complexes, end_site: Ints, begin_site: Ints) -> Ints:
-    """For each end the index of the begin of its site that continues it: each other's nearest, then among those left.
-
-    Raises OpenBoundaryError where a site has not as many begins as ends.
+    Nearly all come in the same order, and are nearer to their partners than to others.
     """
-    partner = np.full(len(ends), -1)
-    if not np.array_equal(np.sort(end_site), np.sort(begin_site)):
-        raise OpenBoundaryError
-    if not len(ends):
-        return partner
-    # Along one direction nearly all of a site's come in the same order, and nearer to their partners than to others.
-    end_along, begin_along = (ends * _SLANT).real, (begins * _SLANT).real
-    left, right = np.lexsort((end_along, end_site)), np.lexsort((begin_along, begin_site))
-    gap, x, y = np.abs(ends[left] - begins[right]), end_along[left], begin_along[right]
+    following, inner, entered, start, end, site = links
+    loose, entries = np.flatnonzero(~inner & (following < 0)), np.flatnonzero(~inner & ~entered)
+    if not len(loose) or not np.array_equal(np.sort(site[loose]), np.sort(site[entries])):
+        return
+    x, y = (z.real * _SLANT.real - z.imag * _SLANT.imag for z in (end[loose], start[entries]))
+    left, right = np.lexsort((x, site[loose])), np.lexsort((y, site[entries]))
+    loose, entries, x, y = loose[left], entries[right], x[left], y[right]
+    step = end[loose] - start[entries]
+    gap = np.sqrt(step.real * step.real + step.imag * step.imag)
     apart = np.minimum(x[1:] - y[:-1], y[1:] - x[:-1])
-    apart[end_site[left][1:] != end_site[left][:-1]] = np.inf
+    apart[site[loose[1:]] != site[loose[:-1]]] = np.inf
     infinite = np.array([np.inf])
     sure = (gap < np.concatenate((apart, infinite))) & (gap < np.concatenate((infinite, apart)))
-    partner[left[sure]] = right[sure]
-    if not sure.all():
-        left, right = left[~sure], right[~sure]
-        for site in np.unique(end_site[left]).tolist():
-            some = np.sort(left[end_site[left] == site])
-            partner[some] = _nearest(ends, begins, some, np.sort(right[begin_site[right] == site]))
-    return partner
+    following[loose[sure]] = entries[sure]
+    entered[entries[sure]] = True
 
 
-def _nearest(ends: Complexes, begins: Complexes, left: Ints, right: Ints) -> Ints:
-    """For each of the ends `left` one of the begins `right`: each other's nearest, then among those that are left."""
+def _nearest(ends: Complexes, begins: Complexes) -> Ints:
+    """For each of the ends one of as many begins: each other's nearest, then among those that are left."""
     partner = np.full(len(ends), -1)
-    chosen = left
+    left = right = np.arange(len(ends))
     while len(left):
         there = Neighbours(begins[right]).nearest(ends[left])[1][:, 0]
         back = Neighbours(ends[left]).nearest(begins[right])[1][:, 0]
         mutual = np.flatnonzero(back[there] == np.arange(len(left)))
         partner[left[mutual]] = right[there[mutual]]
         left, right = np.delete(left, mutual), np.delete(right, there[mutual])
-    return partner[chosen]
+    return partner
 
 
 def _without_null(part: Ints, vertex: Complexes, ring: Ints, null: float) -> Boundary:
