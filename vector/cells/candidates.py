@@ -154,8 +154,8 @@ def _narrow(
     else:
         anchors = np.stack((level.anchor_start[flat], level.anchor_end[flat]), axis=1)
         provisional.lower(np.repeat(row, 2), anchors.reshape(-1))
-    # Segments bound well what points do not.
-    wide = np.flatnonzero(bounds.wide(rows)[row])
+    # Segments bound well what points do not; but of the first boxes few are near, and the next level follows.
+    wide = np.flatnonzero(bounds.wide(rows)[row]) if level.first or level.leaf else ()
     if len(wide):
         at, by = row[wide], flat[wide]
         start, end = level.anchor_start[by], level.anchor_end[by]

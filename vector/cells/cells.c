@@ -591,7 +591,7 @@ static int64_t find_candidates(work *w, provisional *p)
                 w->anchor[anchors++] = move(to, in->anchor_end[next[i].place]);
         }
         changed = lower(p, w->anchor, anchors);
-        if (is_wide(p)) {
+        if ((level > 0 || leaf) && is_wide(p)) { /* segments bound well what points do not */
             double height = p->height;
             for (i = 0; i < found; i++) {
                 int64_t row = p->row;
