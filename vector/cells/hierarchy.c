@@ -108,10 +108,8 @@ static void box_around(const point *start, const point *end, int64_t count, poin
     *radius = (high - low) / 2.0 * (1.0 + SLACK) + SLACK * (front - back);
 }
 
-/* Write the elements and the boxes around them, level by level from the top; the number of levels, or NO_MEMORY.
-
-   `first` has room for one more than bundles, `order` and `key` for all elements. The room for the boxes is as
-   `build_hierarchy` reckons it. */
+/* Write the elements and the boxes around them, level by level from the top; the number of levels, or NO_MEMORY. There
+   is as much room for boxes and levels as `build_hierarchy` reckons. */
 int64_t hierarchy_build(int64_t half_edges, const int64_t *source, const int64_t *target, int64_t corners,
                         const int64_t *corner_node, const double *nodes, const int64_t *node_bundle, int64_t bundles,
                         double *start_, double *end_, double *radius, double *anchor_start_, double *anchor_end_,
@@ -156,7 +154,6 @@ int64_t hierarchy_build(int64_t half_edges, const int64_t *source, const int64_t
     }
     for (run = 1; run < most; run *= branch)
         levels++;
-    /* The last level's place is known once those of all others are. */
     level[0] = 0;
     for (k = 0; k < levels; k++, run /= branch) {
         int64_t here = level[k];

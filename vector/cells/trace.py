@@ -136,9 +136,8 @@ def _links(rows: Rows, contour: Contour, parts: Parts, node_site: Ints, bundles:
     links = _Links(following, inner, entered, start, end, site)
     of_parts = (getattr(parts, name) for name in Parts.__slots__)
     of_contour = len(contour.source), contour.source, contour.following, len(contour.corner_node), contour.corner_node
-    if compiled(
-        rows.half_edge, rows.corner, count, *of_parts, *of_contour, node_site, bundles, _SLANT.real, _SLANT.imag, *links
-    ):
+    sites = node_site, bundles, _SLANT.real, _SLANT.imag
+    if compiled(rows.half_edge, rows.corner, count, *of_parts, *of_contour, *sites, *links):
         raise MemoryError
     return links
 
@@ -198,9 +197,9 @@ def _ends(owner: Ints, count: int, opening: Ints, closing: Ints, first: Ints, la
 
 
 def _match(links: _Links) -> None:
-    """Chain up, in place, the loose ends of each site with its starts, where their order along one direction tells how.
+    """Chain up, in place, those of each site that come in the same order along one direction: nearly all do.
 
-    Nearly all come in the same order, and are nearer to their partners than to others.
+    They must be nearer to their partners than to others. Where a site has not as many starts as ends, nothing is done.
     """
     following, inner, entered, start, end, site = links
     loose, entries = np.flatnonzero(~inner & (following < 0)), np.flatnonzero(~inner & ~entered)
