@@ -55,10 +55,10 @@ def to_motion(operation: Operation) -> Motion:
 
     Raises ValueError where its translation does not consist of halves, as in all plane groups it does.
     """
-    x, y = (2 * part for part in operation.translation)
-    if x.denominator != 1 or y.denominator != 1:
+    x, y = operation.translation
+    if x.denominator > 2 or y.denominator > 2:
         raise ValueError(f"{operation} is an operation of no wallpaper group")
-    return (*operation.linear, x.numerator, y.numerator)
+    return (*operation.linear, x.numerator * (2 // x.denominator), y.numerator * (2 // y.denominator))
 
 
 def to_operation(motion: Motion) -> Operation:
