@@ -118,7 +118,7 @@ class Action:
     @cached_property
     def covering_radius(self) -> float:
         """The largest distance of any point from a lattice: no tile reaches farther from its site."""
-        p, q = (complex(self.cartesian(*v)) for v in self.reduced)
+        p, q = (self.lattice.cartesian(*v) for v in self.reduced)
         if (p.conjugate() * q).real < 0:
             q = -q
         area = abs((p.conjugate() * q).imag)
