@@ -106,7 +106,7 @@ def _nearly_fixed(action: Action, points: Complexes, within: float) -> list[int]
     steps = motions[:, :4].reshape(-1, 2, 2) @ places + motions[:, 4:, None] / 2 - places
     # How far the distance is at most in fractional coordinates.
     limit = within / action.lattice.det * np.array([[abs(action.lattice.b)], [abs(action.lattice.a)]])
-    near = (np.abs(steps - np.round(steps)) <= limit).all(axis=1)
+    near = np.asarray((np.abs(steps - np.round(steps)) <= limit).all(axis=1))
     return np.flatnonzero(near[1:].any(axis=0)).tolist()
 
 

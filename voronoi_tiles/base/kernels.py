@@ -42,7 +42,7 @@ class Array:
         if array.dtype != self.dtype or not (flags.c_contiguous and flags.aligned):
             raise TypeError(f"the kernel takes aligned, contiguous arrays of {self.dtype}, not {array.dtype}")
         # An array of ctypes over the same memory goes to C as its address; numpy takes ten times as long to tell that.
-        return _Memory.from_buffer(array) if flags.writeable else ctypes.c_void_p(array.ctypes.data)
+        return _Memory.from_buffer(array.data) if flags.writeable else ctypes.c_void_p(array.ctypes.data)
 
 
 COMPLEXES, FLOATS, INTS = Array(np.complex128), Array(np.float64), Array(np.int64)
