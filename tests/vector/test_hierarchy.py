@@ -60,8 +60,8 @@ def test_every_box_holds_what_is_below_it(name: str) -> None:
     assert np.array_equal(tree.end[last:], end)
     assert np.array_equal(tree.bundle[last:], node_bundle[source[tree.element]])
     parent = np.full(len(tree.start), -1)
-    for box in range(last):
-        parent[tree.child[box] : tree.child[box + 1]] = box
+    for above in range(last):
+        parent[tree.child[above] : tree.child[above + 1]] = above
     box, levels = np.arange(last, len(tree.start)), 1
     while (box >= tree.level[1]).any():
         box = parent[box]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from helpers import fuzz
@@ -34,7 +36,7 @@ def same_boundary(design: Design, null: float, monkeypatch: pytest.MonkeyPatch) 
     amiss[0] = 0 if amiss[0] else near.bundles
     for copy in (parts.copy, amiss):
         some = Parts(parts.row, copy, parts.item, parts.begin, parts.end)
-        found = []
+        found: list[list[Any]] = []
         for chosen in ("", "numpy"):
             monkeypatch.setenv("VORONOI_TILES_KERNELS", chosen)
             try:
