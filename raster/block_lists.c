@@ -1,7 +1,7 @@
 /* The kernel of block_lists.py: which elements of each block's list can matter near the block's centre.
  *
- * The same as _keep there, with the same bits: every operation on doubles is one of numpy's, in its order. What is
- * decided without a square root or a division follows from sums, differences and roots being monotone when rounded.
+ * The same as _keep there, with the same bits: every operation on doubles is one of numpy's, in its order. The loops
+ * over elements have no branches, so that the compiler takes two elements at once.
  */
 
 #include <math.h>
@@ -10,76 +10,101 @@
 static double least(double a, double b) { return b < a ? b : a; }
 static double greatest(double a, double b) { return b > a ? b : a; }
 
-/* How an element's nearest point leads to a block's centre; the square of the distance. */
-static double from_foot(const double *centre, const double *middle, const double *half, double *x, double *y) {
-    double away_x = centre[0] - middle[0], away_y = centre[1] - middle[1];
-    double share = away_x * half[0] + away_y * half[1];
-    double square = half[0] * half[0] + half[1] * half[1];
-    square = square > 1e-300 ? square : 1e-300;
-    share = fabs(share) < square ? share / square : copysign(1.0, share);
-    away_x -= share * half[0];
-    away_y -= share * half[1];
-    *x = away_x;
-    *y = away_y;
-    return away_x * away_x + away_y * away_y;
+/* How the nearest points of elements of a list lead to a block's centre, and the squares of the distances. */
+static void from_feet(const double *centre, const int32_t *list, int64_t count, const double *restrict middle,
+                      const double *restrict unit, const double *restrict length, double *restrict square,
+                      double *restrict x, double *restrict y) {
+    const double centre_x = centre[0], centre_y = centre[1];
+/* It would take one at a time, since it must gather them: two are faster all the same. */
+#pragma clang loop vectorize(enable)
+    for (int64_t j = 0; j < count; j++) {
+        const int64_t k = list[j];
+        const double unit_x = unit[2 * k], unit_y = unit[2 * k + 1];
+        double away_x = centre_x - middle[2 * k], away_y = centre_y - middle[2 * k + 1];
+        const double along = least(greatest(away_x * unit_x + away_y * unit_y, -length[k]), length[k]);
+        away_x -= along * unit_x;
+        away_y -= along * unit_y;
+        x[j] = away_x;
+        y[j] = away_y;
+        square[j] = away_x * away_x + away_y * away_y;
+    }
 }
 
-/* Keep of the lists `element[first[b]] ... element[last[b] - 1]` of `blocks` blocks, none of them empty, what can
- * matter within `radius` of centre[b]: into `kept`, block after block, count[b] of each; the sum of the counts.
+/* The least of some values, one of them at least. */
+static double least_of(const double *value, int64_t count) {
+    double even = INFINITY, odd = INFINITY;
+    for (int64_t j = 0; j + 1 < count; j += 2) {
+        even = least(even, value[j]);
+        odd = least(odd, value[j + 1]);
+    }
+    return least(least(even, odd), value[count - 1]);
+}
+
+/* Judge the elements of a run from what from_feet found, the least square among them: those matter for which then
+ * x <= 2 radius and y >= 0. */
+static void judge(int64_t count, double least_square, double radius, double loose, const double *restrict square,
+                  double *restrict x, double *restrict y) {
+    int64_t winner = 0;
+    while (winner < count - 1 && square[winner] != least_square) winner++;
+    const double nearest = sqrt(least_square), bend = radius * radius / (2.0 * nearest);
+    const double scale = 1.0 / (nearest > 0.0 ? nearest : 1.0);
+    const double gradient_x = x[winner] * scale, gradient_y = y[winner] * scale;
+    for (int64_t j = 0; j < count; j++) {
+        const double distance = sqrt(square[j]);
+        const double excess = distance - nearest, slack = (loose - 1.0) * (distance + radius);
+        const double turn_x = x[j] - gradient_x * distance, turn_y = y[j] - gradient_y * distance;
+        const double beyond = greatest(excess - bend - slack, 0.0) * distance;
+        const double turn = (turn_x * turn_x + turn_y * turn_y) * (radius * radius);
+        x[j] = excess - slack;
+        y[j] = turn - beyond * beyond;
+    }
+}
+
+/* Keep of the lists of `blocks` blocks what can matter within `radius` of centre[b]: into `kept`, block after block, in
+ * runs of kept_size[...] elements of the copy kept_label[...], kept_runs[b] of each block; the number of elements.
  *
- * Points are pairs of doubles. `label`, `middle` and `half` are the scene's; the labels of a list are in runs, one of
- * each copy. `reals` has room for 4 doubles and `runs` for 1 integer for each element of the longest list.
+ * Block b has the list of its parent: the runs from run_start[parent[b]] up to run_start[parent[b] + 1], where run k are
+ * the elements element[first[k]] ... element[last[k] - 1] of the copy label[k]; none is empty. Points are pairs of
+ * doubles; `middle`, `unit` and `length` are the scene's. `reals` has room for 4 doubles for each element of the longest
+ * list.
  */
-int64_t raster_keep(int64_t blocks, const int64_t *first, const int64_t *last, const double *centre, double radius,
-                    double loose, const int32_t *element, const int32_t *label, const double *middle,
-                    const double *half, double *reals, int64_t *runs, int32_t *kept, int64_t *count) {
-    int64_t total = 0;
+int64_t raster_keep(int64_t blocks, const int64_t *parent, const double *centre, double radius, double loose,
+                    const int64_t *run_start, const int32_t *label, const int64_t *first, const int64_t *last,
+                    const int32_t *element, const double *middle, const double *unit, const double *length,
+                    double *reals, int64_t *kept_runs, int32_t *kept_label, int64_t *kept_size, int32_t *kept) {
+    int64_t total = 0, runs = 0;
     for (int64_t b = 0; b < blocks; b++) {
-        const int32_t *list = element + first[b];
-        const int64_t size = last[b] - first[b];
-        double *distance = reals, *x = distance + size, *y = x + size, *nearest = y + size;
+        const int64_t run_first = run_start[parent[b]], run_last = run_start[parent[b] + 1], runs_before = runs;
+        int64_t size = 0;
+        for (int64_t run = run_first; run < run_last; run++) size += last[run] - first[run];
+        double *square = reals, *x = square + size, *y = x + size, *squares = y + size;
         double smallest = INFINITY, second = INFINITY;
-        int64_t *run_end = runs, run_count = 0;
-        for (int64_t i = 0; i < size;) {
-            const int32_t copy = label[list[i]];
-            double square = INFINITY; /* the roots are taken later, of what matters: the least has the least one */
-            for (; i < size && label[list[i]] == copy; i++) {
-                const int64_t k = list[i];
-                distance[i] = from_foot(centre + 2 * b, middle + 2 * k, half + 2 * k, &x[i], &y[i]);
-                square = least(square, distance[i]);
-            }
-            const double d = sqrt(square);
-            second = least(second, d < smallest ? smallest : d);
-            smallest = least(smallest, d);
-            run_end[run_count] = i;
-            nearest[run_count++] = d;
+        for (int64_t run = run_first, i = 0; run < run_last; run++) {
+            const int64_t count = last[run] - first[run];
+            from_feet(centre + 2 * b, element + first[run], count, middle, unit, length, square + i, x + i, y + i);
+            const double least_square = least_of(square + i, count), nearest = sqrt(least_square);
+            squares[run - run_first] = least_square;
+            second = least(second, nearest < smallest ? smallest : nearest);
+            smallest = least(smallest, nearest);
+            i += count;
         }
         const double reach = (second + 2 * radius) * loose, limit = 2 * radius;
-        const int64_t before = total;
-        for (int64_t run = 0, i = 0; run < run_count; run++) {
-            const double d = nearest[run];
-            const int64_t start = i, end = run_end[run];
-            i = end;
-            if (!(d <= reach)) continue;
-            for (int64_t j = start; j < end; j++) distance[j] = sqrt(distance[j]);
-            int64_t w = start;
-            while (w < end - 1 && distance[w] != d) w++;
-            const double bend = radius * radius / (2.0 * d), scale = 1.0 / (d > 0.0 ? d : 1.0);
-            const double gradient_x = x[w] * scale, gradient_y = y[w] * scale;
-            for (int64_t j = start; j < end; j++) { /* without branches: the compiler takes two at once */
-                const double excess = distance[j] - d, slack = (loose - 1.0) * (distance[j] + radius);
-                const double turn_x = x[j] - gradient_x * distance[j], turn_y = y[j] - gradient_y * distance[j];
-                const double beyond = greatest(excess - bend - slack, 0.0) * distance[j];
-                const double turn = (turn_x * turn_x + turn_y * turn_y) * (radius * radius);
-                x[j] = excess - slack;
-                y[j] = turn - beyond * beyond;
+        for (int64_t run = run_first, i = 0; run < run_last; run++) {
+            const int64_t count = last[run] - first[run], before = total;
+            const double least_square = squares[run - run_first];
+            if (sqrt(least_square) <= reach) {
+                judge(count, least_square, radius, loose, square + i, x + i, y + i);
+                for (int64_t j = 0; j < count; j++) {
+                    kept[total] = element[first[run] + j];
+                    total += (x[i + j] <= limit) & (y[i + j] >= 0.0);
+                }
             }
-            for (int64_t j = start; j < end; j++) {
-                kept[total] = list[j];
-                total += (x[j] <= limit) & (y[j] >= 0.0);
-            }
+            kept_label[runs] = label[run];
+            kept_size[runs] = total - before;
+            runs += total > before;
+            i += count;
         }
-        count[b] = total - before;
+        kept_runs[b] = runs - runs_before;
     }
     return total;
 }

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from voronoi_tiles.base.arrays import Complexes, Floats, Ints, offsets_of, owned_ranges, starts
 from voronoi_tiles.base.kernels import COMPLEXES, FLOAT, FLOATS, INT, INTS, LABELS, kernel
 from voronoi_tiles.raster.frame import BLOCK, Frame
-from voronoi_tiles.raster.scene import Scene, distances, from_feet, lengths
+from voronoi_tiles.raster.scene import Scene, distances, lengths
 
 _SLACK = 1.0 + 1e-9
 """Keeps what rounding would drop: relative to the bounds, far above float64 and far below what costs time."""
@@ -82,7 +82,10 @@ def find_candidates(scene: Scene, frame: Frame, *, looseness: float = 0.0) -> Bl
         finer = _grid(frame, level)
         lists = _kept(scene, lists, (finer.row // 2) * grid.columns + finer.column // 2, finer, loose)
         grid = finer
-    return _in_runs(scene, lists, grid)
+    element_start = np.append(lists.first, len(lists.element))
+    return BlockLists(
+        scene, grid.columns, grid.radius, grid.centre, lists.run_start, lists.label, element_start, lists.element
+    )
 
 
 _ROOTS = 16
@@ -110,107 +113,135 @@ def _grid(frame: Frame, level: int) -> _BlockGrid:
 
 
 class _Lists(NamedTuple):
-    """The lists of the blocks of one level: that of block b is element[start[b]:start[b + 1]], ascending."""
+    """The lists of the blocks of one level, in runs of one copy each.
 
-    start: Ints
+    The runs of block b are those from run_start[b] up to run_start[b + 1], with ascending labels; run k is copy
+    `label[k]`, elements `element[first[k]:last[k]]` of the scene, ascending.
+    """
+
+    run_start: Ints
+    label: NDArray[np.int32]
+    first: Ints
+    last: Ints
     element: NDArray[np.int32]
 
 
 def _near(scene: Scene, grid: _BlockGrid, loose: float) -> _Lists:
     """All elements of the copies that can matter in each block, judged by circles about copies."""
     first = scene.copy_start
+    last = np.append(first[1:], len(scene))
     x, y = scene.middle.real, scene.middle.imag
     low = np.minimum.reduceat(x, first) + 1j * np.minimum.reduceat(y, first)
     high = np.maximum.reduceat(x, first) + 1j * np.maximum.reduceat(y, first)
     centre = (low + high) / 2
-    last = np.append(first[1:], len(scene))
     away = lengths(scene.middle - np.repeat(centre, last - first)) + scene.length
     radius = np.maximum.reduceat(away, first)
-    parts = []
+    copies = []
     for z in grid.centre.tolist():
         distance = lengths(z - centre)
         second = np.partition(distance + radius, 1)[1]
-        near = distance - radius <= (second + 2 * grid.radius) * loose * _SLACK
-        parts.append(owned_ranges(first[near], last[near])[0].astype(np.int32))
-    return _Lists(offsets_of([len(part) for part in parts]), np.concatenate(parts))
+        copies.append(np.flatnonzero(distance - radius <= (second + 2 * grid.radius) * loose * _SLACK))
+    copy = np.concatenate(copies)
+    everything = np.arange(len(scene), dtype=np.int32)
+    return _Lists(
+        offsets_of([len(near) for near in copies]), copy.astype(np.int32), first[copy], last[copy], everything
+    )
 
 
 def _kept(scene: Scene, parents: _Lists, parent: Ints, grid: _BlockGrid, loose: float) -> _Lists:
     """The lists of the blocks of a level, made of those of their parents."""
-    first, last = parents.start[parent], parents.start[parent + 1]
-    ends = np.cumsum(last - first)
+    size = np.add.reduceat(parents.last - parents.first, parents.run_start[:-1])[parent]
+    ends = np.cumsum(size)
     # In portions, so that the work arrays do not fill the memory.
     bounds = np.searchsorted(ends, np.arange(_PORTION, int(ends[-1]) + _PORTION, _PORTION))
-    elements, counts = [], []
-    for i, j in zip(np.append(0, bounds), np.append(bounds, len(parent)), strict=True):
-        if i < j:
-            element, count = _kept_portion(
-                scene, parents.element, first[i:j], last[i:j], grid.centre[i:j], grid.radius, loose
-            )
-            elements.append(element)
-            counts.append(count)
-    element = elements[0] if len(elements) == 1 else np.concatenate(elements)
-    return _Lists(offsets_of(np.concatenate(counts)), element)
+    portions = [
+        _kept_portion(scene, parents, parent[i:j], size[i:j], grid.centre[i:j], grid.radius, loose)
+        for i, j in zip(np.append(0, bounds), np.append(bounds, len(parent)), strict=True)
+        if i < j
+    ]
+    joined = portions[0] if len(portions) == 1 else _Kept(*map(np.concatenate, zip(*portions, strict=True)))
+    start = offsets_of(joined.size)
+    return _Lists(offsets_of(joined.runs), joined.label, start[:-1], start[1:], joined.element)
 
 
 _PORTION = 2_000_000
 """Pairs of blocks and elements that are handled at once; a count."""
 
 
+class _Kept(NamedTuple):
+    """What is kept of some blocks' lists: the runs of each block, the copy and the size of each run; the elements."""
+
+    runs: Ints
+    label: NDArray[np.int32]
+    size: Ints
+    element: NDArray[np.int32]
+
+
 def _kept_portion(
-    scene: Scene,
-    element: NDArray[np.int32],
-    first: Ints,
-    last: Ints,
-    centre: Complexes,
-    radius: float,
-    loose: float,
-) -> tuple[NDArray[np.int32], Ints]:
-    """Of the elements from first[b] up to last[b], what can matter near centre[b]: all of them, and how many of each b.
+    scene: Scene, parents: _Lists, parent: Ints, size: Ints, centre: Complexes, radius: float, loose: float
+) -> _Kept:
+    """What can matter near centre[b], of the list of parent[b], which has size[b] elements.
 
     By the compiled kernel where there is one; otherwise by `_keep`, with the same result.
     """
-    size = last - first
-    keep = kernel("raster_keep", *_BLOCKS, *_ELEMENTS, *_WORK, *_KEPT)
+    start = parents.run_start
+    keep = kernel("raster_keep", *_BLOCKS, *_LISTS, *_ELEMENTS, FLOATS, *_KEPT)
     if keep is not None:
-        blocks = len(size), first, last, centre, radius, loose
-        elements = element, scene.label, scene.middle, scene.half
-        longest = int(size.max())
-        work = np.empty(4 * longest), np.empty(longest, np.int64)
-        kept, count = np.empty(int(size.sum()), np.int32), np.empty(len(size), np.int64)
-        total = keep(*blocks, *elements, *work, kept, count)
-        return kept[:total], count
-    start = np.cumsum(size) - size
-    element = element[owned_ranges(first, last)[0]]
-    away = from_feet(np.repeat(centre, size), scene.middle[element], scene.half[element])
-    chosen = _keep(scene.label[element], away, start, radius, loose)
-    return element[chosen], np.add.reduceat(chosen, start, dtype=np.intp)
+        blocks = len(parent), parent, centre, radius, loose
+        elements = scene.middle, scene.unit, scene.length
+        most = int((start[parent + 1] - start[parent]).sum())
+        kept = _Kept(
+            np.empty(len(parent), np.intp),
+            np.empty(most, np.int32),
+            np.empty(most, np.intp),
+            np.empty(int(size.sum()), np.int32),
+        )
+        total = keep(*blocks, *parents, *elements, np.empty(4 * int(size.max())), *kept)
+        runs = int(kept.runs.sum())
+        return _Kept(kept.runs, kept.label[:runs], kept.size[:runs], kept.element[:total])
+    run, block = owned_ranges(start[parent], start[parent + 1])
+    index, owner = owned_ranges(parents.first[run], parents.last[run])
+    element, place = parents.element[index], centre[block][owner]
+    run_start, block_start = starts(owner), starts(block)
+    away = _from_feet(place, scene.middle[element], scene.unit[element], scene.length[element])
+    chosen = _keep(away, run_start, block_start, radius, loose)
+    count = np.add.reduceat(chosen, run_start, dtype=np.intp)
+    left = count > 0
+    runs_left = np.add.reduceat(left, block_start, dtype=np.intp)
+    return _Kept(runs_left, parents.label[run[left]], count[left], element[chosen])
 
 
 # The arguments of raster_keep in block_lists.c.
-_BLOCKS = INT, INTS, INTS, COMPLEXES, FLOAT, FLOAT
-_ELEMENTS = LABELS, LABELS, COMPLEXES, COMPLEXES
-_WORK = FLOATS, INTS
-_KEPT = LABELS, INTS
+_BLOCKS = INT, INTS, COMPLEXES, FLOAT, FLOAT
+_LISTS = INTS, LABELS, INTS, INTS, LABELS
+_ELEMENTS = COMPLEXES, COMPLEXES, FLOATS
+_KEPT = INTS, LABELS, INTS, LABELS
 
 
-def _keep(label: NDArray[np.int32], away: Complexes, start: Ints, radius: float, loose: float) -> NDArray[np.bool_]:
+def _from_feet(z: Complexes, middle: Complexes, unit: Complexes, length: Floats) -> Complexes:
+    """The vectors that lead to points from the nearest points of elements middle +- length unit, without a division."""
+    away = z - middle
+    along = away.real * unit.real + away.imag * unit.imag
+    along = np.minimum(np.maximum(along, -length), length)
+    away.real -= along * unit.real
+    away.imag -= along * unit.imag
+    return away
+
+
+def _keep(away: Complexes, run_start: Ints, block_start: Ints, radius: float, loose: float) -> NDArray[np.bool_]:
     """Which elements of each block's list can matter within `radius` of the block's centre.
 
-    `away` (n,) leads from each element's nearest point to the centre, `start` says where a block's list begins.
+    `away` (n,) leads from each element's nearest point to the centre, `run_start` says where the elements of a copy
+    begin, `block_start` where the runs of a block.
     """
-    distance = lengths(away)
-    fresh = np.empty(len(label), bool)
-    fresh[0] = True
-    np.not_equal(label[1:], label[:-1], out=fresh[1:])
-    fresh[start] = True
-    run_start = np.flatnonzero(fresh)
-    size = np.diff(run_start, append=len(label))
-    nearest = np.minimum.reduceat(distance, run_start)
-    second = _second_smallest(nearest, start, run_start)
+    square = away.real * away.real + away.imag * away.imag
+    least = np.minimum.reduceat(square, run_start)
+    distance, nearest = np.sqrt(square), np.sqrt(least)
+    size = np.diff(run_start, append=len(away))
+    second = _second_smallest(nearest, block_start)
     limit = np.where(nearest <= (second + 2 * radius) * loose, 2 * radius, -np.inf)
     # Of each copy, what is farther everywhere than the element that is nearest at the centre.
-    winner = _first_of_each(np.flatnonzero(distance == np.repeat(nearest, size)), run_start)
+    winner = _first_of_each(np.flatnonzero(square == np.repeat(least, size)), run_start)
     gradient = away[winner] * (1.0 / np.where(nearest > 0.0, nearest, 1.0))
     with np.errstate(divide="ignore"):
         bend = radius * radius / (2.0 * nearest)
@@ -223,31 +254,16 @@ def _keep(label: NDArray[np.int32], away: Complexes, start: Ints, radius: float,
     return np.asarray((excess - slack <= np.repeat(limit, size)) & (turned >= 0.0))
 
 
-def _second_smallest(nearest: Floats, start: Ints, run_start: Ints) -> Floats:
+def _second_smallest(nearest: Floats, block_start: Ints) -> Floats:
     """For each run the second smallest of the runs' distances in its block."""
-    block_runs = np.searchsorted(run_start, start)
-    size = np.diff(block_runs, append=len(run_start))
-    smallest = np.repeat(np.minimum.reduceat(nearest, block_runs), size)
+    size = np.diff(block_start, append=len(nearest))
+    smallest = np.repeat(np.minimum.reduceat(nearest, block_start), size)
     # The smallest of what is left when one of the smallest is taken away.
     rest = nearest.copy()
-    rest[_first_of_each(np.flatnonzero(nearest == smallest), block_runs)] = np.inf
-    return np.asarray(np.repeat(np.minimum.reduceat(rest, block_runs), size))
+    rest[_first_of_each(np.flatnonzero(nearest == smallest), block_start)] = np.inf
+    return np.asarray(np.repeat(np.minimum.reduceat(rest, block_start), size))
 
 
 def _first_of_each(index: Ints, start: Ints) -> Ints:
     """Of ascending indices the first in each of the segments that begin at `start`."""
     return np.asarray(index[starts(np.searchsorted(start, index, side="right"))])
-
-
-def _in_runs(scene: Scene, lists: _Lists, grid: _BlockGrid) -> BlockLists:
-    """The finished lists, in runs."""
-    start = lists.start[:-1]
-    label = scene.label[lists.element]
-    fresh = np.append(True, label[1:] != label[:-1])
-    fresh[start] = True
-    first = np.flatnonzero(fresh)
-    run_start = np.append(np.searchsorted(first, start), len(first))
-    element_start = np.append(first, len(label))
-    return BlockLists(
-        scene, grid.columns, grid.radius, grid.centre, run_start, label[first], element_start, lists.element
-    )

@@ -609,13 +609,15 @@ def test_copies_that_are_far_from_a_block_are_left_out_at_once() -> None:
     scene = gather(pattern, frame.origin, frame.middle, frame.radius)
     grid = candidates._grid(frame, 4)
     near = candidates._near(scene, grid, 1.0)
-    assert len(near.element) < 0.5 * len(scene) * len(grid.centre)
-    everything = candidates._Lists(np.array([0, len(scene)]), np.arange(len(scene), dtype=np.int32))
+    assert (near.last - near.first).sum() < 0.5 * len(scene) * len(grid.centre)
+    first, element = scene.copy_start, np.arange(len(scene), dtype=np.int32)
+    everything = candidates._Lists(
+        np.array([0, len(first)]), scene.label[first], first, np.append(first[1:], len(scene)), element
+    )
     parent = np.arange(len(grid.centre))
     some = candidates._kept(scene, near, parent, grid, 1.0)
     whole = candidates._kept(scene, everything, np.zeros_like(parent), grid, 1.0)
-    assert (some.start == whole.start).all()
-    assert (some.element == whole.element).all()
+    assert all((one == other).all() for one, other in zip(some, whole, strict=True))
 
 
 @pytest.mark.parametrize("kind", ["plain", "grid", "several", "long", "wild", "skew"])
