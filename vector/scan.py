@@ -197,10 +197,11 @@ def owners(copies: Sequence[tuple[Outline, Isometry]], grid: Grid) -> OwnerImage
     first = np.maximum(spans.first[k] - m * grid.nx, 0)
     stop = np.minimum(spans.stop[k] - m * grid.nx, grid.nx)
     names = np.stack((spans.copy[k], -m, -n))
-    least = names.min(axis=1, initial=0)[:, None]
-    box = tuple((names - least).max(axis=1, initial=0) + 1)
-    keys, label = np.unique(np.ravel_multi_index(tuple(names - least), box), return_inverse=True)
-    labels = np.stack(np.unravel_index(keys, box), axis=1) + least.T
+    # By their places among all that occur: the translates of a copy may be billions.
+    values, places = zip(*(np.unique(row, return_inverse=True) for row in names), strict=True)
+    box = [max(len(found), 1) for found in values]
+    keys, label = np.unique(np.ravel_multi_index(places, box), return_inverse=True)
+    labels = np.stack([found[place] for found, place in zip(values, np.unravel_index(keys, box), strict=True)], axis=1)
     # Differences along all rows in one run: what ends at a row's end ends where the next row begins.
     begin = (spans.row[k] - n * grid.ny) * grid.nx
     ends = np.concatenate((begin + first, begin + stop))

@@ -16,7 +16,7 @@ from helpers.examples import each_example
 from helpers.examples import tiling as example
 from hypothesis import HealthCheck, assume, given, settings
 
-from voronoi_tiles.base.errors import TouchingCopiesError
+from voronoi_tiles.base.errors import DesignError, TouchingCopiesError
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.base.tolerance import EPSILON, PROOF_LIMIT
 from voronoi_tiles.crosscheck import CheckReport, comparison, crosscheck
@@ -272,6 +272,17 @@ def test_a_site_far_from_the_origin_agrees() -> None:
     stroke = {"segment": [[4, 3], [17, 9]], "translate": [3e7, 6e7]}
     design = {"schema": 1, "group": "p2", "cell": {"a": 60, "b": 60, "angle": 90}, "site": [{"strokes": [stroke]}]}
     assert_sound(check(Design.from_dict(design).tessellate(), samples=100))
+
+
+@pytest.mark.parametrize("group", ["p2", "p4", "p6"])
+@pytest.mark.parametrize("cells", [1e7, 1e9])
+def test_a_site_too_far_from_the_origin_is_refused(group: str, cells: float) -> None:
+    """Whose copies cannot be numbered, however far it is, and however far they are from each other."""
+    cell = {"a": 60, "b": 60, "angle": 90} if group == "p2" else {"a": 60}
+    stroke = {"segment": [[4, 3], [17, 9]], "translate": [60 * cells, 0]}
+    tiling = Design.from_dict({"schema": 1, "group": group, "cell": cell, "site": [{"strokes": [stroke]}]}).tessellate()
+    with pytest.raises(DesignError, match="cells from the origin"):
+        check(tiling, samples=20)
 
 
 def halves(arc: Arc) -> list[Arc]:

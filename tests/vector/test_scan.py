@@ -173,6 +173,16 @@ def test_samples_on_edges_and_corners_count_once(square: Outline) -> None:
     assert (owners([*turned, (square, Isometry(1 + 0j, 0j, conj=True))], UNIT_GRID).count == 1).all()
 
 
+def test_copies_billions_of_cells_apart_keep_their_names(square: Outline) -> None:
+    """Which translate of a copy has a sample: all translates there are, together, would not fit in 64 bits."""
+    cells = [(4_000_000_000, -4_000_000_000, 0j), (-4_000_000_000, 4_000_000_000, 10 + 0j), (7, 0, 10j), (0, 7, 10 + 10j)]
+    copies: Copies = [(square, Isometry(1 + 0j, shift + m * 20 + n * 20j, conj=False)) for m, n, shift in cells]
+    image = owners(copies, UNIT_GRID)
+    assert (image.count == 1).all()
+    for k, (m, n, shift) in enumerate(cells):
+        assert image.labels[image.label[int(shift.imag), int(shift.real)]].tolist() == [k, -m, -n]
+
+
 def test_a_mirrored_square_is_the_square(square: Outline) -> None:
     """A reflection turns the rings round, and with them what is inside; it still counts once."""
     mirrored = Isometry(1 + 0j, 10j, conj=True)
