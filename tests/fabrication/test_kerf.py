@@ -12,6 +12,7 @@ import shapely
 from helpers.cutting import contour_shapes, cuts, dense, exact_shape, farthest, made, rings, squares, true_lengths
 from helpers.examples import each_example, tiling
 
+from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.arc_fitting import curve_fit
 from voronoi_tiles.fabrication.job import Job, JobError
@@ -167,6 +168,18 @@ def test_a_square_is_exact() -> None:
     assert len(arcs) == 4
     assert radius == pytest.approx([0.5] * 4, abs=1e-9)
     assert turn == pytest.approx([np.pi / 2] * 4, abs=1e-9)
+
+
+@pytest.mark.parametrize("apart", [1e-8, 1e-7, 1e-6])
+def test_tiles_of_sites_that_nearly_touch(apart: float) -> None:
+    """Two equal lines so many cells apart: rounding leaves their outlines segments of no length."""
+    lines = [[[10, y], [40, y]] for y in (10, 10 + 60 * apart)]
+    sites = [{"name": name, "strokes": [{"polyline": line}]} for name, line in zip("ab", lines, strict=True)]
+    cell = {"a": 60, "b": 60, "angle": 90}
+    tiles = Design.from_dict({"schema": 1, "group": "p2", "cell": cell, "site": sites}).tessellate()
+    for site, piece in contours(tiles, Job(kerf=0.3)):
+        (contour,) = contour_shapes(piece)
+        check_kerf(exact_shape(tiles.tiles[site].outline, 1.0), contour, 0.3, ACCURACY)
 
 
 @pytest.mark.parametrize("name", ["pg-wave", "p4g-fan", "cmm-scroll", "p4-mill"])

@@ -313,6 +313,31 @@ def test_long_rings_stay_in_bounds() -> None:
     assert len(grown.start) == n
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_segments_of_no_length_do_not_count(seed: int) -> None:
+    """Points at nodes, one or two in a row, as lines and as arcs, and a ring of them alone: all bits are the same."""
+    random = np.random.default_rng(seed)
+    region = star(seed)
+    before = np.repeat(np.arange(len(region.start)), random.integers(0, 3, len(region.start)))
+    assert len(before)
+    place, kind = region.start[before], random.choice(np.array([LINE, ARC], np.uint8), len(before))
+    dotted = Paths(
+        np.insert(region.start, before, place),
+        np.insert(region.end, before, place),
+        np.insert(region.control, before, np.column_stack((np.where(kind == ARC, place, 0), 0 * place)), axis=0),
+        np.insert(region.kind, before, kind),
+        np.array([0, len(region.start) + len(before)]),
+        region.closed,
+    )
+    dot = Paths.polylines([[3 + 3j, 3 + 3j]], closed=True)
+    for distance in (0.3, -0.3):
+        wanted, found = offset(region, distance), offset(Paths.concatenate([dotted, dot]), distance)
+        for name in ("start", "end", "control", "kind", "offsets"):
+            assert getattr(found.paths, name).tobytes() == getattr(wanted.paths, name).tobytes()
+        assert found.lost == wanted.lost
+    assert not len(offset(dot, 0.1).paths)
+
+
 def test_bad_input_is_refused() -> None:
     """Curves, open paths and wild numbers are refused; nothing and no distance are fine."""
     with pytest.raises(ValueError, match="closed"):

@@ -175,7 +175,8 @@ def test_samples_on_edges_and_corners_count_once(square: Outline) -> None:
 
 def test_copies_billions_of_cells_apart_keep_their_names(square: Outline) -> None:
     """Which translate of a copy has a sample: all translates there are, together, would not fit in 64 bits."""
-    cells = [(4_000_000_000, -4_000_000_000, 0j), (-4_000_000_000, 4_000_000_000, 10 + 0j), (7, 0, 10j), (0, 7, 10 + 10j)]
+    far = 4_000_000_000
+    cells = [(far, -far, 0j), (-far, far, 10 + 0j), (7, 0, 10j), (0, 7, 10 + 10j)]
     copies: Copies = [(square, Isometry(1 + 0j, shift + m * 20 + n * 20j, conj=False)) for m, n, shift in cells]
     image = owners(copies, UNIT_GRID)
     assert (image.count == 1).all()

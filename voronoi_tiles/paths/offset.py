@@ -21,7 +21,7 @@ from voronoi_tiles.paths.offset_events import Lost, losses
 from voronoi_tiles.paths.paths import ARC, LINE, Paths
 from voronoi_tiles.paths.raw_offset import raw_offset
 from voronoi_tiles.paths.segments import Circles, boxes, point_at
-from voronoi_tiles.paths.short_segments import straightened
+from voronoi_tiles.paths.short_segments import straightened, without_points
 
 OFFSET_ULPS: Final = 256.0
 """How far an offset may be from its distance; ulps of the largest coordinate: some ten rounded operations, and
@@ -64,12 +64,13 @@ def offset(region: Paths, distance: float) -> Offset:
     """The region grown by `distance` > 0, or shrunk by -`distance` where it is < 0.
 
     `region` has closed rings of LINEs and ARCs that neither cross nor touch, the material on their left: outer ones
-    counter-clockwise, holes clockwise. Corners on the growing side become arcs about the corner. Self-overlaps are
-    removed between all parts and rings. The edge of the result is at the distance from the region's to OFFSET_ULPS,
-    checked at the end; where the check fails, the distance is changed by up to 3e-9 of itself. Raises ValueError for
-    other segments or open paths, OffsetError where no change helps.
+    counter-clockwise, holes clockwise; those of no length do not count. Corners on the growing side become arcs about
+    the corner. Self-overlaps are removed between all parts and rings. The edge of the result is at the distance from
+    the region's to OFFSET_ULPS, checked at the end; where the check fails, the distance is changed by up to 3e-9 of
+    itself. Raises ValueError for other segments or open paths, OffsetError where no change helps.
     """
     _check_region(region, distance)
+    region = without_points(region)
     if distance == 0 or not len(region):
         return Offset(region, ())
     failure: OffsetError | None = None

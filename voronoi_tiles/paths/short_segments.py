@@ -21,7 +21,7 @@ from typing import Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, Floats, Ints, next_in_ring
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, next_in_ring, offsets_of
 from voronoi_tiles.base.components import components
 from voronoi_tiles.paths.paths import ARC, LINE, Paths
 from voronoi_tiles.paths.segments import Circles, tangent_at
@@ -73,17 +73,26 @@ def without_short_segments(rings: Paths, length: float, deviation: float) -> Pat
     bent = bent[rings.kind[bent] == ARC]
     control = rings.control.copy()
     control[bent, 0] = _middles(start[bent], control[bent, 0], end[bent])
-    kept = np.flatnonzero(~gone)
-    counts = np.bincount(rings.owner[kept], minlength=len(rings))
-    left = Paths(
-        start=start[kept],
-        end=end[kept],
-        control=control[kept],
-        kind=rings.kind[kept],
-        offsets=np.append(0, np.cumsum(counts)).astype(np.intp),
-        closed=rings.closed,
+    return straightened(_of_segments(replace(rings, start=start, end=end, control=control), ~gone), 0.0)
+
+
+def without_points(paths: Paths) -> Paths:
+    """The same paths of LINEs and ARCs without segments of no length; a path that has no others is left out."""
+    long = paths.start != paths.end
+    return paths if long.all() else _of_segments(paths, long)
+
+
+def _of_segments(paths: Paths, which: Bools) -> Paths:
+    """The paths, of some of their segments; those that have some."""
+    counts = np.bincount(paths.owner[which], minlength=len(paths))
+    return Paths(
+        start=paths.start[which],
+        end=paths.end[which],
+        control=paths.control[which],
+        kind=paths.kind[which],
+        offsets=offsets_of(counts[counts > 0]),
+        closed=paths.closed[counts > 0],
     )
-    return straightened(left, 0.0)
 
 
 def straightened(paths: Paths, tolerance: float) -> Paths:
