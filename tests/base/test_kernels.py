@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from voronoi_tiles.base import kernels
+from voronoi_tiles.base.errors import ArgumentError
 
 ROOT = Path(__file__).parents[2]
 
@@ -20,6 +21,19 @@ def test_numpy_can_be_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     assert kernels.library() is None
     assert kernels.kernel("raster_keep", kernels.INT) is None
     assert kernels.in_use() == "numpy (VORONOI_TILES_KERNELS=numpy)"
+
+
+@pytest.mark.parametrize("value", ["junk", "Numpy", "numpy ", "compiled", "0"])
+def test_what_is_no_choice_of_kernels_is_refused(value: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever misspells it would take the compiled kernels for numpy; an empty value is none."""
+    monkeypatch.setenv("VORONOI_TILES_KERNELS", value)
+    for ask in (kernels.library, kernels.in_use, lambda: kernels.kernel("raster_keep", kernels.INT)):
+        with pytest.raises(ArgumentError, match=f"VORONOI_TILES_KERNELS='{value}' .* Set it to numpy"):
+            ask()
+    monkeypatch.setenv("VORONOI_TILES_KERNELS", "")
+    chosen = kernels.in_use()
+    monkeypatch.delenv("VORONOI_TILES_KERNELS")
+    assert kernels.in_use() == chosen
 
 
 @pytest.mark.parametrize("content", [None, b"", b"\x7fELF, but no more of it"])

@@ -1,7 +1,7 @@
 """The compiled kernels: the shared library that the build makes of the C files, where it could.
 
 A kernel does what numpy code beside it does, with the same bits; without the library numpy does the work. The variable
-VORONOI_TILES_KERNELS=numpy in the environment leaves the library aside.
+VORONOI_TILES_KERNELS=numpy in the environment leaves the library aside; any other value is an error.
 """
 
 from __future__ import annotations
@@ -17,6 +17,9 @@ from zlib import crc32
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
+
+from voronoi_tiles.base.errors import ArgumentError
+from voronoi_tiles.base.values import shown
 
 _VARIABLE = "VORONOI_TILES_KERNELS"
 _SUFFIX = {"darwin": ".dylib", "win32": ".dll"}.get(sys.platform, ".so")
@@ -51,7 +54,10 @@ FLOAT, INT = ctypes.c_double, ctypes.c_int64
 
 
 def library() -> ctypes.CDLL | None:
-    """The library of compiled kernels; None where numpy does their work."""
+    """The library of compiled kernels; None where numpy does their work.
+
+    Raises ArgumentError where VORONOI_TILES_KERNELS is neither numpy nor empty, here and below.
+    """
     return _chosen()[0]
 
 
@@ -80,8 +86,13 @@ def _bound(loaded: ctypes.CDLL, name: str, arguments: tuple[Any, ...]) -> Callab
 
 def _chosen() -> tuple[ctypes.CDLL | None, str]:
     """The library, or None and why."""
-    if os.environ.get(_VARIABLE) == "numpy":
+    choice = os.environ.get(_VARIABLE)
+    if choice == "numpy":
         return None, f"{_VARIABLE}=numpy"
+    if choice:
+        raise ArgumentError(
+            f"{_VARIABLE}={shown(choice)} in the environment chooses nothing", remedy="Set it to numpy, or not at all."
+        )
     return _load(_LIBRARY, _ROOT)
 
 
