@@ -411,6 +411,32 @@ def test_tables_go_between_their_marks(
         report.publish("y", "text")
 
 
+@pytest.mark.parametrize(("code", "goes_on"), [(0, True), (targets.MISSED, True), (1, False), (2, False), (137, False)])
+def test_make_goes_on_where_targets_are_missed(code: int, tmp_path: Path, *, goes_on: bool) -> None:
+    """All benches run where something that was asked is not reached; a crash, or a killed script, ends `make bench`."""
+    python = tmp_path / "bin" / "python"
+    python.parent.mkdir()
+    python.write_text(f'#!/bin/sh\necho "$1" >> {tmp_path}/ran\ntest "$1" != bench/targets.py || exit {code}\n')
+    python.chmod(0o755)
+    make = ["/usr/bin/env", "make", "bench", f"VENV={tmp_path}", "INSTALLED_DEV="]
+    done = subprocess.run(make, cwd=Path(__file__).parents[2], capture_output=True, text=True, check=False)
+    assert (done.returncode == 0) == goes_on, done.stderr
+    ran = (tmp_path / "ran").read_text().split()
+    assert ran[0] == "bench/targets.py"
+    assert (len(ran) > 5) == goes_on
+
+
+@pytest.mark.parametrize("reached", [True, False])
+def test_targets_tell_what_is_missed_from_a_crash(monkeypatch: pytest.MonkeyPatch, *, reached: bool) -> None:
+    """By the code that the script exits with: a crash is Python's 1."""
+    monkeypatch.setattr(sys, "argv", ["targets.py"])
+    monkeypatch.setattr(targets, "compare", lambda *_: reached)
+    with pytest.raises(SystemExit) as exit_:
+        targets.main()
+    assert exit_.value.code == (0 if reached else targets.MISSED)
+    assert targets.MISSED not in (0, 1, 2)
+
+
 def test_report_has_all_marks() -> None:
     """Every script has its place in the report."""
     text = report.REPORT.read_text(encoding="utf-8")
