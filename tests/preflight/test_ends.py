@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import cmath
+import math
 
 import pytest
 from hypothesis import given, settings
@@ -64,6 +65,24 @@ def test_a_line_that_crosses_far_from_its_end_crosses() -> None:
     """Two millimetres past are no overshoot: the lines cross, and the ends are loose."""
     kinds = [one.kind for one in found([10 + 10j, 60 + 10j], [30 + 40j, 30 + 8j])]
     assert sorted(kinds) == ["crossing", "loose end", "loose end", "loose end", "loose end"]
+
+
+@pytest.mark.parametrize("angle", [0.1, 0.15, 0.2, 0.4, 1.5])
+@pytest.mark.parametrize("met", ["M 100 200 H 300", "M 180 200 A 20 20 0 0 0 220 200 A 20 20 0 0 0 180 200"])
+def test_an_end_that_hardly_passes_a_line_does_not_cross_it(met: str, angle: float) -> None:
+    """However flat it meets it: within the tolerance it ends at the line, up to a gap it is past it."""
+    straight, normal = "H" in met, 1j if "H" in met else cmath.rect(1, 0.7)
+    place = 200 + 200j + (0 if straight else 20 * normal)
+    way = -normal * cmath.rect(1, math.pi / 2 - angle)
+    for past in (0.004, 0.009, 0.014, 0.018, 0.021, 0.025, 0.03, 0.04, 0.06, 0.1, 0.2, 0.4):
+        begin, end = place - 9 * way, place + past * way
+        path = f"M {begin.real:.9f} {begin.imag:.9f} L {end.real:.9f} {end.imag:.9f}"
+        document = f"<svg {PAGE} fill='none' stroke='red'><path d='{met}'/><path d='{path}'/></svg>"
+        kinds = {one.kind for one in judge(svg_drawing(document.encode(), "t"), "t").findings}
+        off = abs((end - place).imag) if straight else 20 - abs(end - 200 - 200j)
+        assert "crossing" not in kinds, past
+        if abs(off - 0.005) > 0.001:  # an arc is judged by its chords
+            assert ("overshoot" in kinds) == (off > 0.005), past
 
 
 @settings(max_examples=15, deadline=None)

@@ -125,8 +125,8 @@ def _ends(lines: JudgedLines, ends: PathEnds, limits: Limits) -> Iterator[LineFi
 
 
 def _overshoots(ends: PathEnds, limits: Limits) -> Callable[[Meeting], bool]:
-    """Whether lines cross where one of them runs past the other by no more than a gap."""
-    past = np.flatnonzero(ends.free & np.isfinite(ends.past))
+    """Whether lines cross where one of them ends at the other, or past it by no more than a gap."""
+    past = np.flatnonzero(np.isfinite(ends.past))
     places: dict[int, list[complex]] = {}
     for path, place in zip(ends.path[past].tolist(), ends.met[past].tolist(), strict=True):
         places.setdefault(path, []).append(place)
