@@ -40,23 +40,29 @@ static double least_of(const double *value, int64_t count) {
     return least(least(even, odd), value[count - 1]);
 }
 
-/* Judge the elements of a run from what from_feet found, the least square among them: those matter for which then
- * x <= 2 radius and y >= 0. */
-static void judge(int64_t count, double least_square, double radius, double loose, const double *restrict square,
-                  double *restrict x, double *restrict y) {
-    int64_t winner = 0;
-    while (winner < count - 1 && square[winner] != least_square) winner++;
-    const double nearest = sqrt(least_square), bend = radius * radius / (2.0 * nearest);
-    const double scale = 1.0 / (nearest > 0.0 ? nearest : 1.0);
-    const double gradient_x = x[winner] * scale, gradient_y = y[winner] * scale;
+/* The element of a run that is nearest to the block's centre: its distance, the gradient of that, r^2 / 2D. */
+typedef struct {
+    double distance, gradient_x, gradient_y, bend;
+} winner;
+
+static winner winner_of(int64_t count, double radius, const double *square, const double *x, const double *y) {
+    const double least_square = least_of(square, count);
+    int64_t j = 0;
+    while (j < count - 1 && square[j] != least_square) j++;
+    const double distance = sqrt(least_square), scale = 1.0 / (distance > 0.0 ? distance : 1.0);
+    return (winner){distance, x[j] * scale, y[j] * scale, radius * radius / (2.0 * distance)};
+}
+
+/* Whether elements can be nearer somewhere in the disc than another one: at least 0 in `turned` if so. */
+static void judge(int64_t count, const winner *than, double radius, double loose, const double *restrict square,
+                  const double *restrict x, const double *restrict y, double *restrict turned) {
     for (int64_t j = 0; j < count; j++) {
-        const double distance = sqrt(square[j]);
-        const double excess = distance - nearest, slack = (loose - 1.0) * (distance + radius);
-        const double turn_x = x[j] - gradient_x * distance, turn_y = y[j] - gradient_y * distance;
-        const double beyond = greatest(excess - bend - slack, 0.0) * distance;
+        const double distance = sqrt(square[j]), excess = distance - than->distance;
+        const double slack = (loose - 1.0) * (distance + radius);
+        const double turn_x = x[j] - than->gradient_x * distance, turn_y = y[j] - than->gradient_y * distance;
         const double turn = (turn_x * turn_x + turn_y * turn_y) * (radius * radius);
-        x[j] = excess - slack;
-        y[j] = turn - beyond * beyond;
+        const double beyond = greatest(excess - than->bend - slack, 0.0) * distance;
+        turned[j] = least(turn - beyond * beyond, 2 * radius - (excess - slack));
     }
 }
 
@@ -65,38 +71,54 @@ static void judge(int64_t count, double least_square, double radius, double loos
  *
  * Block b has the list of its parent: the runs from run_start[parent[b]] up to run_start[parent[b] + 1], where run k are
  * the elements element[first[k]] ... element[last[k] - 1] of the copy label[k]; none is empty. Points are pairs of
- * doubles; `middle`, `unit` and `length` are the scene's. `reals` has room for 4 doubles for each element of the longest
+ * doubles; `middle`, `unit` and `length` are the scene's. `reals` has room for 10 doubles for each element of the longest
  * list.
  */
 int64_t raster_keep(int64_t blocks, const int64_t *parent, const double *centre, double radius, double loose,
-                    const int64_t *run_start, const int32_t *label, const int64_t *first, const int64_t *last,
-                    const int32_t *element, const double *middle, const double *unit, const double *length,
-                    double *reals, int64_t *kept_runs, int32_t *kept_label, int64_t *kept_size, int32_t *kept) {
+                    double spare, const int64_t *run_start, const int32_t *label, const int64_t *first,
+                    const int64_t *last, const int32_t *element, const double *middle, const double *unit,
+                    const double *length, double *reals, int64_t *kept_runs, int32_t *kept_label, int64_t *kept_size,
+                    int32_t *kept) {
     int64_t total = 0, runs = 0;
     for (int64_t b = 0; b < blocks; b++) {
         const int64_t run_first = run_start[parent[b]], run_last = run_start[parent[b] + 1], runs_before = runs;
         int64_t size = 0;
         for (int64_t run = run_first; run < run_last; run++) size += last[run] - first[run];
-        double *square = reals, *x = square + size, *y = x + size, *squares = y + size;
-        double smallest = INFINITY, second = INFINITY;
+        double *square = reals, *x = square + size, *y = x + size;
+        double *turned = y + size, *turned_first = turned + size, *turned_second = turned_first + size;
+        winner *winners = (winner *)(turned_second + size);
+        const winner none = {INFINITY, 0.0, 0.0, 0.0}, *nearest = &none, *second = &none;
         for (int64_t run = run_first, i = 0; run < run_last; run++) {
             const int64_t count = last[run] - first[run];
             from_feet(centre + 2 * b, element + first[run], count, middle, unit, length, square + i, x + i, y + i);
-            const double least_square = least_of(square + i, count), nearest = sqrt(least_square);
-            squares[run - run_first] = least_square;
-            second = least(second, nearest < smallest ? smallest : nearest);
-            smallest = least(smallest, nearest);
+            winner *own = winners + (run - run_first);
+            *own = winner_of(count, radius, square + i, x + i, y + i);
+            if (own->distance < nearest->distance) {
+                second = nearest;
+                nearest = own;
+            } else if (own->distance < second->distance) {
+                second = own;
+            }
             i += count;
         }
-        const double reach = (second + 2 * radius) * loose, limit = 2 * radius;
+        const double reach = (second->distance + 2 * radius) * loose;
+        winner first_rival = *nearest, second_rival = *second;
+        first_rival.distance += spare * radius;
+        second_rival.distance += spare * radius;
         for (int64_t run = run_first, i = 0; run < run_last; run++) {
             const int64_t count = last[run] - first[run], before = total;
-            const double least_square = squares[run - run_first];
-            if (sqrt(least_square) <= reach) {
-                judge(count, least_square, radius, loose, square + i, x + i, y + i);
+            const winner *own = winners + (run - run_first);
+            if (own->distance <= reach) {
+                judge(count, own, radius, loose, square + i, x + i, y + i, turned);
+                if (own != nearest && own != second) {
+                    judge(count, &first_rival, radius, loose, square + i, x + i, y + i, turned_first);
+                    judge(count, &second_rival, radius, loose, square + i, x + i, y + i, turned_second);
+                    for (int64_t j = 0; j < count; j++)
+                        turned[j] = least(turned[j], greatest(turned_first[j], turned_second[j]));
+                }
                 for (int64_t j = 0; j < count; j++) {
                     kept[total] = element[first[run] + j];
-                    total += (x[i + j] <= limit) & (y[i + j] >= 0.0);
+                    total += turned[j] >= 0.0;
                 }
             }
             kept_label[runs] = label[run];

@@ -6,7 +6,9 @@ copy than the nearest, only if D_X <= m2 + 2r. Of its elements those can be left
 farther than the one, e, that is nearest at c. The distance of an element is a convex function of the point, so it is
 at least d + g.(p - c) with its gradient g at c; and e is at most as far as its foot, |p - foot|, which is at most
 D + G.(p - c) + r^2 / 2D. So an element can be left out where d - D > |g - G| r + r^2 / 2D, and also where d - D > 2r.
-A block's list is a subset of the list of the block that it is a quarter of.
+Of a third copy also those can be left out that are everywhere farther than both those elements of other copies that
+are nearest at c: far from a row of copies that lie close to each other, that leaves a few of hundreds. A block's list
+is a subset of the list of the block that it is a quarter of.
 """
 
 from __future__ import annotations
@@ -65,22 +67,29 @@ class BlockLists:
         return distances(self.centre[self.element_block], scene.middle[self.element], scene.half[self.element])
 
 
-def find_candidates(scene: Scene, frame: Frame, *, looseness: float = 0.0) -> BlockLists:
+_SPARE = 1e-3
+"""By how much an element of a third copy is farther where it is left out, for those who ask whether one is just as far
+but for rounding: in radii of a block, far more than rounding and far less than what costs time."""
+
+
+def find_candidates(scene: Scene, frame: Frame, *, looseness: float = 0.0, spare: float = _SPARE) -> BlockLists:
     """The candidate lists of a frame's blocks; the scene must hold all that may be nearest in the frame.
 
     With `looseness` e the lists hold for any distance functions that are within a factor of 1 +- e of the true ones.
+    What is no farther than the two nearest copies plus `spare` radii of a block, somewhere in a block's disc, is in its
+    list; with inf all copies that are at its centre within two radii of the second nearest.
     """
+    margins = _Margins(_SLACK + 4.0 * looseness, spare)
     across, down = -(-frame.width // BLOCK), -(-frame.height // BLOCK)
     level = 0
     while (-(-across >> level) * -(-down >> level)) > _ROOTS and level < 30:
         level += 1
-    loose = _SLACK + 4.0 * looseness
     grid = _grid(frame, level)
-    lists = _kept(scene, _near(scene, grid, loose), np.arange(len(grid.centre)), grid, loose)
+    lists = _kept(scene, _near(scene, grid, margins.loose), np.arange(len(grid.centre)), grid, margins)
     while level:
         level -= 1
         finer = _grid(frame, level)
-        lists = _kept(scene, lists, (finer.row // 2) * grid.columns + finer.column // 2, finer, loose)
+        lists = _kept(scene, lists, (finer.row // 2) * grid.columns + finer.column // 2, finer, margins)
         grid = finer
     element_start = np.append(lists.first, len(lists.element))
     return BlockLists(
@@ -110,6 +119,13 @@ def _grid(frame: Frame, level: int) -> _BlockGrid:
     centre = frame.offsets((column + 0.5) * side, (row + 0.5) * side)
     # The far sides of a block are the samples where the next one begins.
     return _BlockGrid(columns, column, row, centre, frame.half_diagonal(side))
+
+
+class _Margins(NamedTuple):
+    """What keeps more than must be: a factor of distances, and radii of the block for third copies."""
+
+    loose: float
+    spare: float
 
 
 class _Lists(NamedTuple):
@@ -148,14 +164,14 @@ def _near(scene: Scene, grid: _BlockGrid, loose: float) -> _Lists:
     )
 
 
-def _kept(scene: Scene, parents: _Lists, parent: Ints, grid: _BlockGrid, loose: float) -> _Lists:
+def _kept(scene: Scene, parents: _Lists, parent: Ints, grid: _BlockGrid, margins: _Margins) -> _Lists:
     """The lists of the blocks of a level, made of those of their parents."""
     size = np.add.reduceat(parents.last - parents.first, parents.run_start[:-1])[parent]
     ends = np.cumsum(size)
     # In portions, so that the work arrays do not fill the memory.
     bounds = np.searchsorted(ends, np.arange(_PORTION, int(ends[-1]) + _PORTION, _PORTION))
     portions = [
-        _kept_portion(scene, parents, parent[i:j], size[i:j], grid.centre[i:j], grid.radius, loose)
+        _kept_portion(scene, parents, parent[i:j], size[i:j], grid.centre[i:j], grid.radius, margins)
         for i, j in zip(np.append(0, bounds), np.append(bounds, len(parent)), strict=True)
         if i < j
     ]
@@ -178,7 +194,7 @@ class _Kept(NamedTuple):
 
 
 def _kept_portion(
-    scene: Scene, parents: _Lists, parent: Ints, size: Ints, centre: Complexes, radius: float, loose: float
+    scene: Scene, parents: _Lists, parent: Ints, size: Ints, centre: Complexes, radius: float, margins: _Margins
 ) -> _Kept:
     """What can matter near centre[b], of the list of parent[b], which has size[b] elements.
 
@@ -187,7 +203,7 @@ def _kept_portion(
     start = parents.run_start
     keep = kernel("raster_keep", *_BLOCKS, *_LISTS, *_ELEMENTS, FLOATS, *_KEPT)
     if keep is not None:
-        blocks = len(parent), parent, centre, radius, loose
+        blocks = len(parent), parent, centre, radius, *margins
         elements = scene.middle, scene.unit, scene.length
         most = int((start[parent + 1] - start[parent]).sum())
         kept = _Kept(
@@ -196,15 +212,15 @@ def _kept_portion(
             np.empty(most, np.intp),
             np.empty(int(size.sum()), np.int32),
         )
-        total = keep(*blocks, *parents, *elements, np.empty(4 * int(size.max())), *kept)
+        total = keep(*blocks, *parents, *elements, np.empty(10 * int(size.max())), *kept)
         runs = int(kept.runs.sum())
         return _Kept(kept.runs, kept.label[:runs], kept.size[:runs], kept.element[:total])
     run, block = owned_ranges(start[parent], start[parent + 1])
     index, owner = owned_ranges(parents.first[run], parents.last[run])
     element, place = parents.element[index], centre[block][owner]
-    run_start, block_start = starts(owner), starts(block)
+    run_start, block_start = np.searchsorted(owner, np.arange(len(run))), np.searchsorted(block, np.arange(len(parent)))
     away = _from_feet(place, scene.middle[element], scene.unit[element], scene.length[element])
-    chosen = _keep(away, run_start, block_start, radius, loose)
+    chosen = _keep(away, owner, run_start, block_start, radius, margins)
     count = np.add.reduceat(chosen, run_start, dtype=np.intp)
     left = count > 0
     runs_left = np.add.reduceat(left, block_start, dtype=np.intp)
@@ -212,7 +228,7 @@ def _kept_portion(
 
 
 # The arguments of raster_keep in block_lists.c.
-_BLOCKS = INT, INTS, COMPLEXES, FLOAT, FLOAT
+_BLOCKS = INT, INTS, COMPLEXES, FLOAT, FLOAT, FLOAT
 _LISTS = INTS, LABELS, INTS, INTS, LABELS
 _ELEMENTS = COMPLEXES, COMPLEXES, FLOATS
 _KEPT = INTS, LABELS, INTS, LABELS
@@ -221,47 +237,62 @@ _KEPT = INTS, LABELS, INTS, LABELS
 def _from_feet(z: Complexes, middle: Complexes, unit: Complexes, length: Floats) -> Complexes:
     """The vectors that lead to points from the nearest points of elements middle +- length unit, without a division."""
     away = z - middle
-    along = away.real * unit.real + away.imag * unit.imag
-    along = np.minimum(np.maximum(along, -length), length)
+    along = away.real * unit.real
+    along += away.imag * unit.imag
+    np.clip(along, -length, length, out=along)
     away.real -= along * unit.real
     away.imag -= along * unit.imag
     return away
 
 
-def _keep(away: Complexes, run_start: Ints, block_start: Ints, radius: float, loose: float) -> NDArray[np.bool_]:
+def _keep(
+    away: Complexes, run: Ints, run_start: Ints, block_start: Ints, radius: float, margins: _Margins
+) -> NDArray[np.bool_]:
     """Which elements of each block's list can matter within `radius` of the block's centre.
 
-    `away` (n,) leads from each element's nearest point to the centre, `run_start` says where the elements of a copy
-    begin, `block_start` where the runs of a block.
+    `away` (n,) leads from each element's nearest point to the centre, `run` (n,) says in which run it is, `run_start`
+    where the elements of a run begin, `block_start` where the runs of a block.
     """
     square = away.real * away.real + away.imag * away.imag
     least = np.minimum.reduceat(square, run_start)
     distance, nearest = np.sqrt(square), np.sqrt(least)
-    size = np.diff(run_start, append=len(away))
-    second = _second_smallest(nearest, block_start)
-    limit = np.where(nearest <= (second + 2 * radius) * loose, 2 * radius, -np.inf)
-    # Of each copy, what is farther everywhere than the element that is nearest at the centre.
-    winner = _first_of_each(np.flatnonzero(square == np.repeat(least, size)), run_start)
+    rivals = _two_nearest(nearest, block_start)
+    within_reach = nearest <= (nearest[rivals[1]] + 2 * radius) * margins.loose
+    winner = _first_of_each(np.flatnonzero(square == least[run]), run_start)
     gradient = away[winner] * (1.0 / np.where(nearest > 0.0, nearest, 1.0))
     with np.errstate(divide="ignore"):
         bend = radius * radius / (2.0 * nearest)
-    excess = distance - np.repeat(nearest, size)
-    slack = (loose - 1.0) * (distance + radius)
-    # Squared, and times the distance: |g - G| r >= d - D - r^2 / 2D, where the right side is positive.
-    turn = away - np.repeat(gradient, size) * distance
-    beyond = np.maximum(excess - np.repeat(bend, size) - slack, 0.0) * distance
-    turned = (turn.real * turn.real + turn.imag * turn.imag) * (radius * radius) - beyond * beyond
-    return np.asarray((excess - slack <= np.repeat(limit, size)) & (turned >= 0.0))
+    slack = (margins.loose - 1.0) * (distance + radius)
+
+    def nearer(some: Ints | slice, of: Ints, spare: float) -> NDArray[np.bool_]:
+        """Whether some elements are nearer somewhere than the nearest at the centre of these runs and spare radii."""
+        d = distance[some]
+        excess = d - (nearest[of] + spare * radius)
+        turn = away[some] - gradient[of] * d
+        # Squared, and times the distance: |g - G| r >= d - D - r^2 / 2D, where the right side is positive.
+        beyond = np.maximum(excess - bend[of] - slack[some], 0.0) * d
+        turned = (turn.real * turn.real + turn.imag * turn.imag) * (radius * radius) - beyond * beyond
+        return np.asarray((excess - slack[some] <= 2 * radius) & (turned >= 0.0))
+
+    kept = within_reach[run] & nearer(slice(None), run, 0.0)
+    third_run = np.ones(len(run_start), np.bool_)
+    third_run[rivals[0]] = third_run[rivals[1]] = False
+    third = np.flatnonzero(kept & third_run[run])
+    one, other = (nearer(third, rival[run[third]], margins.spare) for rival in rivals)
+    kept[third] = one | other
+    return kept
 
 
-def _second_smallest(nearest: Floats, block_start: Ints) -> Floats:
-    """For each run the second smallest of the runs' distances in its block."""
+def _two_nearest(nearest: Floats, block_start: Ints) -> tuple[Ints, Ints]:
+    """For each run the two runs in its block with the smallest distances."""
     size = np.diff(block_start, append=len(nearest))
-    smallest = np.repeat(np.minimum.reduceat(nearest, block_start), size)
-    # The smallest of what is left when one of the smallest is taken away.
-    rest = nearest.copy()
-    rest[_first_of_each(np.flatnonzero(nearest == smallest), block_start)] = np.inf
-    return np.asarray(np.repeat(np.minimum.reduceat(rest, block_start), size))
+    rest, found = nearest.copy(), []
+    for _ in range(2):
+        smallest = np.repeat(np.minimum.reduceat(rest, block_start), size)
+        first = _first_of_each(np.flatnonzero(rest == smallest), block_start)
+        rest[first] = np.inf
+        found.append(np.repeat(first, size))
+    return found[0], found[1]
 
 
 def _first_of_each(index: Ints, start: Ints) -> Ints:

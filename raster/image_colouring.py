@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from voronoi_tiles.base.arrays import Ints
@@ -34,7 +36,7 @@ def neighbours(pattern: Pattern) -> tuple[Ints, int]:
     """
     frame = cell_frame(pattern.lattice, _SAMPLES)
     scene = gather(pattern, frame.origin, frame.middle, frame.radius)
-    lists = find_candidates(scene, frame)
+    lists = find_candidates(scene, frame, spare=math.inf)
     nearest = np.minimum.reduceat(lists.from_centres(), lists.element_start[:-1])
     least = np.minimum.reduceat(nearest, lists.run_start[:-1])
     owning = np.flatnonzero(nearest <= least[lists.run_block] + 2 * lists.radius)

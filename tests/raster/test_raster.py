@@ -490,9 +490,10 @@ def test_scenes_are_united() -> None:
 # --- candidate lists ----------------------------------------------------------------------------------------
 
 
-def lists_of(pattern: Pattern, frame: Frame, looseness: float = 0.0) -> BlockLists:
+def lists_of(pattern: Pattern, frame: Frame, looseness: float = 0.0, spare: float = 1e-3) -> BlockLists:
     """The lists of a frame's blocks."""
-    return find_candidates(gather(pattern, frame.origin, frame.middle, frame.radius), frame, looseness=looseness)
+    scene = gather(pattern, frame.origin, frame.middle, frame.radius)
+    return find_candidates(scene, frame, looseness=looseness, spare=spare)
 
 
 def list_of(lists: BlockLists, block: int) -> Ints:
@@ -564,6 +565,33 @@ def test_candidate_lists_are_short() -> None:
     assert len(lists.element) < 0.05 * len(lists) * len(lists.scene)
 
 
+def test_lists_are_short_far_from_rows_of_copies() -> None:
+    """A thousand units from copies that stand one unit apart hundreds are as near as the nearest, to half a block.
+
+    All but a few are farther everywhere in the block than the nearest two; none of these is lost.
+    """
+    pattern = one("p1", {"segment": [[0.2, 0.2], [0.6, 0.7]]}, a=2000.0, b=1.0, angle=90.0)
+    rng = np.random.default_rng(5)
+    frame = Frame(1000 - 40j, 0.1 + 0j, 0.1j, 400, 400)
+    lists = lists_of(pattern, frame)
+    nearest = np.abs(lists.centre[:, None] - lists.scene.middle).min(axis=1)
+    assert nearest.min() > 900
+    assert len(lists.run_label) < 16 * len(lists)
+    assert len(lists.scene.copies) > 100
+    for block in rng.integers(0, len(lists), 40).tolist():
+        kept = list_of(lists, block)
+        for p in (lists.centre[block] + lists.radius * in_disc(rng, 10)).tolist():
+            distance = distances(p, lists.scene.middle, lists.scene.half)
+            near, labels = two_nearest(lists.scene.label, distance)
+            again, same = two_nearest(lists.scene.label[kept], distance[kept])
+            assert (near == again).all()
+            assert (labels == same).all()
+            third = np.flatnonzero(distance <= near[1] + 1e-3 * lists.radius)
+            assert np.isin(third, kept).all()
+    everything = lists_of(pattern, frame, spare=math.inf)
+    assert len(everything.run_label) > 100 * len(lists)
+
+
 def test_lists_in_portions_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     """However little is handled at once; one root block or many."""
     pattern = one("pgg", {"bspline": [[2, 3], [9, 9], [20, 1], [14, 14], [25, 4]]}, b=50.0)
@@ -587,14 +615,15 @@ def test_lists_in_portions_are_the_same(monkeypatch: pytest.MonkeyPatch) -> None
 @GROUP
 def test_the_kernel_makes_the_same_lists(group: str, looseness: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Every array has the same bits, with the compiled kernel and with numpy; the lists are no empty ones."""
-    for pattern, rng in random_patterns(12, group, "plain", "grid", "points", "special", "several", "near"):
+    patterns = random_patterns(12, group, "plain", "grid", "points", "special", "several", "near")
+    for (pattern, rng), spare in zip(patterns, 3 * (1e-3, math.inf), strict=True):
         frame = random_frame(pattern, rng)
         frame = replace(frame, width=frame.width + 60, height=frame.height + 60, u=frame.u / 3, v=frame.v / 3)
         both = []
         for variable in ("", "numpy"):
             monkeypatch.setenv("VORONOI_TILES_KERNELS", variable)
             assert (kernels.library() is None) == bool(variable)
-            both.append(lists_of(pattern, frame, looseness))
+            both.append(lists_of(pattern, frame, looseness, spare))
         for name in ("centre", "run_start", "run_label", "element_start", "element"):
             one, other = (getattr(lists, name) for lists in both)
             assert one.dtype == other.dtype
@@ -614,9 +643,9 @@ def test_copies_that_are_far_from_a_block_are_left_out_at_once() -> None:
     everything = candidates._Lists(
         np.array([0, len(first)]), scene.label[first], first, np.append(first[1:], len(scene)), element
     )
-    parent = np.arange(len(grid.centre))
-    some = candidates._kept(scene, near, parent, grid, 1.0)
-    whole = candidates._kept(scene, everything, np.zeros_like(parent), grid, 1.0)
+    parent, margins = np.arange(len(grid.centre)), candidates._Margins(1.0, 1e-3)
+    some = candidates._kept(scene, near, parent, grid, margins)
+    whole = candidates._kept(scene, everything, np.zeros_like(parent), grid, margins)
     assert all((one == other).all() for one, other in zip(some, whole, strict=True))
 
 
