@@ -106,10 +106,24 @@ def grown(seed: int) -> Paths:
     return offset(region, 1.0).paths
 
 
+def beside_tiny_ones(seed: int) -> Paths:
+    """A ring round 0 of six long lines; at its corners, a tiny line and a short one, on either side of each other."""
+    random = np.random.default_rng(seed)
+    corners = 10 * np.exp(1j * np.pi / 3 * (np.arange(6) + random.uniform(-0.2, 0.2, 6)))
+    points = []
+    for k, corner in enumerate(corners.tolist()):
+        ahead = corners[(k + 1) % 6] - corner
+        way = 1j * corner / 10
+        sizes = random.permutation([0.0008, random.uniform(0.003, 0.009)]) * (ahead.conjugate() * way).real / abs(ahead)
+        points += [corner, corner + sizes[0] * way, corner + sizes.sum() * way * np.exp(0.05j)]
+    return ring(*points)
+
+
 RINGS: dict[str, tuple[Callable[[int], Paths], float, float]] = {
     "lines": (partial(rough, arcs=False), 0.005, 0.005),
     "arcs": (partial(rough, arcs=True), 0.005, 0.005),
     "arcs about corners": (grown, 0.4, 0.004),
+    "lines beside tiny ones": (beside_tiny_ones, 0.01, 0.001),
 }
 """What makes a ring of a seed, and which segments are left out: their length, the deviation."""
 
@@ -174,6 +188,20 @@ def test_a_short_arc_about_a_corner_gives_way_to_its_tip() -> None:
     )
     for stays in (without_short_segments(given, 0.11, 0.99 * off), without_short_segments(given, 0.09, 1.01 * off)):
         assert stays is given or len(stays.start) == 5
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+@pytest.mark.parametrize("turn", [0.02, 0.05])
+def test_a_short_segment_beside_a_tiny_one_goes_to_a_tip(turn: float, *, backwards: bool) -> None:
+    """When the tiny one has gone to its middle, all that is left is one beside longer ones."""
+    points = [10, *(10 + np.cumsum(np.array([0.0007, 0.007, 9]) * np.exp(1j * turn * np.arange(1, 4)))), 9j]
+    given = ring(0, *points)
+    if backwards:
+        given = given.reversed(np.array([True]))
+    found = without_short_segments(given, 0.01, 0.001)
+    assert len(found.start) == 4
+    assert apart(given, found) <= 0.001
+    assert len(without_short_segments(given, 0.01, 0.0008 * turn).start) == 6
 
 
 @pytest.mark.parametrize("off", [0.0, 1e-9, -1e-9])

@@ -40,14 +40,22 @@ def without_short_segments(rings: Paths, length: float, deviation: float) -> Pat
 
     One whose neighbours are longer goes where these, led along their tangents, meet at a tip that is near enough. Of
     the others, those go that are shorter than `deviation`, several in a row where they are so together: what they
-    joined meets in their middle, so that ends move by half of it at most. What was the middle of an arc stays on it.
+    joined meets in their middle, so that ends move by half of it at most. One that then has longer neighbours goes to
+    a tip for which the other half is enough. What was the middle of an arc stays on it.
     What a ring loses depends neither on where it starts nor on its direction. One that would keep fewer than two
     segments stays. Raises ValueError for open paths.
     """
     if not rings.closed.all():
         raise ValueError("only closed paths can lose short segments")
+    length = max(length, deviation)
+    left = _shortened(rings, length, tip=deviation, middle=deviation)
+    return _shortened(left, length, tip=deviation / 2, middle=0.0)
+
+
+def _shortened(rings: Paths, length: float, *, tip: float, middle: float) -> Paths:
+    """Rings without what goes at once: to tips that move nothing by more than `tip`, to middles below `middle`."""
     lengths = rings.lengths
-    short = lengths < max(length, deviation)
+    short = lengths < length
     if not short.any():
         return rings
     everything, after = np.arange(len(short)), next_in_ring(rings.offsets)
@@ -56,11 +64,11 @@ def without_short_segments(rings: Paths, length: float, deviation: float) -> Pat
     alone = np.flatnonzero(short & ~short[before] & ~short[after])
     place, moved = _tips(rings, before[alone], alone, after[alone])
     led = np.zeros(len(short), np.bool_)
-    led[alone] = moved <= deviation
-    tiny = lengths < deviation
+    led[alone] = moved <= tip
+    tiny = lengths < middle
     together = np.flatnonzero(tiny & tiny[after])
     row = components(len(short), together, after[together])
-    gone = led | (tiny & (np.bincount(row, lengths, len(short))[row] < deviation))
+    gone = led | (tiny & (np.bincount(row, lengths, len(short))[row] < middle))
     gone &= (np.bincount(rings.owner[~gone], minlength=len(rings)) >= 2)[rings.owner]
     first, last = np.flatnonzero(gone & ~gone[before]), np.flatnonzero(gone & ~gone[after])
     first, last = first[np.argsort(row[first])], last[np.argsort(row[last])]
