@@ -60,3 +60,12 @@ def test_parallel_arcs_meet_where_the_second_starts() -> None:
     for slope in (0.0, 1e-6):
         lines = [0j, 1 + 0j, 1 + 1e-7j, complex(2, 1e-7 + slope), 1 + 5j]
         assert without(ring(lines), np.array([0, 2, 3, 4])).vertex[1] == 1 + 1e-7j
+
+
+@pytest.mark.parametrize(("point", "left_out"), [(1, 2), (2, 1)])
+def test_an_arc_of_no_length_meets_others_where_the_second_starts(point: int, left_out: int) -> None:
+    """It has no direction in which the corner could be moved, whether it comes before that or after."""
+    after = 1 + 1e-7j
+    lines = [0j, 1 + 0j, 1 + 0j if point == 1 else after, after, 1j]
+    kept = np.delete(np.arange(5), left_out)
+    assert without(ring(lines), kept).vertex.tolist() == [lines[k] for k in kept]

@@ -42,11 +42,14 @@ def _crossing(boundary: Traced, before: int, after: int) -> complex:
 
 
 def _off(boundary: Traced, arc: int, here: complex) -> tuple[float, complex]:
-    """How far an arc's curve is from a point near its ends, and its unit normal there."""
+    """How far an arc's curve is from a point near its ends, and its unit normal there; 0 for an arc of no length."""
     if boundary.curved[arc]:
         return off_parabola(boundary, arc, here)
     start, end = boundary.vertex[[arc, boundary.following[arc]]].tolist()
     if arc in boundary.nearly_touching:
         return off_bisector(boundary, arc, here)
-    normal = 1j * (end - start) / abs(end - start)
+    length = abs(end - start)
+    if length == 0.0:
+        return 0.0, 0j
+    normal = 1j * (end - start) / length
     return (normal.conjugate() * (start - here)).real, normal
