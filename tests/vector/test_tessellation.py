@@ -663,6 +663,27 @@ def test_a_copy_that_nearly_touches_a_segment(group: str, exponent: int) -> None
         assert tiling.proof.passed
 
 
+@pytest.mark.parametrize(
+    ("b", "x", "start", "end"),
+    [
+        (60000.0, -1e-6, 19928.0, 20295.0),
+        (60000.0, -3.336114992300405e-07, 19928.07178402231, 20295.03986582269),
+        (59590.149179908214, 4.8412453949445684e-05, 56777.0622285203, 57044.608164986115),
+        (130103.71054781167, 2.6602355876784573e-06, 17854.349049326836, 28520.73595286381),
+    ],
+)
+def test_a_stroke_along_a_mirror_of_a_thin_cell(b: float, x: float, start: float, end: float) -> None:
+    """Its tile is the rectangle between two mirrors, cut halfway between the stroke and its next translates.
+
+    Far away rounding cut one short side of it into more edges, of two copies in turn, than the other one.
+    """
+    outline = tile(one("pm", {"segment": [[x, start], [x, end]]}, b=b)).tiles[0].outline
+    left, middle = min(0.0, math.copysign(30.0, x)), (start + end) / 2
+    box = [left, middle - b / 2, left + 30, middle + b / 2]
+    np.testing.assert_allclose(outline.bounds, box, rtol=0, atol=1e-12 * b)
+    assert outline.area == pytest.approx(30 * b, rel=1e-12)
+
+
 @pytest.mark.parametrize("name", list(TOUCHING))
 def test_found_touching_by_the_fuzz(name: str) -> None:
     """Designs that an earlier engine should have refused."""

@@ -268,10 +268,26 @@ def _paired(action: Action, symmetry: SiteSymmetry, edges: Edges, *, pinched: bo
     if (low == high).any():
         raise UnpairedEdgeError(edges, int(source[wanted[np.flatnonzero(low == high)[0]]]))
     edges.image[wanted] = order[low]
-    unsure = (high - low > 1) | ~_agree(action, edges, wanted)
+    several = high - low > 1
+    unsure = several | ~_agree(action, edges, wanted)
     for row in np.flatnonzero(unsure).tolist():
         edges.image[wanted[row]] = _nearest(action, edges, int(wanted[row]), order[low[row] : high[row]])
+    if several.any():
+        _refuse_shared(edges)
     return edges
+
+
+def _refuse_shared(edges: Edges) -> None:
+    """Raise UnpairedEdgeError for an edge whose image is taken back to another one."""
+    # An edge has one link of each motion and direction, and its image the inverse of each.
+    count = len(edges.by)
+    motion = np.unique((edges.by, inverted(edges.by)), return_inverse=True)[1].reshape(2, count)
+    here, there = np.array((edges.source, edges.image)) * (4 * count) + 2 * motion + edges.backwards
+    order = here.argsort()
+    back = edges.image[order[here[order].searchsorted(there)]]
+    shared = edges.source[back != edges.source]
+    if len(shared):
+        raise UnpairedEdgeError(edges, int(shared[0]))
 
 
 def _agree(action: Action, edges: Edges, links: Ints) -> Bools:
