@@ -199,14 +199,14 @@ def tessellate(
     symmetry = SiteSymmetry.of(placed)
     try:
         traced, least = _trace(action, placed)
+        if least < _SUSPICIOUS * action.size:
+            refuse_touching(action, names, placed)
         edges = find_edges(action, symmetry, traced, without_short=without_short)
     except (TouchingElementsError, UnboundedCellError, OpenBoundaryError, UnpairedEdgeError) as error:
         refuse_touching(action, names, placed)
         raise ProofError(
             "the boundary of a tile does not close, though no copies touch; please report this design"
         ) from error
-    if least < _SUSPICIOUS * action.size:
-        refuse_touching(action, names, placed)
     tessellation = Tessellation(action, names, placed, symmetry, build_quotient(action, len(placed), edges))
     return [
         TileRecord(

@@ -26,6 +26,7 @@ from voronoi_tiles.designs.design import Design
 from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.groups.wallpaper import GROUPS, Lattice
 from voronoi_tiles.tiling import Tiling
+from voronoi_tiles.vector import tessellation
 from voronoi_tiles.vector.outline import Outline
 
 Complexes = NDArray[np.complex128]
@@ -688,6 +689,13 @@ def test_a_stroke_along_a_mirror_of_a_thin_cell(b: float, x: float, start: float
 def test_found_touching_by_the_fuzz(name: str) -> None:
     """Designs that an earlier engine should have refused."""
     assert fuzz.try_design(TOUCHING[name], np.random.default_rng(1)) == "refused"
+
+
+def test_strokes_across_their_copies_are_refused_before_edges_are_paired(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What such tiles have for edges does not pair, and takes long not to."""
+    monkeypatch.setattr(tessellation, "find_edges", None)
+    with pytest.raises(TouchingCopiesError):
+        Design.from_dict(TOUCHING["strokes across their copies, drawn twice a little apart"]).tessellate()
 
 
 @pytest.mark.slow
