@@ -685,6 +685,25 @@ def test_a_stroke_along_a_mirror_of_a_thin_cell(b: float, x: float, start: float
     assert outline.area == pytest.approx(30 * b, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    "design",
+    [
+        one("p4g", {"segment": [[1.1182060441818324, 31.11820604372981], [3.1427003728869236, 33.1427003724349]]}),
+        one(
+            "pmg",
+            {"segment": [[14.999997057775584, 112059.78169252604], [14.999997057775584, 123643.8869481488]]},
+            b=245542.451896263,
+        ),
+    ],
+)
+def test_an_edge_that_is_longer_in_one_tile_than_beyond(design: dict[str, Any]) -> None:
+    """Both are left out where the shorter one is, though rounding put their ends farther apart than that is long.
+
+    How far it does depends on a gap between two copies beyond, of which the tile's own boundary does not tell.
+    """
+    assert tile(design).proof.passed
+
+
 @pytest.mark.parametrize("name", list(TOUCHING))
 def test_found_touching_by_the_fuzz(name: str) -> None:
     """Designs that an earlier engine should have refused."""

@@ -143,7 +143,10 @@ def find_edges(action: Action, symmetry: SiteSymmetry, traced: Traced, *, withou
             traced, arcs = error.edges.traced, error.edges.arcs_around(error.edge)
             vertex, rest = traced.vertex[arcs], np.ones(len(traced), bool)
             rest[arcs[:-1]] = False
-            short = np.abs(vertex - vertex[0]).max() <= max(_ONE_SIDED * action.size, _spread(traced, arcs))
+            # Where two beyond nearly touch, it does not show on this side how far apart rounding has put the ends.
+            last_resort = without_short and not pinched
+            limit = max((PAIRING if last_resort else _ONE_SIDED) * action.size, _spread(traced, arcs))
+            short = np.abs(vertex - vertex[0]).max() <= limit
             if short and (rest & (traced.tile == error.edges.tile[error.edge])).any():
                 edges = _between(without(traced, np.flatnonzero(rest)))
             elif pinched:
