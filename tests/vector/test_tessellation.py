@@ -704,6 +704,15 @@ def test_an_edge_that_is_longer_in_one_tile_than_beyond(design: dict[str, Any]) 
     assert tile(design).proof.passed
 
 
+def test_an_edge_is_not_paired_with_what_is_far_from_its_image() -> None:
+    """In a thin cell all is near on the scale of the longer side, and an edge on one mirror was moved to another."""
+    strokes = [
+        {"segment": [[30.024301838168142, 58887.17969928503], [36.81058345864872, 58889.542014834005]]},
+        {"segment": [[-5.985836833616643e-06, 69140.19541987422], [-5.985836833616643e-06, 69153.04911567103]]},
+    ]
+    assert tile(one("cm", *strokes, b=103703.53796159272)).proof.passed
+
+
 @pytest.mark.parametrize("name", list(TOUCHING))
 def test_found_touching_by_the_fuzz(name: str) -> None:
     """Designs that an earlier engine should have refused."""

@@ -294,7 +294,7 @@ def _refuse_shared(edges: Edges) -> None:
 
 
 def _agree(action: Action, edges: Edges, links: Ints) -> Bools:
-    """Whether the images of edges under links have the vertices of those that they lead to."""
+    """Whether the images of edges under links plainly have the vertices of those that they lead to."""
     source, image = edges.source[links], edges.image[links]
     counts, first = edges.counts, edges.offsets[:-1] + np.arange(len(edges))
     here, there = counts[source], counts[image]
@@ -305,20 +305,32 @@ def _agree(action: Action, edges: Edges, links: Ints) -> Bools:
     one, two = vertex[first[source][row] + place], vertex[first[image][row] + other]
     gap = np.abs(images(action, edges.by[links][row], one) - two)
     gap = np.maximum.reduceat(gap, offsets_of(here + 1)[:-1])
-    return np.asarray((here == there) & (gap <= PAIRING * action.size))
+    return np.asarray((here == there) & (gap <= _ONE_SIDED * action.size))
 
 
 def _nearest(action: Action, edges: Edges, link: int, candidates: Ints) -> int:
-    """The one of some edges that a link's image of its edge comes nearest to. Raises UnpairedEdgeError."""
-    source, limit = int(edges.source[link]), PAIRING * action.size
+    """The one of some edges that a link's image of its edge comes nearest to. Raises UnpairedEdgeError.
+
+    In a thin cell all is near, on the scale of the longer side: no edge is farther from its image than either extends,
+    but for those that rounding may have made.
+    """
+    source = int(edges.source[link])
     image = images(action, edges.by[link], edges.course(source))
     if edges.backwards[link]:
         image = image[::-1]
-    gaps = [_gap(image, edges.course(other), limit) for other in candidates.tolist()]
+    least, most = _ONE_SIDED * action.size, PAIRING * action.size
+    courses = [edges.course(other) for other in candidates.tolist()]
+    limits = [min(max(least, min(_extent(image), _extent(course))), most) for course in courses]
+    gaps = [_gap(image, course, limit) for course, limit in zip(courses, limits, strict=True)]
     best = int(np.argmin(gaps))
-    if gaps[best] > limit:
+    if gaps[best] > limits[best]:
         raise UnpairedEdgeError(edges, source)
     return int(candidates[best])
+
+
+def _extent(course: Complexes) -> float:
+    """How far points are from the first of them."""
+    return float(np.abs(course - course[0]).max())
 
 
 def _gap(one: Complexes, other: Complexes, limit: float) -> float:
