@@ -58,12 +58,12 @@ def library() -> ctypes.CDLL | None:
 
     Raises ArgumentError where VORONOI_TILES_KERNELS is neither numpy nor empty, here and below.
     """
-    return _chosen()[0]
+    return _chosen(os.environ.get(_VARIABLE))[0]
 
 
 def in_use() -> str:
     """Which kernels are in use, for people: "compiled", or "numpy" with the reason."""
-    loaded, reason = _chosen()
+    loaded, reason = _chosen(os.environ.get(_VARIABLE))
     return "compiled" if loaded else f"numpy ({reason})"
 
 
@@ -72,21 +72,22 @@ def kernel(name: str, *arguments: Array | type[ctypes.c_double | ctypes.c_int64]
 
     ctypes raises ArgumentError where an argument is of another type.
     """
-    loaded = library()
-    return None if loaded is None else _bound(loaded, name, arguments)
+    return _bound(os.environ.get(_VARIABLE), name, arguments)
 
 
 @cache
-def _bound(loaded: ctypes.CDLL, name: str, arguments: tuple[Any, ...]) -> Callable[..., int]:
+def _bound(choice: str | None, name: str, arguments: tuple[Any, ...]) -> Callable[..., int] | None:
+    loaded, _ = _chosen(choice)
+    if loaded is None:
+        return None
     function = loaded[name]
     function.argtypes = arguments
     function.restype = ctypes.c_int64
     return function
 
 
-def _chosen() -> tuple[ctypes.CDLL | None, str]:
-    """The library, or None and why."""
-    choice = os.environ.get(_VARIABLE)
+def _chosen(choice: str | None) -> tuple[ctypes.CDLL | None, str]:
+    """The library as the variable's value, None where it is not set, chooses it; or None and why."""
     if choice == "numpy":
         return None, f"{_VARIABLE}=numpy"
     if choice:
