@@ -8,11 +8,13 @@ are held as tuples of integers only.
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Ints
+from voronoi_tiles.base.kernels import COMPLEXES, FLOAT, FLOATS, INT, INTS, kernel
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.vector.motions import IDENTITY, LINEAR_PARTS, Action, Motion, compose, inverse, to_operation
 
@@ -32,7 +34,8 @@ _NUMBER = {linear: k for k, linear in enumerate(LINEAR_PARTS)}
 _A, _B, _C, _D = np.array(LINEAR_PARTS, np.int64).T.copy()
 _REVERSES = _A * _D - _B * _C < 0
 # What each linear part makes of a translation's two coordinates, as part of a code.
-_ALONG_A, _ALONG_B = (_A << _BITS) + _C, (_B << _BITS) + _D
+_ALONG = np.array(((_A << _BITS) + _C, (_B << _BITS) + _D))
+_ALONG_A, _ALONG_B = _ALONG
 # The code of each product, row by row, < 0 where the two are of no common group.
 _PRODUCT = np.array(
     [
@@ -43,6 +46,9 @@ _PRODUCT = np.array(
 )
 _INVERSE = np.array([_NUMBER[inverse((*linear, 0, 0))[:4]] for linear in LINEAR_PARTS])
 
+# What the compiled kernels take, as in motion_codes.c.
+_OF_IMAGES: tuple[Any, ...] = (INT, INTS, COMPLEXES, COMPLEXES, FLOATS, *[FLOAT] * 4, INT, INT, COMPLEXES)
+_OF_LEAST: tuple[Any, ...] = (INT, INTS, INTS, INT, INTS, INT, INTS, INTS, INTS)
 
 # The codes of linear parts, by their digits in base 3.
 _DIGITS = np.array([27, 9, 3, 1])
@@ -110,18 +116,43 @@ def modulo(codes: Codes) -> Ints:
     return np.asarray((codes >> 2 * _BITS) * 4 + ((codes >> _BITS) & 1) * 2 + (codes & 1))
 
 
+def least_products(codes: Codes, row: Ints, rows: Codes) -> Codes:
+    """The least of each motion's products with the motions `rows[row[k]]`, applied before it; itself where row is -1.
+
+    `codes` and `row` are (n,), `rows` (m, w). A compiled kernel gives the same.
+    """
+    compiled = kernel("codes_least", *_OF_LEAST)
+    if compiled is not None:
+        result = np.empty_like(codes)
+        tables = len(LINEAR_PARTS), _PRODUCT, _ALONG
+        compiled(len(codes), codes, row, rows.shape[1], rows, *tables, result)
+        return result
+    result = codes.copy()
+    some = (row >= 0).nonzero()[0]
+    result[some] = composed(codes[some, None], rows[row[some]]).min(axis=1)
+    return result
+
+
 def images(action: Action, codes: Codes, z: Complexes, further: tuple[int, int] = (0, 0)) -> Complexes:
     """The images of points, each under its motion: the same bits as `Action.apply` gives.
 
-    `further` is twice a translation that comes after the motions, of any length.
+    `codes` and `z` broadcast; `further` is twice a translation that comes after the motions, of any length. A compiled
+    kernel gives the same bits.
     """
+    (units, signs), a, b = action.isometries, action.lattice.a, action.lattice.b
+    compiled = kernel("codes_images", *_OF_IMAGES)
+    if compiled is not None:
+        if codes.shape != z.shape:
+            codes, z = map(np.array, np.broadcast_arrays(codes, z))
+        result = np.empty(z.shape, complex)
+        compiled(z.size, codes, z, units, signs, a.real, a.imag, b.real, b.imag, *further, result)
+        return result
     linear, s, t = decode(codes)
     if further != (0, 0):
         s, t = s + further[0], t + further[1]
-    units, signs = action.isometries
     # Spelt out as in `maps.move`, without the arrays between.
     unit, x, y = units[linear], z.real, signs[linear] * z.imag
-    i, j, a, b = s / 2, t / 2, action.lattice.a, action.lattice.b
+    i, j = s / 2, t / 2
     real = unit.real * x - unit.imag * y + (i * a.real + j * b.real)
     result = np.empty(real.shape, complex)
     result.real = real

@@ -15,6 +15,7 @@ from voronoi_tiles.vector.motion_codes import (
     encode,
     images,
     inverted,
+    least_products,
     modulo,
     motion_of,
     reversing,
@@ -45,6 +46,15 @@ def action(request: pytest.FixtureRequest) -> Action:
     return Action(design.group, design.lattice)
 
 
+@pytest.fixture(params=["compiled", "numpy"])
+def kernels(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The compiled kernels, and numpy alone."""
+    if request.param == "compiled":
+        request.getfixturevalue("compiled")
+    else:
+        monkeypatch.setenv("VORONOI_TILES_KERNELS", "numpy")
+
+
 def test_codes_stand_for_motions_in_their_order(action: Action) -> None:
     """There and back, one by one and as rows; sorted codes are sorted motions."""
     motions = some(action)
@@ -72,6 +82,18 @@ def test_motions_of_one_name_modulo_the_lattice_differ_by_a_lattice_vector(actio
     assert len(named) == len({name for name, _ in named}) == len(action.motions)
 
 
+@pytest.mark.usefixtures("kernels")
+def test_least_products_are_those_of_tuples(action: Action) -> None:
+    """Of each motion with one row of motions or another, or with none."""
+    motions = [motion for motion in some(action) if abs(motion[4]) < FAR]
+    rows = [[IDENTITY, motions[-1]], [motions[1], motions[len(motions) // 2]]]
+    row = [k % 3 - 1 for k in range(len(motions))]
+    found = least_products(encode(motions), np.array(row), encode([*rows[0], *rows[1]]).reshape(2, 2))
+    expected = [min(compose(m, other) for other in rows[k]) if k >= 0 else m for m, k in zip(motions, row, strict=True)]
+    assert [motion_of(code) for code in found.tolist()] == expected
+
+
+@pytest.mark.usefixtures("kernels")
 def test_images_have_the_bits_of_single_points(action: Action) -> None:
     """Whatever the place in the array; translations that come after may be of any length."""
     motions = [motion for motion in some(action) if abs(motion[4]) < FAR]
@@ -81,3 +103,7 @@ def test_images_have_the_bits_of_single_points(action: Action) -> None:
     beyond = [(*m[:4], m[4] + 2**40, m[5]) for m in motions]
     found = images(action, encode(motions), points, (2**40, 0)).tolist()
     assert found == [action.apply_to_point(m, z) for m, z in zip(beyond, points.tolist(), strict=True)]
+    # One motion of all points, and one point under all motions.
+    code, point = encode(motions[-1:])[0], points[0]
+    assert images(action, code, points).tolist() == [action.apply_to_point(motions[-1], z) for z in points.tolist()]
+    assert images(action, encode(motions), point).tolist() == [action.apply_to_point(m, point) for m in motions]

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, Ints
-from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, code_of, composed, images
+from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, code_of, composed, images, least_products
 from voronoi_tiles.vector.motions import Action, Motion
 
 
@@ -76,13 +76,7 @@ class Representatives:
         if not self.stabilizer:
             return points.motion
         row, fixing = self._fixing
-        row = row[points.index]
-        special = (row >= 0).nonzero()[0]
-        if not len(special):
-            return points.motion
-        result = points.motion.copy()
-        result[special] = composed(result[special, None], fixing[row[special]]).min(axis=1)
-        return result
+        return least_products(points.motion, row[points.index], fixing)
 
 
 class Builder:
