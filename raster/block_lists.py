@@ -201,7 +201,7 @@ def _kept_portion(
     By the compiled kernel where there is one; otherwise by `_keep`, with the same result.
     """
     start = parents.run_start
-    keep = kernel("raster_keep", *_BLOCKS, *_LISTS, *_ELEMENTS, FLOATS, *_KEPT)
+    keep = _COMPILED()
     if keep is not None:
         blocks = len(parent), parent, centre, radius, *margins
         elements = scene.middle, scene.unit, scene.length
@@ -232,6 +232,7 @@ _BLOCKS = INT, INTS, COMPLEXES, FLOAT, FLOAT, FLOAT
 _LISTS = INTS, LABELS, INTS, INTS, LABELS
 _ELEMENTS = COMPLEXES, COMPLEXES, FLOATS
 _KEPT = INTS, LABELS, INTS, LABELS
+_COMPILED = kernel("raster_keep", *_BLOCKS, *_LISTS, *_ELEMENTS, FLOATS, *_KEPT)
 
 
 def _from_feet(z: Complexes, middle: Complexes, unit: Complexes, length: Floats) -> Complexes:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -20,7 +20,8 @@ from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, modu
 
 # Copies for which the compiled kernel has room at first, and what it takes, as in copies.c.
 _ROOM = 100
-_ARGUMENTS: tuple[Any, ...] = (
+_COMPILED = kernel(
+    "copies_near",
     *(INT, INTS, COMPLEXES, BOOLS, INTS, INT, COMPLEXES, INTS, COMPLEXES, INTS),
     *(INT, INTS, COMPLEXES, COMPLEXES, BOOLS, INTS),
 )
@@ -211,7 +212,7 @@ def copies_near(action: Action, placed: list[Placed], bundle: Ints) -> Copies:
     )
     nodes = np.concatenate([site.nodes for site in placed])
     node_bundle = np.repeat(bundle, [len(site.nodes) for site in placed])
-    compiled = kernel("copies_near", *_ARGUMENTS)
+    compiled = _COMPILED()
     near = _copies_near if compiled is None else partial(_copies_near_compiled, compiled)
     return near(action, motions, nodes, node_bundle)
 

@@ -33,7 +33,8 @@ _SLACK = 10.0
 _NEAR = 0.12  # of the cell's width: how far the compiled search moves on before it chooses copies anew
 _AT_ONCE = 1 << 20  # pairs of a point and an element: tens of megabytes
 
-_ARGUMENTS = (
+_COMPILED = kernels.kernel(
+    "proof_nearest",
     *(kernels.INT, kernels.COMPLEXES, kernels.INTS),
     *(kernels.INT, kernels.COMPLEXES, kernels.COMPLEXES, kernels.BOOLS, kernels.COMPLEXES),
     *(kernels.INT, kernels.INT, kernels.FLOAT, kernels.FLOAT),
@@ -136,7 +137,7 @@ def distances_of_claims(
     Those from sites are right up to that from the nearest and the slack. The copies are as in `nearest_copies`. A
     compiled kernel gives the same bits.
     """
-    compiled = kernels.kernel("proof_nearest", *_ARGUMENTS)
+    compiled = _COMPILED()
     if compiled is None:
         found = nearest_copies(lattice, motions, tree, claims.places[0], slack)
         among = (sites.among(found, *side) for side in zip(claims.places, claims.sites, strict=True))

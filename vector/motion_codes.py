@@ -8,7 +8,6 @@ are held as tuples of integers only.
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -47,8 +46,8 @@ _PRODUCT = np.array(
 _INVERSE = np.array([_NUMBER[inverse((*linear, 0, 0))[:4]] for linear in LINEAR_PARTS])
 
 # What the compiled kernels take, as in motion_codes.c.
-_OF_IMAGES: tuple[Any, ...] = (INT, INTS, COMPLEXES, COMPLEXES, FLOATS, *[FLOAT] * 4, INT, INT, COMPLEXES)
-_OF_LEAST: tuple[Any, ...] = (INT, INTS, INTS, INT, INTS, INT, INTS, INTS, INTS)
+_IMAGES = kernel("codes_images", INT, INTS, COMPLEXES, COMPLEXES, FLOATS, *[FLOAT] * 4, INT, INT, COMPLEXES)
+_LEAST = kernel("codes_least", INT, INTS, INTS, INT, INTS, INT, INTS, INTS, INTS)
 
 # The codes of linear parts, by their digits in base 3.
 _DIGITS = np.array([27, 9, 3, 1])
@@ -121,7 +120,7 @@ def least_products(codes: Codes, row: Ints, rows: Codes) -> Codes:
 
     `codes` and `row` are (n,), `rows` (m, w). A compiled kernel gives the same.
     """
-    compiled = kernel("codes_least", *_OF_LEAST)
+    compiled = _LEAST()
     if compiled is not None:
         result = np.empty_like(codes)
         tables = len(LINEAR_PARTS), _PRODUCT, _ALONG
@@ -140,7 +139,7 @@ def images(action: Action, codes: Codes, z: Complexes, further: tuple[int, int] 
     kernel gives the same bits.
     """
     (units, signs), a, b = action.isometries, action.lattice.a, action.lattice.b
-    compiled = kernel("codes_images", *_OF_IMAGES)
+    compiled = _IMAGES()
     if compiled is not None:
         if codes.shape != z.shape:
             codes, z = map(np.array, np.broadcast_arrays(codes, z))

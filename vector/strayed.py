@@ -19,7 +19,8 @@ from voronoi_tiles.vector.tessellation import LocalTile
 _UNDECIDED = 1e-7
 
 
-_ARGUMENTS = (
+_COMPILED = kernels.kernel(
+    "proof_windings",
     *(kernels.INT, kernels.COMPLEXES, kernels.INTS, kernels.INT, kernels.INTS),
     *(kernels.INT, kernels.COMPLEXES, kernels.COMPLEXES, kernels.COMPLEXES, kernels.BOOLS, kernels.INTS),
     kernels.INTS,
@@ -43,7 +44,7 @@ def windings_of_parts(nodes: AllNodes, arcs: AllArcs) -> Ints:
 
     For all other nodes it is 1. A compiled kernel gives the same.
     """
-    compiled = kernels.kernel("proof_windings", *_ARGUMENTS)
+    compiled = _COMPILED()
     count = len(nodes.position)
     if compiled is None:
         result = np.ones(count, np.intp)

@@ -19,7 +19,7 @@ def test_numpy_can_be_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     """VORONOI_TILES_KERNELS=numpy leaves the library aside, whether there is one or not."""
     monkeypatch.setenv("VORONOI_TILES_KERNELS", "numpy")
     assert kernels.library() is None
-    assert kernels.kernel("raster_keep", kernels.INT) is None
+    assert kernels.kernel("raster_keep", kernels.INT)() is None
     assert kernels.in_use() == "numpy (VORONOI_TILES_KERNELS=numpy)"
 
 
@@ -27,7 +27,7 @@ def test_numpy_can_be_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_what_is_no_choice_of_kernels_is_refused(value: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Whoever misspells it would take the compiled kernels for numpy; an empty value is none."""
     monkeypatch.setenv("VORONOI_TILES_KERNELS", value)
-    for ask in (kernels.library, kernels.in_use, lambda: kernels.kernel("raster_keep", kernels.INT)):
+    for ask in (kernels.library, kernels.in_use, kernels.kernel("raster_keep", kernels.INT)):
         with pytest.raises(ArgumentError, match=f"VORONOI_TILES_KERNELS='{value}' .* Set it to numpy"):
             ask()
     monkeypatch.setenv("VORONOI_TILES_KERNELS", "")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import inf
-from typing import Any
 
 import numpy as np
 
@@ -41,7 +40,8 @@ _OF_CONTOUR = (
     "turn",
     "bounding",
 )
-_ARGUMENTS: tuple[Any, ...] = (
+_COMPILED = kernel(
+    "cells_bound",
     *(INT, INTS, INTS, COMPLEXES, COMPLEXES, FLOATS, FLOATS, *[COMPLEXES] * 6, FLOATS),
     *(INT, COMPLEXES, INTS, INTS, COMPLEXES, FLOATS, INTS, COMPLEXES, COMPLEXES, FLOATS, BOOLS),
     *(INT, INT, COMPLEXES, COMPLEXES, BOOLS, INTS),
@@ -79,7 +79,7 @@ def bound_cells(rows: Rows, contour: Contour, copies: Copies, node_bundle: Ints,
     unbounded, TouchingElementsError where a node lies on another copy.
     """
     hierarchy = build_hierarchy(contour, node_bundle)
-    compiled = kernel("cells_bound", *_ARGUMENTS)
+    compiled = _COMPILED()
     if compiled is not None:
         return _bound_compiled(compiled, rows, contour, copies, hierarchy, covering_radius)
     around, levels = surround(contour, copies, node_bundle), move_levels(hierarchy, copies)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 
@@ -19,7 +19,8 @@ _BRANCH = 8
 # Relative slack of a box's radius, far above its rounding errors.
 _SLACK = 1e-9
 # What the compiled kernel takes, as in hierarchy.c.
-_ARGUMENTS: tuple[Any, ...] = (
+_COMPILED = kernel(
+    "hierarchy_build",
     *(INT, INTS, INTS, INT, INTS, COMPLEXES, INTS, INT),
     *(COMPLEXES, COMPLEXES, FLOATS, COMPLEXES, COMPLEXES, INTS, INTS, INTS, INTS),
 )
@@ -57,7 +58,7 @@ def build_hierarchy(contour: Contour, node_bundle: Ints) -> Hierarchy:
     """
     half_edges, corners = len(contour.source), len(contour.corner_node)
     count = half_edges // 2 + (corners - half_edges) // 4
-    compiled = kernel("hierarchy_build", *_ARGUMENTS)
+    compiled = _COMPILED()
     if compiled is None:
         return _build(contour, node_bundle)
     bundles, depth = int(node_bundle.max()) + 1, 1

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import cmath
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -16,11 +16,12 @@ from voronoi_tiles.vector.cells.half_edges import Contour
 from voronoi_tiles.vector.cells.pencils import Rows
 
 # What the compiled kernels take, as in trace.c; what they answer.
-_OF_LINKS: tuple[Any, ...] = (
+_LINKS = kernel(
+    "trace_links",
     *(INTS, INTS, INT, INTS, INTS, INTS, COMPLEXES, COMPLEXES, INT, INTS, INTS, INT, INTS, INTS, INT),
     *(FLOAT, FLOAT, INTS, BOOLS, BOOLS, COMPLEXES, COMPLEXES, INTS),
 )
-_OF_RINGS: tuple[Any, ...] = (INT, INTS, BOOLS, COMPLEXES, INTS, INT, FLOAT, INTS, COMPLEXES, INTS)
+_RINGS = kernel("trace_rings", INT, INTS, BOOLS, COMPLEXES, INTS, INT, FLOAT, INTS, COMPLEXES, INTS)
 _OPEN = -1
 # Turns the plane so that no mirror and no row of copies is upright.
 _SLANT = cmath.exp(1j)
@@ -89,7 +90,7 @@ def _close(links: _Links) -> None:
 def _rings(links: _Links, sites: int, null: float) -> Boundary:
     """The rings to which the parts of so many sites chain up, each with its arcs that are longer than `null`."""
     following, inner, _, start, _, site = links
-    compiled = kernel("trace_rings", *_OF_RINGS)
+    compiled = _RINGS()
     if compiled is None:
         return _walk(links, sites, null)
     part, vertex, ring = np.empty(len(site), np.intp), np.empty(len(site), complex), np.empty(len(site), np.intp)
@@ -127,7 +128,7 @@ def _walk(links: _Links, sites: int, null: float) -> Boundary:
 
 def _links(rows: Rows, contour: Contour, parts: Parts, node_site: Ints, bundles: int) -> _Links:
     """How the parts chain up, as far as it is plain from the order of the contour and from where they start and end."""
-    compiled = kernel("trace_links", *_OF_LINKS)
+    compiled = _LINKS()
     if compiled is None:
         return _plain_links(rows, contour, parts, node_site, bundles)
     count = len(parts.row)

@@ -67,23 +67,26 @@ def in_use() -> str:
     return "compiled" if loaded else f"numpy ({reason})"
 
 
-def kernel(name: str, *arguments: Array | type[ctypes.c_double | ctypes.c_int64]) -> Callable[..., int] | None:
-    """A function of the library, which takes such arguments and gives an int64; None where numpy does its work.
+def kernel(
+    name: str, *arguments: Array | type[ctypes.c_double | ctypes.c_int64]
+) -> Callable[[], Callable[..., int] | None]:
+    """What gives a function of the library, of such arguments and whose result is an int64; None where numpy works.
 
-    ctypes raises ArgumentError where an argument is of another type.
+    It is asked each time, as the environment may choose anew. ctypes raises ArgumentError where an argument is of
+    another type.
     """
-    return _bound(os.environ.get(_VARIABLE), name, arguments)
 
+    @cache
+    def bound(choice: str | None) -> Callable[..., int] | None:
+        loaded, _ = _chosen(choice)
+        if loaded is None:
+            return None
+        function = loaded[name]
+        function.argtypes = arguments
+        function.restype = ctypes.c_int64
+        return function
 
-@cache
-def _bound(choice: str | None, name: str, arguments: tuple[Any, ...]) -> Callable[..., int] | None:
-    loaded, _ = _chosen(choice)
-    if loaded is None:
-        return None
-    function = loaded[name]
-    function.argtypes = arguments
-    function.restype = ctypes.c_int64
-    return function
+    return lambda: bound(os.environ.get(_VARIABLE))
 
 
 def _chosen(choice: str | None) -> tuple[ctypes.CDLL | None, str]:
