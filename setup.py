@@ -30,6 +30,7 @@ SOURCES = [
     "vector/cells/cells.c",
     "vector/cells/hierarchy.c",
     "vector/cells/trace.c",
+    "vector/complex/boundary.c",
     "vector/copies.c",
     "vector/motion_codes.c",
     "vector/nearest_copies.c",

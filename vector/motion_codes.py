@@ -8,6 +8,7 @@ are held as tuples of integers only.
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -46,8 +47,11 @@ _PRODUCT = np.array(
 _INVERSE = np.array([_NUMBER[inverse((*linear, 0, 0))[:4]] for linear in LINEAR_PARTS])
 
 # What the compiled kernels take, as in motion_codes.c.
-_IMAGES = kernel("codes_images", INT, INTS, COMPLEXES, COMPLEXES, FLOATS, *[FLOAT] * 4, INT, INT, COMPLEXES)
-_LEAST = kernel("codes_least", INT, INTS, INTS, INT, INTS, INT, INTS, INTS, INTS)
+TABLES = len(LINEAR_PARTS), _PRODUCT, _ALONG
+"""What compiled kernels take of linear parts: how many there are, their products, what they make of translations."""
+OF_TABLES, OF_PLANE = (INT, INTS, INTS), (COMPLEXES, FLOATS, *[FLOAT] * 4)
+_IMAGES = kernel("codes_images", INT, INTS, COMPLEXES, *OF_PLANE, INT, INT, COMPLEXES)
+_LEAST = kernel("codes_least", INT, INTS, INTS, INT, INTS, *OF_TABLES, INTS)
 
 # The codes of linear parts, by their digits in base 3.
 _DIGITS = np.array([27, 9, 3, 1])
@@ -115,6 +119,12 @@ def modulo(codes: Codes) -> Ints:
     return np.asarray((codes >> 2 * _BITS) * 4 + ((codes >> _BITS) & 1) * 2 + (codes & 1))
 
 
+def plane_of(action: Action) -> tuple[Any, ...]:
+    """What compiled kernels take of an action: the isometries of linear parts, and the lattice's vectors."""
+    a, b = action.lattice.a, action.lattice.b
+    return *action.isometries, a.real, a.imag, b.real, b.imag
+
+
 def least_products(codes: Codes, row: Ints, rows: Codes) -> Codes:
     """The least of each motion's products with the motions `rows[row[k]]`, applied before it; itself where row is -1.
 
@@ -123,8 +133,7 @@ def least_products(codes: Codes, row: Ints, rows: Codes) -> Codes:
     compiled = _LEAST()
     if compiled is not None:
         result = np.empty_like(codes)
-        tables = len(LINEAR_PARTS), _PRODUCT, _ALONG
-        compiled(len(codes), codes, row, rows.shape[1], rows, *tables, result)
+        compiled(len(codes), codes, row, rows.shape[1], rows, *TABLES, result)
         return result
     result = codes.copy()
     some = (row >= 0).nonzero()[0]
@@ -138,20 +147,20 @@ def images(action: Action, codes: Codes, z: Complexes, further: tuple[int, int] 
     `codes` and `z` broadcast; `further` is twice a translation that comes after the motions, of any length. A compiled
     kernel gives the same bits.
     """
-    (units, signs), a, b = action.isometries, action.lattice.a, action.lattice.b
     compiled = _IMAGES()
     if compiled is not None:
         if codes.shape != z.shape:
             codes, z = map(np.array, np.broadcast_arrays(codes, z))
         result = np.empty(z.shape, complex)
-        compiled(z.size, codes, z, units, signs, a.real, a.imag, b.real, b.imag, *further, result)
+        compiled(z.size, codes, z, *plane_of(action), *further, result)
         return result
     linear, s, t = decode(codes)
     if further != (0, 0):
         s, t = s + further[0], t + further[1]
     # Spelt out as in `maps.move`, without the arrays between.
+    units, signs = action.isometries
     unit, x, y = units[linear], z.real, signs[linear] * z.imag
-    i, j = s / 2, t / 2
+    i, j, a, b = s / 2, t / 2, action.lattice.a, action.lattice.b
     real = unit.real * x - unit.imag * y + (i * a.real + j * b.real)
     result = np.empty(real.shape, complex)
     result.real = real

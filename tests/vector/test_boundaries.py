@@ -7,15 +7,18 @@ from functools import cache
 
 import numpy as np
 import pytest
+from helpers import fuzz
 from helpers.examples import tiling
 
 from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.base.errors import TouchingCopiesError
 from voronoi_tiles.designs.design import Design
+from voronoi_tiles.groups.wallpaper import GROUPS
 from voronoi_tiles.vector.complex.boundary import TileBoundaries
 from voronoi_tiles.vector.complex.site_symmetry import SiteSymmetry
-from voronoi_tiles.vector.motions import IDENTITY, to_motion
+from voronoi_tiles.vector.motions import IDENTITY, to_motion, translated
 from voronoi_tiles.vector.outline import Outline
-from voronoi_tiles.vector.tessellation import Tessellation
+from voronoi_tiles.vector.tessellation import Tessellation, tessellate
 
 Arcs = tuple[Complexes, Complexes, Complexes]
 
@@ -122,3 +125,42 @@ def test_all_outlines_at_once_are_those_of_single_tiles(name: str) -> None:
         for part in ("start", "control", "end", "curved", "focus", "directrix", "neighbour", "ring_offsets"):
             np.testing.assert_array_equal(getattr(outline, part), getattr(single, part), strict=True)
         assert outline.neighbours == single.neighbours
+
+
+def same_by_the_kernels(here: Tessellation, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Both paths give the same outlines and counterparts, bit for bit, as arrays of the same types.
+
+    Under a motion that turns the plane over as well, and where arcs have no counterparts, or others.
+    """
+    boundaries, rng = TileBoundaries.of(here.quotient), np.random.default_rng(len(here.boundaries.face))
+    shuffled = replace(boundaries, start=boundaries.start.take(rng.permutation(len(boundaries.face))))
+    lost = replace(boundaries, motion=boundaries.motion + 2 * (rng.random(len(boundaries.motion)) < 0.3))
+    names = [outline.neighbours for outline in here.placed_outlines]
+    motions = [IDENTITY, *(translated(motion, 3, -(2**40)) for motion in here.action.motions[-2:])]
+    found = []
+    for chosen in ("", "numpy"):
+        monkeypatch.setenv("VORONOI_TILES_KERNELS", chosen)
+        arrays = [array for some in (boundaries, shuffled, lost) for array in some.counterparts(here.symmetry)]
+        for outline in (outline for motion in motions for outline in boundaries.outlines(motion, names)):
+            arrays += [getattr(outline, name) for name in ("start", "control", "end", "focus", "directrix")]
+        found.append([(array.dtype, array.shape, array.tobytes()) for array in arrays])
+    assert found[0] == found[1]
+
+
+@pytest.mark.parametrize("name", [*GROUPS, "several", "ring"])
+@pytest.mark.usefixtures("compiled")
+def test_kernels_give_the_boundaries_of_numpy(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of starters, of several sites, and where two edges of one face run between the same vertices."""
+    same_by_the_kernels(tessellation(name), monkeypatch)
+
+
+@pytest.mark.parametrize("number", range(30))
+@pytest.mark.usefixtures("compiled")
+def test_kernels_give_the_boundaries_of_numpy_for_any_design(number: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Fuzzed designs, as far as their copies do not touch."""
+    design = Design.from_dict(fuzz.design_of(2029, number)[1])
+    try:
+        tiles = tessellate(design.noded, design.group, design.lattice)
+    except TouchingCopiesError:
+        return
+    same_by_the_kernels(tiles[0].tessellation, monkeypatch)

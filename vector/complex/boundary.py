@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -18,13 +20,19 @@ from voronoi_tiles.base.arrays import (
     offsets_of,
     ranges,
 )
+from voronoi_tiles.base.kernels import COMPLEXES, INT, INTS, kernel
 from voronoi_tiles.vector.arcs import Neighbour
 from voronoi_tiles.vector.complex.quotient import Quotient
-from voronoi_tiles.vector.complex.representatives import Points, Representatives
+from voronoi_tiles.vector.complex.representatives import OF_REPRESENTATIVES, Points, Representatives
 from voronoi_tiles.vector.complex.site_symmetry import SiteSymmetry
 from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, code_of, composed, images, inverted, reversing
 from voronoi_tiles.vector.motions import Motion, reverses_orientation
 from voronoi_tiles.vector.outline import Outline
+
+# What the compiled kernels take, as in boundary.c.
+_GIVEN = INT, INTS, INTS, INTS, INTS, *OF_REPRESENTATIVES, INT, INTS
+_ARCS = kernel("complex_arcs", *_GIVEN, COMPLEXES, COMPLEXES, INT, INT, INT, *[COMPLEXES] * 5)
+_COUNTERPARTS = kernel("complex_counterparts", *_GIVEN, INT, INTS, INTS, INT, INTS, INTS, INT, COMPLEXES)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -71,13 +79,13 @@ class TileBoundaries:
         tiles = np.arange(len(uses.tile_offsets))
         tile = tiles[:-1].repeat(counts_of(uses.ring_offsets[uses.tile_offsets]))
         face, numbers = _numbered(tile, uses.site, uses.beyond)
-        beside, site, beyond = np.array([*numbers]).T
+        beside, site, beyond = np.array([*zip(*numbers, strict=True)])
         return cls(
             representatives=quotient.representatives,
             start=Points(quotient.vertex.index[start], start_motion),
             control=Points(quotient.control.index[arc], control_motion),
             focus=quotient.focus[arc],
-            directrix=quotient.directrix[arc],
+            directrix=np.ascontiguousarray(quotient.directrix[arc]),
             use_offsets=use_offsets,
             ring_offsets=use_offsets[uses.ring_offsets],
             tile_offsets=uses.tile_offsets,
@@ -117,9 +125,9 @@ class TileBoundaries:
         # Its translation may be longer than codes hold.
         turn, offsets = code_of((*motion[:4], 0, 0)), self.ring_offsets
         curved = self.control.index >= 0
-        start, control, focus, first, second = self._located(turn, (motion[4], motion[5]), curved)
-        end, directrix = start[next_in_ring(offsets)], np.array((first, second)).T
-        control = np.where(curved, control, (start + end) / 2)
+        compiled = _ARCS()
+        arcs = self._arcs if compiled is None else partial(self._arcs_compiled, compiled)
+        start, control, end, focus, directrix = arcs(turn, (motion[4], motion[5]), curved)
         face = self.face - self.face_offsets[:-1].repeat(counts_of(offsets[self.tile_offsets]))
         if reverses_orientation(motion):
             # A motion that turns the plane over turns the rings round: run through each backwards.
@@ -154,7 +162,22 @@ class TileBoundaries:
         where it is beyond. NaN where such a tile has no edge there, or one of another number of arcs. The control point
         of a line is that of a quadratic Bezier curve, the middle.
         """
-        partner = self._partners(symmetry)
+        partner, compiled = self._partners(symmetry), _COUNTERPARTS()
+        result = np.full((3, len(self.face)), np.nan + 0j)
+        if compiled is None:
+            self._match(partner, result)
+        elif compiled(
+            *(*self._given, len(self.use_offsets) - 1, self.use_offsets, self.face),
+            *(len(partner), self.motion, partner, IDENTITY_CODE, result),
+        ):
+            raise MemoryError
+        return result[0], result[1], result[2]
+
+    def _match(self, partner: Ints, result: Complexes) -> None:
+        """Write the counterparts of arcs into three rows, by the faces that are `partner` of others.
+
+        A compiled kernel gives the same bits.
+        """
         # The edges of each face, and `there` those that come from beyond, whose arcs are put in the order of ours.
         first, sizes = self.use_offsets[:-1], self.use_offsets[1:] - self.use_offsets[:-1]
         of = self.face[first]
@@ -184,9 +207,7 @@ class TileBoundaries:
         same = sizes[use] == size[edge]
         use, edge = use[same], edge[same]
         over = np.where(self.control.index[arc] >= 0, over, (one + two) / 2)
-        result = np.full((3, len(self.face)), np.nan + 0j)
         result[:, ranges(first[use], sizes[use])] = np.array((low, over, high))[:, ranges(at[edge], sizes[use])]
-        return result[0], result[1], result[2]
 
     def _partners(self, symmetry: SiteSymmetry) -> Ints:
         """Of each face that of the tile beyond, at the place of its site, which faces this one; -1 where none does."""
@@ -196,10 +217,10 @@ class TileBoundaries:
         asked = zip(self.site.tolist(), tile.tolist(), back.tolist(), strict=True)
         return np.array([numbers.get(face, -1) for face in asked])
 
-    def _located(self, turn: int, further: tuple[int, int], curved: Bools) -> Complexes:
-        """Starts, control points, foci and both points of directrices under a motion, (5, n); 0 for what lines lack.
+    def _arcs(self, turn: int, further: tuple[int, int], curved: Bools) -> tuple[Complexes, ...]:
+        """Starts, control points, ends, foci and directrices of all arcs under a motion, as an `Outline` has them.
 
-        `further` is twice a translation that comes after it.
+        `further` is twice a translation that comes after the motion. A compiled kernel gives the same bits.
         """
         count, points = len(self.face), self.start.and_then(self.control)
         if turn != IDENTITY_CODE:
@@ -210,7 +231,25 @@ class TileBoundaries:
         before = np.array((start, control, self.focus, *self.directrix.T))
         located = images(self.representatives.action, motion, before, further)
         located[1:, ~curved] = 0.0
-        return located
+        start, control, focus, first, second = located
+        end = start[next_in_ring(self.ring_offsets)]
+        return start, np.where(curved, control, (start + end) / 2), end, focus, np.array((first, second)).T
+
+    def _arcs_compiled(
+        self, compiled: Callable[..., int], turn: int, further: tuple[int, int], curved: Bools
+    ) -> tuple[Complexes, ...]:
+        """The same by the compiled kernel."""
+        count = len(curved)
+        start, control, end, focus = (np.empty(count, complex) for _ in range(4))
+        arcs = start, control, end, focus, np.empty((count, 2), complex)
+        compiled(*self._given, self.focus, self.directrix, turn, *further, *arcs)
+        return arcs
+
+    @property
+    def _given(self) -> tuple[Any, ...]:
+        """What compiled kernels take of boundaries."""
+        points = self.start.index, self.start.motion, self.control.index, self.control.motion
+        return len(self.face), *points, *self.representatives.given, len(self.ring_offsets) - 1, self.ring_offsets
 
 
 def _numbered(*columns: Ints) -> tuple[Ints, dict[tuple[int, ...], int]]:

@@ -5,12 +5,28 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, Ints
-from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, code_of, composed, images, least_products
+from voronoi_tiles.base.kernels import COMPLEXES, INT, INTS
+from voronoi_tiles.vector.motion_codes import (
+    IDENTITY_CODE,
+    OF_PLANE,
+    OF_TABLES,
+    TABLES,
+    Codes,
+    code_of,
+    composed,
+    images,
+    least_products,
+    plane_of,
+)
 from voronoi_tiles.vector.motions import Action, Motion
+
+OF_REPRESENTATIVES = (COMPLEXES, INTS, INT, INTS, *OF_TABLES, *OF_PLANE)
+"""The kinds of what compiled kernels take of representatives."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +68,12 @@ class Representatives:
     stabilizer: dict[int, tuple[int, ...]]
 
     @cached_property
+    def given(self) -> tuple[Any, ...]:
+        """What compiled kernels take to locate points, as in boundary.c; see `OF_REPRESENTATIVES`."""
+        row, fixing = self._fixing
+        return self.position, row, fixing.shape[1], fixing, *TABLES, *plane_of(self.action)
+
+    @cached_property
     def _fixing(self) -> tuple[Ints, Codes]:
         """For each representative its row of stabilizers, -1 where it has none, behind them -1 for no point; the rows.
 
@@ -59,8 +81,9 @@ class Representatives:
         """
         row = np.full(len(self.position) + 1, -1)
         row[list(self.stabilizer)] = np.arange(len(self.stabilizer))
-        width = max(map(len, self.stabilizer.values()))
-        return row, np.array([codes + (IDENTITY_CODE,) * (width - len(codes)) for codes in self.stabilizer.values()])
+        width = max(map(len, self.stabilizer.values()), default=0)
+        fixing = [codes + (IDENTITY_CODE,) * (width - len(codes)) for codes in self.stabilizer.values()]
+        return row, np.array(fixing, np.int64).reshape(len(fixing), width)
 
     def locate(self, points: Points, further: tuple[int, int] = (0, 0)) -> Complexes:
         """The positions of points, complex128 (n,); 0 where there is none.
