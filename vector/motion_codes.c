@@ -30,25 +30,40 @@ int64_t codes_images(int64_t count, const int64_t *code, const double *points, c
     return 0;
 }
 
-/* The least of each motion's products with the motions of a row, or the motion itself where its row is negative.
+/* The motion that applies `inner` first and `outer` to its result.
 
-   The rows have `width` motions each. Of linear parts `product` has the codes of all products, and `along` what each
-   makes of a translation's two coordinates: first of the one, then of the other. */
+   Of linear parts `product` has the codes of all products, and `along` what each makes of a translation's two
+   coordinates: first of the one, then of the other. */
+static int64_t composed(int64_t outer, int64_t inner, int64_t parts, const int64_t *product, const int64_t *along)
+{
+    int64_t linear = outer >> 2 * BITS, u = ((inner >> BITS) & MASK) - HALF, v = (inner & MASK) - HALF;
+    return product[linear * parts + (inner >> 2 * BITS)] + (outer & TRANSLATION) + along[linear] * u +
+           along[parts + linear] * v;
+}
+
+/* Motions composed one by one. */
+int64_t codes_composed(int64_t count, const int64_t *outer, const int64_t *inner, int64_t parts, const int64_t *product,
+                       const int64_t *along, int64_t *out)
+{
+    int64_t k;
+    for (k = 0; k < count; k++)
+        out[k] = composed(outer[k], inner[k], parts, product, along);
+    return 0;
+}
+
+/* The least of each motion's products with the motions of a row, or the motion itself where its row is negative;
+   the rows have `width` motions each. */
 int64_t codes_least(int64_t count, const int64_t *code, const int64_t *row, int64_t width, const int64_t *rows,
                     int64_t parts, const int64_t *product, const int64_t *along, int64_t *out)
 {
     int64_t k, n;
     for (k = 0; k < count; k++) {
-        int64_t linear = code[k] >> 2 * BITS, shift = code[k] & TRANSLATION;
-        const int64_t *inner = rows + row[k] * width;
-        out[k] = row[k] < 0 ? code[k] : INT64_MAX;
+        int64_t least = row[k] < 0 ? code[k] : INT64_MAX;
         for (n = 0; row[k] >= 0 && n < width; n++) {
-            int64_t u = ((inner[n] >> BITS) & MASK) - HALF, v = (inner[n] & MASK) - HALF;
-            int64_t composed = product[linear * parts + (inner[n] >> 2 * BITS)] + shift + along[linear] * u +
-                               along[parts + linear] * v;
-            if (composed < out[k])
-                out[k] = composed;
+            int64_t other = composed(code[k], rows[row[k] * width + n], parts, product, along);
+            least = other < least ? other : least;
         }
+        out[k] = least;
     }
     return 0;
 }

@@ -51,6 +51,7 @@ TABLES = len(LINEAR_PARTS), _PRODUCT, _ALONG
 """What compiled kernels take of linear parts: how many there are, their products, what they make of translations."""
 OF_TABLES, OF_PLANE = (INT, INTS, INTS), (COMPLEXES, FLOATS, *[FLOAT] * 4)
 _IMAGES = kernel("codes_images", INT, INTS, COMPLEXES, *OF_PLANE, INT, INT, COMPLEXES)
+_COMPOSED = kernel("codes_composed", INT, INTS, INTS, *OF_TABLES, INTS)
 _LEAST = kernel("codes_least", INT, INTS, INTS, INT, INTS, *OF_TABLES, INTS)
 
 # The codes of linear parts, by their digits in base 3.
@@ -95,9 +96,17 @@ def decode(codes: Codes) -> tuple[Codes, Codes, Codes]:
 
 
 def composed(outer: Codes | int, inner: Codes | int) -> Codes:
-    """The motions that apply `inner` first and `outer` to its result; the two broadcast."""
-    outer = np.asarray(outer)
-    one, (two, u, v) = outer >> 2 * _BITS, decode(np.asarray(inner))
+    """The motions that apply `inner` first and `outer` to its result; the two broadcast.
+
+    Where they have the same shape, a compiled kernel gives the same.
+    """
+    outer, inner = np.asarray(outer), np.asarray(inner)
+    compiled = _COMPOSED()
+    if compiled is not None and outer.shape == inner.shape:
+        result = np.empty(outer.shape, np.int64)
+        compiled(outer.size, outer, inner, *TABLES, result)
+        return result
+    one, (two, u, v) = outer >> 2 * _BITS, decode(inner)
     linear = _PRODUCT[one * len(LINEAR_PARTS) + two]
     return np.asarray(linear + (outer & _TRANSLATION) + _ALONG_A[one] * u + _ALONG_B[one] * v)
 

@@ -65,12 +65,15 @@ def test_codes_stand_for_motions_in_their_order(action: Action) -> None:
     assert motion_of(IDENTITY_CODE) == IDENTITY
 
 
+@pytest.mark.usefixtures("kernels")
 def test_codes_compose_and_invert_as_motions_do(action: Action) -> None:
     """Every pair of a group's operations, and what turns the plane over."""
     motions = [motion for motion in some(action) if abs(motion[4]) < FAR]
     codes = encode(motions)
-    pairs = composed(codes[:, None], codes).ravel().tolist()
-    assert [motion_of(code) for code in pairs] == [compose(a, b) for a, b in product(motions, motions)]
+    pairs = composed(codes[:, None], codes).ravel()
+    assert [motion_of(code) for code in pairs.tolist()] == [compose(a, b) for a, b in product(motions, motions)]
+    outer, inner = codes.repeat(len(codes)), np.concatenate([codes] * len(codes))
+    assert (composed(outer, inner) == pairs).all()
     assert [motion_of(code) for code in inverted(codes).tolist()] == [inverse(motion) for motion in motions]
     assert reversing(codes).tolist() == [reverses_orientation(motion) for motion in motions]
 

@@ -7,6 +7,8 @@
 /* Of motion_codes.c. */
 int64_t codes_images(int64_t count, const int64_t *code, const double *points, const double *units, const double *signs,
                      double a_x, double a_y, double b_x, double b_y, int64_t further_s, int64_t further_t, double *out);
+int64_t codes_composed(int64_t count, const int64_t *outer, const int64_t *inner, int64_t parts, const int64_t *product,
+                       const int64_t *along, int64_t *out);
 int64_t codes_least(int64_t count, const int64_t *code, const int64_t *row, int64_t width, const int64_t *rows,
                     int64_t parts, const int64_t *product, const int64_t *along, int64_t *out);
 
@@ -42,9 +44,8 @@ static point image(const plane *p, int64_t motion, point at)
 
 static int64_t composed(const plane *p, int64_t outer, int64_t inner)
 {
-    const int64_t first = 0;
     int64_t result;
-    codes_least(1, &outer, &first, 1, &inner, p->parts, p->product, p->along, &result);
+    codes_composed(1, &outer, &inner, p->parts, p->product, p->along, &result);
     return result;
 }
 

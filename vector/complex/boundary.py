@@ -74,7 +74,8 @@ class TileBoundaries:
         arc = quotient.offsets[edge] + np.where(back, counts[use] - 1 - place, place)
         start = arc + edge + back
         motions = quotient.vertex.motion[start], quotient.control.motion[arc]
-        start_motion, control_motion = composed(uses.motion[use], np.array(motions))
+        by = uses.motion[use]
+        start_motion, control_motion = composed(np.array((by, by)), np.array(motions))
         use_offsets = offsets_of(counts)
         tiles = np.arange(len(uses.tile_offsets))
         tile = tiles[:-1].repeat(counts_of(uses.ring_offsets[uses.tile_offsets]))
