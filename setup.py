@@ -31,6 +31,7 @@ SOURCES = [
     "vector/cells/hierarchy.c",
     "vector/cells/trace.c",
     "vector/complex/boundary.c",
+    "vector/complex/traced.c",
     "vector/copies.c",
     "vector/motion_codes.c",
     "vector/nearest_copies.c",

@@ -16,6 +16,7 @@ from voronoi_tiles.vector.cells.enclosures import enclosed
 from voronoi_tiles.vector.cells.half_edges import trace_contour
 from voronoi_tiles.vector.cells.pencils import make_rows
 from voronoi_tiles.vector.cells.trace import Boundary, OpenBoundaryError, trace_boundary
+from voronoi_tiles.vector.complex.traced import with_curves
 from voronoi_tiles.vector.copies import SiteUnion, bundles, copies_near, place
 from voronoi_tiles.vector.motions import Action
 
@@ -24,7 +25,7 @@ TOUCHING = (17, 23, 33)
 
 
 def same_boundary(design: Design, null: float, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Both paths give the same rings, bit for bit, or refuse the same; also where a part is amiss."""
+    """Both paths give the same rings and curves, bit for bit, or refuse the same; also where a part is amiss."""
     action = Action(design.group, design.lattice)
     placed = place(action, design.noded)
     bundle, union = bundles(placed), SiteUnion.of(placed)
@@ -45,6 +46,8 @@ def same_boundary(design: Design, null: float, monkeypatch: pytest.MonkeyPatch) 
                 found.append(["refused"])
             else:
                 arrays = [np.asarray(getattr(boundary, name)) for name in Boundary.__slots__]
+                traced = with_curves(boundary, rows, contour, some, near, union.node_site)
+                arrays += [value for value in vars(traced).values() if isinstance(value, np.ndarray)]
                 found.append([(array.dtype, array.tobytes()) for array in arrays])
         assert found[0] == found[1]
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
+from typing import NamedTuple
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, counts_of, next_in_ring, ranges, starts
+from voronoi_tiles.base.kernels import BOOLS, COMPLEXES, INT, INTS, kernel
 from voronoi_tiles.base.maps import move
 from voronoi_tiles.base.tolerance import EPSILON
 from voronoi_tiles.vector.arcs import parabola_controls
@@ -22,6 +25,13 @@ from voronoi_tiles.vector.motion_codes import Codes, encode
 NEARLY_TOUCHING = 1e-3
 """Two nodes, or a node and a line, this near to each other, relative to the distance R of a point, determine it badly
 across their bisector: to EPSILON R / NEARLY_TOUCHING, a fifth of what the proof accepts where R is the cell's size."""
+
+# What the compiled kernel takes, as in traced.c.
+_CURVES = kernel(
+    "complex_curves",
+    *(INT, INTS, COMPLEXES, INTS, INTS, INTS, INTS, INTS, INTS, INT, INTS, INTS, INTS, COMPLEXES),
+    *(COMPLEXES, COMPLEXES, BOOLS, COMPLEXES, INTS, INTS, INTS, INTS, COMPLEXES, INTS),
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,24 +140,14 @@ def with_curves(
     """The boundaries of all tiles, with the curve of each arc: the bisector of two elements, here and beyond.
 
     Arcs in a row that lie on one curve are one arc; vertices where nearly parallel segments hand over are sharpened.
-    Rings are in the order of their tiles, outer ones before holes.
+    Rings are in the order of their tiles, outer ones before holes. A compiled kernel gives the same.
+
     `rows`, `contour` and `parts` are those of all sites, `node_site` (intp, m) is the site of each node.
     """
-    row, copy = parts.row[boundary.part], parts.copy[boundary.part]
-    half_edges, corner = len(contour.source), rows.corner[row]
-    item = np.array((np.where(corner >= 0, half_edges + corner, rows.half_edge[row]), parts.item[boundary.part]))
-    first = np.concatenate((contour.source, contour.corner_node))[item]
-    # What half-edges and corners lie on: segments, and behind them nodes.
-    carrier = np.where(item < half_edges, item >> 1, half_edges + first)
-    bounds = np.concatenate((starts(boundary.ring), [len(boundary.ring)]))
-    kept = _without_seams(bounds, np.array((carrier[0], copy, carrier[1])))
-    vertex, item, first, copy = boundary.vertex[kept], item[:, kept], first[:, kept], copy[kept]
-    bounds = kept.searchsorted(bounds)
-    second = np.concatenate((contour.target, contour.corner_node))[item]
+    compiled = _CURVES()
+    curves = _curves if compiled is None else partial(_curves_compiled, compiled)
+    vertex, bounds, copy, item, (first, second), ends = curves(boundary, rows, contour, parts, copies)
     node_here, node_there = first == second
-    # The first and the second end of the elements here and beyond.
-    ends = contour.nodes[np.array((first, second))]
-    ends[:, 1] = move(ends[:, 1], copies.unit[copy], copies.shift[copy], copies.conj[copy])
     here, there = ends[:, 0], ends[:, 1]
     curved = node_here != node_there
     sharpen_handovers(vertex, bounds, copy, copies, contour, item, ends)
@@ -164,6 +164,58 @@ def with_curves(
         copies=copies,
     )
     return traced if (traced.ring_tile[1:] > traced.ring_tile[:-1]).all() else _in_order(traced)
+
+
+class _BisectorArcs(NamedTuple):
+    """The arcs of boundaries, and what determines the curves that they lie on, for n arcs in r rings.
+
+    Arc k starts at `vertex[k]` (complex128); the arcs of ring r are those from `bounds[r]` up to, not including,
+    `bounds[r + 1]` (intp, r + 1). It is the bisector of two elements, one here and one of the copy `copy[k]` (intp) of
+    the sites. Of both `item` (intp, 2 x n) is the half-edge i, or the corner c as h + c where there are h half-edges;
+    `node` (intp, 2 x 2 x n) are the nodes at their ends, by end and by side, `ends` (complex128) where these lie.
+    """
+
+    vertex: Complexes
+    bounds: Ints
+    copy: Ints
+    item: Ints
+    node: Ints
+    ends: Complexes
+
+
+def _curves(boundary: Boundary, rows: Rows, contour: Contour, parts: Parts, copies: Copies) -> _BisectorArcs:
+    """The arcs of boundaries, of several in a row that lie on one curve the first; of a ring of one curve all."""
+    row, copy = parts.row[boundary.part], parts.copy[boundary.part]
+    half_edges, corner = len(contour.source), rows.corner[row]
+    item = np.array((np.where(corner >= 0, half_edges + corner, rows.half_edge[row]), parts.item[boundary.part]))
+    first = np.concatenate((contour.source, contour.corner_node))[item]
+    # What half-edges and corners lie on: segments, and behind them nodes.
+    carrier = np.where(item < half_edges, item >> 1, half_edges + first)
+    bounds = np.concatenate((starts(boundary.ring), [len(boundary.ring)]))
+    kept = _without_seams(bounds, np.array((carrier[0], copy, carrier[1])))
+    vertex, item, copy = boundary.vertex[kept], item[:, kept], copy[kept]
+    node = np.array((first[:, kept], np.concatenate((contour.target, contour.corner_node))[item]))
+    ends = contour.nodes[node]
+    ends[:, 1] = move(ends[:, 1], copies.unit[copy], copies.shift[copy], copies.conj[copy])
+    return _BisectorArcs(vertex, kept.searchsorted(bounds), copy, item, node, ends)
+
+
+def _curves_compiled(
+    compiled: Callable[..., int], boundary: Boundary, rows: Rows, contour: Contour, parts: Parts, copies: Copies
+) -> _BisectorArcs:
+    """The same by the compiled kernel."""
+    count = len(boundary.part)
+    vertex, ends, rings = np.empty(count, complex), np.empty((2, 2, count), complex), np.empty(1, np.intp)
+    bounds, copy = np.empty(count + 1, np.intp), np.empty(count, np.intp)
+    item, node = np.empty((2, count), np.intp), np.empty((2, 2, count), np.intp)
+    kept = compiled(
+        *(count, boundary.part, boundary.vertex, boundary.ring, rows.half_edge, rows.corner),
+        *(parts.row, parts.copy, parts.item, len(contour.source), contour.source, contour.target),
+        *(contour.corner_node, contour.nodes, copies.unit, copies.shift, copies.conj),
+        *(vertex, bounds, copy, item, node, ends, rings),
+    )
+    bounds = bounds[: int(rings[0]) + 1]
+    return _BisectorArcs(vertex[:kept], bounds, copy[:kept], item[:, :kept], node[..., :kept], ends[..., :kept])
 
 
 def _without_seams(bounds: Ints, curve: Ints) -> Ints:
