@@ -12,7 +12,7 @@ import sys
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 from zlib import crc32
 
 import numpy as np
@@ -26,8 +26,8 @@ _SUFFIX = {"darwin": ".dylib", "win32": ".dll"}.get(sys.platform, ".so")
 _LIBRARY = Path(__file__).with_suffix(f".compiled{_SUFFIX}")  # the second dot keeps it from being taken for a module
 _ROOT = Path(__file__).parents[2]
 
-
-_Memory = ctypes.c_char * 0
+# That an array is a buffer its type does not say.
+_memory_of = cast(Callable[[NDArray[Any]], "ctypes.Array[ctypes.c_char]"], (ctypes.c_char * 0).from_buffer)
 
 
 class Array:
@@ -42,10 +42,13 @@ class Array:
     def from_param(self, array: NDArray[Any]) -> ctypes.Array[ctypes.c_char] | ctypes.c_void_p:
         """The array's address. Raises TypeError where it has another dtype, gaps, or stands between two addresses."""
         flags = array.flags
-        if array.dtype != self.dtype or not (flags.c_contiguous and flags.aligned):
-            raise TypeError(f"the kernel takes aligned, contiguous arrays of {self.dtype}, not {array.dtype}")
-        # An array of ctypes over the same memory goes to C as its address; numpy takes ten times as long to tell that.
-        return _Memory.from_buffer(array.data) if flags.writeable else ctypes.c_void_p(array.ctypes.data)
+        if array.dtype == self.dtype:
+            if flags.carray:  # and can be written into
+                # ctypes' own view of the memory goes to C as its address; numpy takes ten times as long to tell that.
+                return _memory_of(array)
+            if flags.c_contiguous and flags.aligned:
+                return ctypes.c_void_p(array.ctypes.data)
+        raise TypeError(f"the kernel takes aligned, contiguous arrays of {self.dtype}, not {array.dtype}")
 
 
 COMPLEXES, FLOATS, INTS = Array(np.complex128), Array(np.float64), Array(np.int64)
