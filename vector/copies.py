@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, offsets_of, starts
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, counts_of, offsets_of, starts
 from voronoi_tiles.base.kernels import BOOLS, COMPLEXES, INT, INTS, kernel
 from voronoi_tiles.base.neighbours import Neighbours
 from voronoi_tiles.base.tolerance import SAME_POINT
@@ -90,7 +90,7 @@ def place(action: Action, sites: Sequence[NodedSite]) -> list[Placed]:
         nodes = np.where(far[union.node_site], nodes - action.cartesian(*np.transpose(shifts))[union.node_site], nodes)
     own = [nodes[begin:end] for begin, end in pairwise(union.first.tolist())]
     scale = max(action.size, float((right - left).max()), float((high - low).max()))
-    centroid = np.asarray(np.add.reduceat(nodes, first) / np.diff(union.first), complex)
+    centroid = np.asarray(np.add.reduceat(nodes, first) / counts_of(union.first), complex)
     stabilizers: list[tuple[Motion, ...]] = [(IDENTITY,)] * len(sites)
     for k in _nearly_fixed(action, centroid, 4 * SAME_POINT * scale):
         stabilizers[k] = _stabilizer(action, own[k], sites[k].segments)
@@ -107,7 +107,7 @@ def _nearly_fixed(action: Action, points: Complexes, within: float) -> list[int]
     steps = motions[:, :4].reshape(-1, 2, 2) @ places + motions[:, 4:, None] / 2 - places
     # How far the distance is at most in fractional coordinates.
     limit = within / action.lattice.det * np.array([[abs(action.lattice.b)], [abs(action.lattice.a)]])
-    near = np.asarray((np.abs(steps - np.round(steps)) <= limit).all(axis=1))
+    near = np.asarray((np.abs(steps - np.rint(steps)) <= limit).all(axis=1))
     return np.flatnonzero(near[1:].any(axis=0)).tolist()
 
 

@@ -80,7 +80,6 @@ def motion_of(code: int) -> Motion:
     return (*LINEAR_PARTS[code >> 2 * _BITS], ((code >> _BITS) & _MASK) - _HALF, (code & _MASK) - _HALF)
 
 
-@lru_cache(maxsize=4096)
 def operation_of(code: int) -> Operation:
     """The operation of a code."""
     return to_operation(motion_of(code))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Final
 
 import numpy as np
@@ -61,6 +61,7 @@ def to_motion(operation: Operation) -> Motion:
     return (*operation.linear, x.numerator * (2 // x.denominator), y.numerator * (2 // y.denominator))
 
 
+@lru_cache(maxsize=4096)
 def to_operation(motion: Motion) -> Operation:
     """A motion as an operation."""
     return Operation((motion[0], motion[1], motion[2], motion[3]), (Fraction(motion[4], 2), Fraction(motion[5], 2)))

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from itertools import pairwise
 
 from voronoi_tiles.base.arrays import Complexes, Ints
@@ -193,7 +193,7 @@ def tessellate(
     touch, two neighbours may take turns along an edge by rounding alone; a proof tells. Raises TouchingCopiesError
     where two copies touch or cross, ProofError where no boundary was found, which is not known to happen to any design.
     """
-    action = Action(group, lattice)
+    action = _action(group, lattice)
     placed = place(action, sites)
     names = tuple(site.name for site in sites)
     symmetry = SiteSymmetry.of(placed)
@@ -220,6 +220,12 @@ def tessellate(
         )
         for tile, (name, p) in enumerate(zip(names, placed, strict=True))
     ]
+
+
+@lru_cache(maxsize=16)
+def _action(group: WallpaperGroup, lattice: Lattice) -> Action:
+    """A group over a lattice: what is found out about them serves all designs that have them, as while one is drawn."""
+    return Action(group, lattice)
 
 
 def _trace(action: Action, placed: list[Placed]) -> tuple[Traced, float]:

@@ -64,7 +64,7 @@ def make_rows(contour: Contour, covering_radius: float, without: Bools) -> Rows:
     Long half-edges (as measured by the lattice's covering radius) and wide corners have several rows, by ascending x.
     Half-edges `without` (bool, h) get no rows, nor do the corners at their ends.
     """
-    wanted = np.flatnonzero(~without)
+    wanted = (~without).nonzero()[0]
     half_edge, part, parts = _divide(contour.length[wanted] / (_LONGEST_PART * covering_radius))
     half_edge = wanted[half_edge]
     start, end = contour.nodes[contour.source[half_edge]], contour.nodes[contour.target[half_edge]]
@@ -73,7 +73,7 @@ def make_rows(contour: Contour, covering_radius: float, without: Bools) -> Rows:
     normal = 1j * along
     kept = contour.convex
     kept[: len(without)] &= ~without
-    convex = np.flatnonzero(kept)
+    convex = kept.nonzero()[0]
     corner, part, parts_of_corner = _divide(contour.turn[convex] / _WIDEST_FAN)
     corner = convex[corner]
     turn, point = contour.turn[corner], contour.nodes[contour.corner_node[corner]]
@@ -81,8 +81,8 @@ def make_rows(contour: Contour, covering_radius: float, without: Bools) -> Rows:
     # Each formula for the middle of the wedge loses its digits where the other one is good.
     axis = np.where(turn < np.pi / 2, 1j * (before + after), before - after)
     axis /= np.abs(axis)
-    low_x, high_x = np.tan(turn / 2 * np.stack((part / parts_of_corner, (part + 1) / parts_of_corner)) - turn / 4)
-    ray0, ray1, middle = _ray(axis, np.stack((low_x, high_x, (low_x + high_x) / 2)))
+    low_x, high_x = np.tan(turn / 2 * np.array((part / parts_of_corner, (part + 1) / parts_of_corner)) - turn / 4)
+    ray0, ray1, middle = _ray(axis, np.array((low_x, high_x, (low_x + high_x) / 2)))
     count = len(half_edge)
     return Rows(
         half_edge=np.concatenate((half_edge, np.full(len(corner), -1))),

@@ -212,7 +212,7 @@ class TileBoundaries:
 
     def _partners(self, symmetry: SiteSymmetry) -> Ints:
         """Of each face that of the tile beyond, at the place of its site, which faces this one; -1 where none does."""
-        tile = np.repeat(np.arange(len(self.face_offsets) - 1), np.diff(self.face_offsets))
+        tile = np.arange(len(self.face_offsets) - 1).repeat(counts_of(self.face_offsets))
         back = symmetry.canonical(tile, inverted(self.motion))
         _, numbers = _numbered(tile, self.site, self.motion)
         asked = zip(self.site.tolist(), tile.tolist(), back.tolist(), strict=True)

@@ -80,7 +80,8 @@ class Representatives:
         Rows are filled up with the identity.
         """
         row = np.full(len(self.position) + 1, -1)
-        row[list(self.stabilizer)] = np.arange(len(self.stabilizer))
+        for k, number in enumerate(self.stabilizer):
+            row[number] = k
         width = max(map(len, self.stabilizer.values()), default=0)
         fixing = [codes + (IDENTITY_CODE,) * (width - len(codes)) for codes in self.stabilizer.values()]
         return row, np.array(fixing, np.int64).reshape(len(fixing), width)
