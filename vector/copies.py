@@ -103,8 +103,8 @@ def place(action: Action, sites: Sequence[NodedSite]) -> list[Placed]:
 
 def _nearly_fixed(action: Action, points: Complexes, within: float) -> list[int]:
     """The numbers of all points that some motion and a translation of the lattice may leave within a distance."""
-    motions, places = np.array(action.motions), np.array(action.lattice.fractional(points))
-    steps = motions[:, :4].reshape(-1, 2, 2) @ places + motions[:, 4:, None] / 2 - places
+    (turns, shifts), places = action.fractional_maps, np.array(action.lattice.fractional(points))
+    steps = turns @ places + shifts - places
     # How far the distance is at most in fractional coordinates.
     limit = within / action.lattice.det * np.array([[abs(action.lattice.b)], [abs(action.lattice.a)]])
     near = np.asarray((np.abs(steps - np.rint(steps)) <= limit).all(axis=1))

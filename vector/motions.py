@@ -80,6 +80,12 @@ class Action:
         return tuple(to_motion(operation) for operation in self.group.operations)
 
     @cached_property
+    def fractional_maps(self) -> tuple[Floats, Floats]:
+        """What the motions do to fractional coordinates: matrices (n, 2, 2), and vectors (n, 2, 1) added afterwards."""
+        rows = np.array(self.motions, float)
+        return rows[:, :4].reshape(-1, 2, 2), rows[:, 4:, None] / 2
+
+    @cached_property
     def linear(self) -> dict[tuple[int, ...], tuple[complex, bool]]:
         """The linear part of each motion as (unit complex number, whether it conjugates)."""
         isometries = (self.lattice.isometry(operation) for operation in self.group.operations)

@@ -53,10 +53,9 @@ class NearestCopies(NamedTuple):
 
 def inverses(isometries: Sequence[Isometry]) -> Motions:
     """The isometries that undo others."""
-    units, shifts, conj = zip(*isometries, strict=True)
-    mirrored = np.array(conj)
-    unit = np.where(mirrored, units, np.conj(units))
-    return unit, move(np.array(shifts), -unit, 0j, mirrored), mirrored
+    units, shifts, mirrored = map(np.array, zip(*isometries, strict=True))
+    unit = np.where(mirrored, units, units.conj())
+    return unit, move(shifts, -unit, 0j, mirrored), mirrored
 
 
 def nearest_copies(lattice: Lattice, motions: Motions, tree: BoxTree, points: Complexes, slack: float) -> NearestCopies:
