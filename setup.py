@@ -33,6 +33,7 @@ SOURCES = [
     "vector/complex/boundary.c",
     "vector/complex/traced.c",
     "vector/copies.c",
+    "vector/crossings.c",
     "vector/motion_codes.c",
     "vector/nearest_copies.c",
     "vector/strayed.c",

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, counting, owned_ranges
+from voronoi_tiles.base.kernels import COMPLEXES, INT, INTS, kernel
 from voronoi_tiles.base.tolerance import EPSILON, PROOF_LIMIT
 from voronoi_tiles.vector.all_arcs import AllArcs
 from voronoi_tiles.vector.box_tree import Boxes, boxes_around
@@ -30,6 +31,10 @@ _DIVISIONS = 24
 # arithmetic and fast robust geometric predicates, 1997.
 _AREA_ERROR = (3 + 8 * EPSILON) * EPSILON / 2
 _RIGHT, _LEFT, _UP, _DOWN = 1, 2, 4, 8
+
+# What the compiled kernel takes, as in crossings.c, and what it answers where too many arcs are above each other.
+_COMPILED = kernel("proof_pairs", INT, COMPLEXES, COMPLEXES, COMPLEXES, INTS, INT, INTS, INTS)
+_MANY = -1
 
 _SubArcs = tuple[Ints, Floats, Floats]
 """The arc of each, and the range of the curve's parameter."""
@@ -185,7 +190,22 @@ def _cross(u: Complexes, v: Complexes) -> Floats:
 
 
 def candidate_pairs(arcs: AllArcs) -> tuple[Ints, Ints]:
-    """The pairs i < j of arcs of one outline that may cross."""
+    """The pairs i < j of arcs of one outline that may cross. A compiled kernel gives the same."""
+    compiled, most = _COMPILED(), _FEW * len(arcs)
+    if compiled is None:
+        pairs = _swept(arcs, most)
+        return _of_groups(arcs) if pairs is None else pairs
+    i, j = np.empty((2, max(most, 0)), np.intp)
+    found = compiled(len(arcs), arcs.start, arcs.control, arcs.end, arcs.tile, most, i, j)
+    if found == _MANY:
+        return _of_groups(arcs)
+    if found < 0:
+        raise MemoryError
+    return i[:found], j[:found]
+
+
+def _swept(arcs: AllArcs, most: int) -> tuple[Ints, Ints] | None:
+    """The pairs by a sweep from left to right; None where more than `most` arcs are above each other."""
     points = np.array((arcs.start, arcs.control, arcs.end))
     left, right = points.real.min(axis=0), points.real.max(axis=0)
     # Each arc with those of its tile that begin farther to the right, before it ends.
@@ -193,8 +213,8 @@ def candidate_pairs(arcs: AllArcs) -> tuple[Ints, Ints]:
     tile, begin = arcs.tile[order], np.arange(1, len(arcs) + 1)
     end = np.searchsorted(tile + 1j * left[order], tile + 1j * right[order], side="right")
     end = np.maximum(end, begin)  # where a result is wrong, and no number
-    if (end - begin).sum() > _FEW * len(arcs):
-        return _of_groups(arcs)
+    if (end - begin).sum() > most:
+        return None
     later, earlier = owned_ranges(begin, end)
     i, j = order[earlier], order[later]
     for low, high in ((left, right), (points.imag.min(axis=0), points.imag.max(axis=0))):

@@ -19,10 +19,14 @@ from voronoi_tiles.vector.outline import Outline
 SIZE = 100.0
 
 
-@pytest.fixture(autouse=True, params=["swept", "in groups"])
+@pytest.fixture(autouse=True, params=["compiled", "swept", "in groups"])
 def _search(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Arcs are looked at as they are, and as if many were above each other."""
-    if request.param == "in groups":
+    """Arcs are looked at as they are, compiled and by numpy, and as if many were above each other."""
+    if request.param == "compiled":
+        request.getfixturevalue("compiled")
+    elif request.param == "swept":
+        monkeypatch.setenv("VORONOI_TILES_KERNELS", "numpy")
+    else:
         monkeypatch.setattr(crossings, "_FEW", -1)
 
 
@@ -166,3 +170,19 @@ def test_signs_of_areas_are_exact(seed: int) -> None:
         assert got[k] == (area > 0) - (area < 0)
     assert (got == 0).any()
     assert (got != 0).any()
+
+
+@pytest.mark.parametrize("number", [3, 20, 100])
+@pytest.mark.usefixtures("compiled")
+def test_kernel_finds_the_pairs_of_numpy(number: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """In their order, of several outlines, on a grid as well, where boxes have sides in common or no width."""
+    random = np.random.default_rng(number)
+    for digits in (0, 9):
+        walks = np.cumsum(random.uniform(-9, 9, (4, number)) + 1j * random.uniform(-3, 3, (4, number)), axis=1)
+        arcs = AllArcs.of([Outline.from_rings([polygon(*walk)]) for walk in np.round(walks, digits)])
+        found = []
+        for chosen in ("", "numpy"):
+            monkeypatch.setenv("VORONOI_TILES_KERNELS", chosen)
+            found.append([(array.dtype, array.tolist()) for array in candidate_pairs(arcs)])
+        assert found[0] == found[1]
+        assert len(found[0][0][1])

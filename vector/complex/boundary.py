@@ -127,8 +127,8 @@ class TileBoundaries:
         turn, offsets = code_of((*motion[:4], 0, 0)), self.ring_offsets
         curved = self.control.index >= 0
         compiled = _ARCS()
-        arcs = self._arcs if compiled is None else partial(self._arcs_compiled, compiled)
-        start, control, end, focus, directrix = arcs(turn, (motion[4], motion[5]), curved)
+        place = self._arcs if compiled is None else partial(self._arcs_compiled, compiled)
+        start, control, end, focus, directrix = place(turn, (motion[4], motion[5]), curved)
         face = self.face - self.face_offsets[:-1].repeat(counts_of(offsets[self.tile_offsets]))
         if reverses_orientation(motion):
             # A motion that turns the plane over turns the rings round: run through each backwards.

@@ -70,13 +70,11 @@ def in_use() -> str:
     return "compiled" if loaded else f"numpy ({reason})"
 
 
-def kernel(
-    name: str, *arguments: Array | type[ctypes.c_double | ctypes.c_int64]
-) -> Callable[[], Callable[..., int] | None]:
-    """What gives a function of the library, of such arguments and whose result is an int64; None where numpy works.
+def kernel(name: str, *kinds: Any) -> Callable[[], Callable[..., int] | None]:
+    """What gives a function of the library, whose arguments are of these kinds; None where numpy does its work.
 
-    It is asked each time, as the environment may choose anew. ctypes raises ArgumentError where an argument is of
-    another type.
+    It is asked each time, as the environment may choose anew. The function's result is an int64. ctypes raises
+    ArgumentError where an argument is of another kind.
     """
 
     @cache
@@ -85,7 +83,7 @@ def kernel(
         if loaded is None:
             return None
         function = loaded[name]
-        function.argtypes = arguments
+        function.argtypes = kinds
         function.restype = ctypes.c_int64
         return function
 
