@@ -34,15 +34,15 @@ class AllArcs:
     def of(cls, outlines: Sequence[Outline]) -> AllArcs:
         """The arcs of outlines."""
         counts = np.array([len(outline) for outline in outlines])
-        before = np.cumsum(counts) - counts
+        before = counts.cumsum() - counts
         offsets = [outline.ring_offsets[:-1] + k for outline, k in zip(outlines, before.tolist(), strict=True)]
         return cls(
             start=np.concatenate([outline.start for outline in outlines]),
             control=np.concatenate([outline.control for outline in outlines]),
             end=np.concatenate([outline.end for outline in outlines]),
             curved=np.concatenate([outline.curved for outline in outlines]),
-            tile=np.repeat(np.arange(len(outlines)), counts),
-            ring_offsets=np.append(np.concatenate(offsets), counts.sum()),
+            tile=np.arange(len(outlines)).repeat(counts),
+            ring_offsets=np.concatenate((*offsets, counts.sum(keepdims=True))),
         )
 
     def area(self, copies: Ints) -> float:

@@ -42,7 +42,7 @@ class AllNodes:
         """
         alone = np.ones(len(self.position), bool)
         alone[self.segments] = False
-        points = np.flatnonzero(alone)
+        points = alone.nonzero()[0]
         start, end = (np.concatenate((side, points)) for side in self.segments.T)
         tile = self.tile[start]
         order = tile.argsort(kind="stable")

@@ -115,7 +115,7 @@ class Sites:
 
     def complete(self, known: Floats, enough: Floats, places: Complexes, site: Ints) -> Floats:
         """The distance of each place from a site: as `known` up to `enough`; beyond, of all elements of the site."""
-        missed = np.flatnonzero(known > enough)
+        missed = (known > enough).nonzero()[0]
         if not len(missed):
             return known
         result = known.copy()

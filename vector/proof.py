@@ -123,7 +123,7 @@ def prove(group: WallpaperGroup, lattice: Lattice, records: Sequence[TileRecord]
 
 def open_joints(arcs: AllArcs) -> int:
     """The number of arcs whose end is not, bit for bit, the start of the next of their ring."""
-    return int((arcs.end != arcs.start[next_in_ring(arcs.ring_offsets)]).sum())
+    return int(np.count_nonzero(arcs.end != arcs.start[next_in_ring(arcs.ring_offsets)]))
 
 
 def _unshared(arcs: AllArcs, counterparts: tuple[Complexes, Complexes, Complexes]) -> int:
@@ -133,4 +133,4 @@ def _unshared(arcs: AllArcs, counterparts: tuple[Complexes, Complexes, Complexes
     start, control, end = counterparts
     # Written so that NaN fails.
     same = (start == arcs.start) & (control == arcs.control) & (end == arcs.end)
-    return int((~same).sum())
+    return len(arcs) - int(np.count_nonzero(same))

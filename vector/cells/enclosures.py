@@ -32,7 +32,7 @@ def enclosed(contour: Contour, copies: Copies, node_site: Ints, node_bundle: Int
     # Walks around the inside of a closed stroke run counter-clockwise, around the outside of all others clockwise.
     area = np.bincount(face, x * v - y * u)
     inside = area > _AREA * np.bincount(face, contour.length) ** 2
-    region = np.flatnonzero(inside)
+    region = inside.nonzero()[0]
     if len(region):
         site = node_site[contour.source[order[first]]]
         lone = node_site[contour.corner_node[len(face) :: 4]]

@@ -81,7 +81,7 @@ def trace_contour(nodes: Complexes, segments: Ints) -> Contour:
     place = np.empty_like(order)
     place[order] = half_edges
     degree = np.bincount(source, minlength=len(nodes))
-    first = np.concatenate(([0], np.cumsum(degree)))[:-1]
+    first = degree.cumsum() - degree
     # The next half-edge around the face on the left leaves the target next clockwise from the way back.
     back = place[half_edges ^ 1]
     at = first[target]
@@ -92,7 +92,7 @@ def trace_contour(nodes: Complexes, segments: Ints) -> Contour:
         arriving.real * leaving.real + arriving.imag * leaving.imag,
     )
     turn[following == half_edges ^ 1] = np.pi
-    isolated = np.flatnonzero(degree == 0)
+    isolated = (degree == 0).nonzero()[0]
     if len(isolated):
         axes = np.array([1, -1j, -1, 1j])
         arriving = np.concatenate((arriving, np.tile(axes, len(isolated))))

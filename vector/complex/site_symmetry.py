@@ -9,7 +9,7 @@ import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Ints, offsets_of, ranges
 from voronoi_tiles.vector.copies import Placed
-from voronoi_tiles.vector.motion_codes import Codes, composed, encode, modulo
+from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, composed, encode, modulo
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -31,10 +31,13 @@ class SiteSymmetry:
         """That of placed sites."""
         order = np.array([len(p.stabilizer) for p in placed])
         names = np.zeros((len(placed), 64), bool)
-        special = np.flatnonzero(order > 1)
+        special = (order > 1).nonzero()[0]
         for k in special.tolist():
             names[k, modulo(encode(placed[k].representatives))] = True
-        stabilizer = encode([motion for p in placed for motion in p.stabilizer])
+        if len(special):
+            stabilizer = encode([motion for p in placed for motion in p.stabilizer])
+        else:
+            stabilizer = np.full(len(placed), IDENTITY_CODE)
         return cls(stabilizer, offsets_of(order), order, names, not len(special))
 
     def canonical(self, site: Ints, motion: Codes) -> Codes:
