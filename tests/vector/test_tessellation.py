@@ -394,6 +394,43 @@ def test_special_positions(group: str, place: list[float], order: int, shape: st
     assert part.area == pytest.approx(tiling.design.lattice.det * order / kind.order, rel=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("group", "place", "order"),
+    [
+        ("p2", [30, 30], 2),
+        ("pmg", [30, 0], 2),
+        ("pgg", [30, 0], 2),
+        ("pmm", [30, 0], 4),
+        ("cmm", [15, 15], 2),
+        ("p4", [30, 30], 4),
+        ("p4", [30, 0], 2),
+        ("p4m", [30, 30], 8),
+        ("p4g", [0, 0], 4),
+        ("p3", [30, 60 * math.sqrt(3) / 6], 3),
+        ("p31m", [0, 0], 6),
+        ("p31m", [30, 60 * math.sqrt(3) / 6], 3),
+        ("p6", [0, 0], 6),
+        ("p6", [30, 60 * math.sqrt(3) / 6], 3),
+        ("p6m", [0, 0], 12),
+    ],
+)
+@pytest.mark.parametrize("count", [2, 3])
+def test_sites_around_a_centre(group: str, place: list[float], order: int, count: int) -> None:
+    """Their tiles meet in it, and share its bits, whether an operation leads from one to the next or none is needed."""
+    cell = {} if GROUPS[group].fixes_b else {"b": 60.0}
+    if GROUPS[group].fixed_angle is None:
+        cell["angle"] = 90.0
+    for turn in np.linspace(0.0, 1.0, 7)[1:-1]:
+        # All in the domain of one copy, as far from the centre.
+        offsets = 4 * np.exp(2j * np.pi / order * (turn + np.arange(count)) / count)
+        sites = [{"strokes": [{"point": [place[0] + z.real, place[1] + z.imag]}]} for z in offsets]
+        design = {"schema": 1, "group": group, "cell": {"a": 60.0, **cell}, "site": sites}
+        tiling = Design.from_dict(design).tessellate()
+        assert tiling.proof.passed
+        for part in tiling.tiles:
+            assert np.abs(part.outline.start - complex(*place)).min() < 1e-12
+
+
 def test_a_hole() -> None:
     """A site inside a closed curve has its tile in a hole of the other's; the two share that ring."""
     design = one("p4", {"circle": [15, 15], "radius": 9})

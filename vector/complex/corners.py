@@ -45,7 +45,8 @@ def find_corners(builder: Builder, edges: Edges) -> Points:
     numbers = np.empty(len(edges), np.intp)
     numbers[first] = builder.add(where)
     if careful.any():
-        asked = careful[least[one]] & (by != IDENTITY_CODE)  # the identity leads back only
+        # From corner to corner the identity leads as well, to a tile beside.
+        asked = careful[least[one]] & ((one != two) | (by != IDENTITY_CODE))
         related = _related(one[asked], two[asked], by[asked])
         ends = _Ends(edges)
         for place in careful[first].nonzero()[0].tolist():
