@@ -14,10 +14,12 @@ import numpy.typing as npt
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, counts_of, offsets_of, starts
 from voronoi_tiles.base.kernels import BOOLS, COMPLEXES, INT, INTS, kernel
 from voronoi_tiles.base.neighbours import Neighbours
-from voronoi_tiles.base.tolerance import SAME_POINT
+from voronoi_tiles.base.tolerance import EPSILON, SAME_POINT
 from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, modulo_lattice
 
+# How much of a site's distance from the origin its images may be off by the rounding of coordinates there.
+_ROUNDING = 4 * EPSILON
 # Copies for which the compiled kernel has room at first, and what it takes, as in copies.c.
 _ROOM = 100
 _COMPILED = kernel(
@@ -31,6 +33,7 @@ _COMPILED = kernel(
 class Placed:
     """A base site moved by a lattice vector to near the origin, with what its copies depend on.
 
+    What was drawn far away is known to fewer digits: there a site that is symmetric up to these is made symmetric.
     `nodes` (complex128, m) and `segments` (intp, n x 2) are as in a site; `shift` are the integer coordinates of the
     vector that leads back to the site as it was drawn. `stabilizer` are the motions that map the site onto itself, the
     identity first; `representatives` has one motion for each copy in a cell, modulo translations.
@@ -84,16 +87,20 @@ def place(action: Action, sites: Sequence[NodedSite]) -> list[Placed]:
     x, y = action.lattice.fractional((left + right) / 2 + (low + high) * 0.5j)
     # A site within a cell of the origin stays where it was drawn.
     far = np.maximum(np.abs(x), np.abs(y)) > 2
-    shifts = [(0, 0)] * len(sites)
+    shifts, rounding = [(0, 0)] * len(sites), [0.0] * len(sites)
     if far.any():
         shifts = [(round(s), round(t)) if moved else (0, 0) for s, t, moved in zip(x, y, far, strict=True)]
-        nodes = np.where(far[union.node_site], nodes - action.cartesian(*np.transpose(shifts))[union.node_site], nodes)
+        away = action.cartesian(*np.transpose(shifts))
+        nodes = np.where(far[union.node_site], nodes - away[union.node_site], nodes)
+        rounding = (_ROUNDING * np.abs(away)).tolist()
     own = [nodes[begin:end] for begin, end in pairwise(union.first.tolist())]
     scale = max(action.size, float((right - left).max()), float((high - low).max()))
     centroid = np.asarray(np.add.reduceat(nodes, first) / counts_of(union.first), complex)
     stabilizers: list[tuple[Motion, ...]] = [(IDENTITY,)] * len(sites)
-    for k in _nearly_fixed(action, centroid, 4 * SAME_POINT * scale):
-        stabilizers[k] = _stabilizer(action, own[k], sites[k].segments)
+    for k in _nearly_fixed(action, centroid, 4 * max(SAME_POINT * scale, *rounding)):
+        stabilizers[k] = _stabilizer(action, own[k], sites[k].segments, rounding[k])
+        if far[k]:
+            own[k] = _symmetrized(action, own[k], stabilizers[k])
     representatives = {stabilizer: _representatives(action, stabilizer) for stabilizer in set(stabilizers)}
     return [
         Placed(own[k], site.segments, shifts[k], stabilizers[k], representatives[stabilizers[k]])
@@ -129,8 +136,14 @@ def translation(placed: Placed, sign: int) -> Motion:
     return (*IDENTITY[:4], 2 * sign * placed.shift[0], 2 * sign * placed.shift[1])
 
 
-def _stabilizer(action: Action, nodes: Complexes, segments: Ints) -> tuple[Motion, ...]:
-    """The motions that map a site onto itself, the identity first."""
+def _symmetrized(action: Action, nodes: Complexes, stabilizer: tuple[Motion, ...]) -> Complexes:
+    """The nodes of a site that motions map nearly onto itself, made symmetric: each the mean of what is taken there."""
+    images = [action.apply(motion, nodes) for motion in stabilizer]
+    return np.asarray(np.mean([image[Neighbours(image).nearest(nodes)[1][:, 0]] for image in images], axis=0), complex)
+
+
+def _stabilizer(action: Action, nodes: Complexes, segments: Ints, rounding: float) -> tuple[Motion, ...]:
+    """The motions that map a site onto itself, the identity first, where nodes are known up to `rounding`."""
     if len(segments):
         ends = nodes[segments]
         length = np.abs(ends[:, 1] - ends[:, 0])
@@ -138,7 +151,7 @@ def _stabilizer(action: Action, nodes: Complexes, segments: Ints) -> tuple[Motio
     else:
         centroid = complex(nodes.mean())
     extent = float(np.abs(nodes - centroid).max())
-    close = SAME_POINT * max(action.size, extent)
+    close = max(SAME_POINT * max(action.size, extent), rounding)
     found = [IDENTITY]
     for motion in action.motions[1:]:
         image = action.apply_to_point(motion, centroid)

@@ -461,6 +461,25 @@ def test_the_distance_of_a_far_site_does_not_matter() -> None:
     assert_same(image, far.tiles[0].outline, 60.0)
 
 
+@pytest.mark.parametrize(
+    ("group", "stroke", "order"),
+    [
+        ("p3", {"circle": [30, 60 * math.sqrt(3) / 6], "radius": 3}, 3),
+        ("p3m1", {"segment": [[7.5, 17.5 * math.sqrt(3)], [22.5, 12.5 * math.sqrt(3)]]}, 2),
+        ("p6m", {"circle": [0, 0], "radius": 7}, 12),
+    ],
+)
+def test_a_far_site_is_as_symmetric_as_the_near_one(group: str, stroke: dict[str, Any], order: int) -> None:
+    """Where coordinates are thousands of times coarser than near the origin, and images are off by as much."""
+    near = Design.from_dict(one(group, stroke)).tessellate()
+    for i, j in ((-2886, 4692), (317, 12345), (700001, -299993)):
+        shift = near.design.lattice.cartesian(i, j)
+        far = Design.from_dict(one(group, {**stroke, "translate": strategies.xy(shift)})).tessellate()
+        assert len(far.tiles[0].symmetry) == len(near.tiles[0].symmetry) == order
+        image = near.tiles[0].outline.transformed(Isometry(1 + 0j, shift, False))
+        np.testing.assert_allclose(far.tiles[0].outline.bounds, image.bounds, rtol=1e-14, atol=0)
+
+
 # --- copies that touch --------------------------------------------------------------------------------------
 
 

@@ -66,7 +66,7 @@ FILE_BYTES_MAX: Final = 64 * 2**20
 SAME_POINT: Final = 1e-13
 """How near the image of a node must be to a node for an operation to map a site onto itself; relative to
 the cell or the site, whichever is larger. Hundreds of ulps, as flattened curves are symmetric only up to
-rounding."""
+rounding. Far from the origin the rounding of coordinates may be more, and counts instead."""
 
 TOUCHING: Final = 1e-11
 """Copies that are nearer than this touch; relative to the cell's longer side. Ten times PROOF_LIMIT: at less, the
