@@ -20,6 +20,7 @@ RANKS = (
     ("fabrication", "preflight", "crosscheck", "pictures"),
     ("tile",),
     ("tiling",),
+    ("studio",),
     ("cli",),
 )
 """Every package and module below the root package; those of one rank do not import each other, but for BESIDE."""

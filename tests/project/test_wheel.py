@@ -29,6 +29,10 @@ def sources(*suffixes: str) -> set[str]:
     }
 
 
+PACKAGED = (".py", ".glsl", ".toml", ".html", ".css", ".js", ".svg")
+"""The suffixes of the sources."""
+
+
 class Wheel(NamedTuple):
     """A wheel: its file, the names in it, and what pip said while it was built."""
 
@@ -48,7 +52,7 @@ class Wheel(NamedTuple):
 
     def library(self) -> tuple[str, bytes]:
         """The suffix and the content of the compiled kernels."""
-        (name,) = self.names - sources(".py", ".glsl", ".toml") - {n for n in self.names if ".dist-info/" in n}
+        (name,) = self.names - sources(*PACKAGED) - {n for n in self.names if ".dist-info/" in n}
         assert name.startswith("voronoi_tiles/base/kernels.compiled.")
         with zipfile.ZipFile(self.file) as archive:
             return Path(name).suffix, archive.read(name)
@@ -115,7 +119,7 @@ def test_the_only_top_level_package_is_ours(wheel: Wheel) -> None:
 def test_every_source_file_is_inside(wheel: Wheel) -> None:
     """A package that pyproject.toml does not list would be missing."""
     packaged = {name for name in wheel.names if name.startswith("voronoi_tiles/")}
-    assert packaged == sources(".py", ".glsl", ".toml")
+    assert packaged == sources(*PACKAGED)
     assert {"voronoi_tiles/py.typed", "voronoi_tiles/vector/outline.py", "voronoi_tiles/raster/__init__.py"} <= packaged
 
 
