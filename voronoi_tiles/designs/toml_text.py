@@ -5,12 +5,21 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Mapping
+from datetime import date, time
+from itertools import pairwise
+from numbers import Integral
 from typing import Any, Final
 
 from voronoi_tiles.base.errors import DesignError
 
 _WIDTH: Final = 110
 """Where the points of a stroke are wrapped; characters."""
+
+_TEXT_OR_GAP: Final = re.compile(r'"(?:[^"\\]|\\.)*+"|(?<=\],) (?=\[)')
+"""A text in quotes, within which no line is broken, or the blank between two points, where it may be."""
+
+_WHOLE_MAX: Final = 2.0**53
+"""Above this all floats are whole numbers, and TOML's integers, of 64 bits, soon too short."""
 
 
 def toml_text(design: Mapping[str, Any]) -> str:
@@ -22,9 +31,26 @@ def toml_text(design: Mapping[str, Any]) -> str:
     lines += ["", "[cell]", *(f"{key} = {toml_value(value)}" for key, value in design["cell"].items())]
     for site in design["site"]:
         lines += ["", "[[site]]"]
-        lines += [f"{key} = {toml_value(value)}" for key, value in site.items() if key != "strokes"]
-        lines += ["strokes = [", *(f"  {_wrapped(toml_value(stroke))}," for stroke in site["strokes"]), "]"]
+        lines += [toml_pair(key, value) for key, value in site.items() if key != "strokes"]
+        lines.append(toml_pair("strokes", site["strokes"]))
     return "\n".join(lines) + "\n"
+
+
+def toml_pair(key: str, value: Any) -> str:
+    """A key and its value as TOML."""
+    return f"{toml_key(key)} = {toml_lines(value)}"
+
+
+def toml_lines(value: Any) -> str:
+    """A value as TOML: a list of tables has a line for each, wrapped where it is long."""
+    if isinstance(value, list | tuple) and value and all(isinstance(item, Mapping) for item in value):
+        return "\n".join(("[", *(f"  {wrapped(toml_value(item))}," for item in value), "]"))
+    return toml_value(value)
+
+
+def toml_key(key: str) -> str:
+    """A key as TOML, in quotes where it needs them."""
+    return key if re.fullmatch("[A-Za-z0-9_-]+", key) else _text(key)
 
 
 def toml_value(value: Any) -> str:
@@ -35,11 +61,22 @@ def toml_value(value: Any) -> str:
         case str():
             return _text(value)
         case Mapping():
-            return f"{{ {', '.join(f'{key} = {toml_value(item)}' for key, item in value.items())} }}"
+            return f"{{ {', '.join(f'{toml_key(key)} = {toml_value(item)}' for key, item in value.items())} }}"
         case list() | tuple():
             return f"[{', '.join(map(toml_value, value))}]"
+    return _scalar(value)
+
+
+def _scalar(value: Any) -> str:
+    """A date or a time, or a number, without a fraction where it is whole."""
+    if isinstance(value, date | time):
+        return value.isoformat()
+    if isinstance(value, Integral):
+        return repr(int(value))
     number = float(value)
-    return repr(int(number)) if number.is_integer() else repr(number)  # repr has the digits that give the same bits
+    if number.is_integer() and abs(number) < _WHOLE_MAX:
+        return repr(int(number))
+    return repr(number)  # which has the digits that give the same bits
 
 
 def _text(text: str) -> str:
@@ -53,11 +90,12 @@ def _text(text: str) -> str:
     return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")
 
 
-def _wrapped(stroke: str) -> str:
+def wrapped(stroke: str) -> str:
     """A stroke with line breaks between its points, where it is long; TOML allows them inside an array."""
     if len(stroke) <= _WIDTH:
         return stroke
-    first, *others = re.split(r"(?<=\],) (?=\[)", stroke)
+    cuts = [found.start() for found in _TEXT_OR_GAP.finditer(stroke) if found[0] == " "]
+    first, *others = (stroke[a:b].lstrip() for a, b in pairwise([0, *cuts, len(stroke)]))
     lines = [first]
     for part in others:
         if len(lines[-1]) + 1 + len(part.removesuffix("],")) > _WIDTH:
