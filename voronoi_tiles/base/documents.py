@@ -30,6 +30,11 @@ def read_document(file: str, what: str, *, missing: str, remedy: str = "") -> st
         data = read_bytes(file, FILE_BYTES_MAX + 1)
     except (OSError, ValueError) as error:
         raise DesignError(f"cannot read the {what}: {why_not_opened(file, error)}", remedy=missing) from None
+    return document_text(data, what, remedy=remedy)
+
+
+def document_text(data: bytes, what: str, *, remedy: str = "") -> str:
+    """The text of a file's bytes, which is to be `what`; without the byte order mark that it may begin with."""
     if len(data) > FILE_BYTES_MAX:
         raise DesignError(f"larger than {FILE_BYTES_MAX // 2**20} MiB", remedy=_joined(f"Is it a {what}?", remedy))
     try:
