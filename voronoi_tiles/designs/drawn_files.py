@@ -7,7 +7,7 @@ the place of the name, and gives the same tiles when the drawing has changed, or
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -84,13 +84,9 @@ class DrawnFiles:
         """The path data of what is drawn."""
         from voronoi_tiles.formats.svg.path_text import path_data
 
-        shapes = _chosen(drawing, layer)
-        if layer is None and len(shapes) < len(drawing.shapes):
-            self._note([f'{name}: what is on the layer "{GUIDE}" is left out, as in art; name it to have it'])
-        outlines, joined = _outlines(shapes)
-        if joined:
-            many = f"{joined:,} open paths" if joined > 1 else "an open path"
-            self._note([f"{name}: the fill of {many} is closed by a straight line; give lines a fill of none"])
+        shapes = chosen_shapes(drawing, layer)
+        outlines, joined = outlines_of(shapes)
+        self._note(remarks(name, joined=joined, guides=layer is None and len(shapes) < len(drawing.shapes)))
         if not len(outlines):
             where = "" if layer is None else f" on the layer {shown(layer)}"
             raise DesignError(
@@ -107,7 +103,7 @@ class DrawnFiles:
         self.notes += [note for note in sentences if note not in self.notes]
 
 
-def _chosen(drawing: ReadDrawing, layer: str | None) -> list[Shape]:
+def chosen_shapes(drawing: ReadDrawing, layer: str | None) -> list[Shape]:
     """The shapes of a layer, or a colour "#rrggbb"; without one, all that are not on a layer of guides.
 
     Raises DesignError for a layer that the drawing has not.
@@ -131,7 +127,16 @@ def _colour(shape: Shape) -> str | None:
     return shape.stroke or shape.fill
 
 
-def _outlines(shapes: list[Shape]) -> tuple[Paths, int]:
+def remarks(name: str, *, joined: int, guides: bool) -> Iterator[str]:
+    """Sentences on what was done to a drawing: how many open paths were closed, whether guides were left out."""
+    if guides:
+        yield f'{name}: what is on the layer "{GUIDE}" is left out, as in art; name it to have it'
+    if joined:
+        many = f"{joined:,} open paths" if joined > 1 else "an open path"
+        yield f"{name}: the fill of {many} is closed by a straight line; give lines a fill of none"
+
+
+def outlines_of(shapes: list[Shape]) -> tuple[Paths, int]:
     """The paths of shapes, and how many of them, open ones that are filled, are closed by a line of their own."""
     parts, joined = [], 0
     for shape in shapes:

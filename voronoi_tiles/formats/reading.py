@@ -30,17 +30,22 @@ def read_drawing(path: str | os.PathLike[str], *, element: str | None = None) ->
     except (OSError, ValueError) as error:
         reason = why_not_opened(name, error)
         raise DrawingError(f"cannot be read: {reason}", file=shown, remedy="Check the name.") from error
+    return drawing_of(data, shown, element=element)
+
+
+def drawing_of(data: bytes, name: str, *, element: str | None = None) -> ReadDrawing:
+    """The drawing of an SVG or DXF file's content; `name` is that of the file. See `read_drawing`."""
     if len(data) > BYTES_MAX:
-        raise DrawingError(f"larger than {BYTES_MAX >> 20} MiB", file=shown, remedy="Split it, or simplify its curves.")
+        raise DrawingError(f"larger than {BYTES_MAX >> 20} MiB", file=name, remedy="Split it, or simplify its curves.")
     head = data[:4096].lstrip(b"\xef\xbb\xbf \t\r\n")
     suffix = os.path.splitext(name)[1].lower()  # noqa: PTH122 - a name that is no path is no error here
     is_xml = head.startswith((b"<", b"\x1f\x8b", b"\xff\xfe<", b"\xfe\xff\x00<"))
     if is_xml or suffix in {".svg", ".svgz"}:
         from voronoi_tiles.formats.svg.reader import svg_drawing
 
-        return replace(svg_drawing(data, shown, element), job=job_of(data))
+        return replace(svg_drawing(data, name, element), job=job_of(data))
     if suffix == ".dxf" or head.startswith((b"0", b"999", b"AutoCAD Binary DXF")):
         from voronoi_tiles.formats.dxf.reader import dxf_drawing
 
-        return replace(dxf_drawing(data, shown, element), job=job_of(data))
-    raise DrawingError("neither an SVG nor a DXF file", file=shown, remedy="Give it the suffix .svg or .dxf if it is.")
+        return replace(dxf_drawing(data, name, element), job=job_of(data))
+    raise DrawingError("neither an SVG nor a DXF file", file=name, remedy="Give it the suffix .svg or .dxf if it is.")

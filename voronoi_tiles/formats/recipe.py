@@ -1,4 +1,4 @@
-"""The recipe in files of our own: which job made them."""
+"""The recipe in files of our own: which design and which job made them."""
 
 from __future__ import annotations
 
@@ -9,25 +9,56 @@ from collections.abc import Mapping
 from typing import Any, Final
 
 _HEAD: Final = 4 * 2**20
-"""How much of a file is looked through; bytes. The recipe stands before the paths."""
+"""How much of a file is looked through, at its beginning and at its end; bytes. No recipe stands between paths."""
 
-_SVG: Final = re.compile(rb'<vt:recipe\b[^>]*?\bjob="([^"]*)"')
+# Between < and the end of a tag is no other <: so a file of nothing but beginnings is looked through once.
+_SVG: Final = re.compile(rb"<vt:recipe\b([^<>]*)>([^<]*)")
+_SVG_FACT: Final = re.compile(r'([\w-]+)="([^"]*)"')
 _DXF: Final = re.compile(rb"^999\r?\nrecipe (.*?)\r?$", re.MULTILINE)
+_PDF: Final = re.compile(rb"/Subject <FEFF([0-9A-F]+)>")
+_LIGHTBURN: Final = re.compile(rb"<Notes\b[^<>]*?\bNotes=(?:\"([^\"]*)\"|'([^']*)')")
+
+
+def recipe_of(data: bytes) -> Mapping[str, str]:
+    """What an SVG, DXF, PDF or LightBurn file of ours says of how it was made; nothing for files of others.
+
+    "design" and "job" are JSON, where there are any.
+    """
+    head, tail = data[:_HEAD], data[-_HEAD:]
+    try:
+        if svg := _SVG.search(head):
+            facts = {name: html.unescape(text) for name, text in _SVG_FACT.findall(svg[1].decode())}
+            return {**facts, "design": html.unescape(svg[2].decode())}
+        if dxf := _DXF.findall(head):
+            return _texts(b"".join(dxf).decode())
+        if pdf := _PDF.search(tail) or _PDF.search(head):
+            return _texts(bytes.fromhex(pdf[1].decode()).decode("utf-16-be"))
+        if notes := _LIGHTBURN.search(tail):
+            lines = html.unescape((notes[1] or notes[2] or b"").decode()).splitlines()
+            return dict(line.split(": ", 1) for line in lines if ": " in line)
+    except (ValueError, RecursionError):
+        pass
+    return {}
+
+
+def _texts(text: str) -> Mapping[str, str]:
+    """The texts of a JSON object. Raises ValueError where it is none."""
+    facts = json.loads(text)
+    return {key: value for key, value in facts.items() if isinstance(value, str)} if isinstance(facts, dict) else {}
 
 
 def job_of(data: bytes) -> Mapping[str, Any]:
     """What a file of ours says of its job (see voronoi_tiles.fabrication.job); nothing for files of others."""
-    head = data[:_HEAD]
+    return json_object(recipe_of(data).get("job", ""))
+
+
+def json_object(text: str) -> Mapping[str, Any]:
+    """A JSON object, empty where the text is none."""
     try:
-        svg = _SVG.search(head)
-        if svg is not None:
-            job = json.loads(html.unescape(svg[1].decode()))
-        else:
-            recipe = json.loads(b"".join(_DXF.findall(head)).decode())
-            job = json.loads(recipe["job"])
-    except (ValueError, LookupError, TypeError, RecursionError):
+        value = json.loads(text)
+    except (ValueError, RecursionError):
         return {}
-    return job if isinstance(job, Mapping) else {}
+    return value if isinstance(value, Mapping) else {}
 
 
 def tab_width(job: Mapping[str, Any]) -> float:

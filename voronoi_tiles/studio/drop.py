@@ -1,0 +1,96 @@
+"""Files that are dropped onto the studio's page: drawings become strokes, files of ours the design that made them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from typing import Any, Final
+
+from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.base.text import printable
+from voronoi_tiles.formats.recipe import json_object, recipe_of
+from voronoi_tiles.formats.shapes import DrawingError, ReadDrawing
+from voronoi_tiles.studio.design_parts import require_parts
+
+BYTES_MAX: Final = 16 * 2**20
+"""Largest file; bytes. Some five seconds' work, of which the page waits for the end."""
+
+STROKES_MAX: Final = 500
+"""Most strokes that a drawing becomes; a count. The paths of one with more objects are one stroke."""
+
+SEGMENTS_MAX: Final = 5_000
+"""Most lines and curves of a drawing; a count. A design of that many takes a second for its outline."""
+
+
+def dropped(data: bytes, name: str, unit_mm: float) -> dict[str, Any]:
+    """What a file becomes in a design whose unit is `unit_mm` millimetres.
+
+    A file that we have exported (SVG, DXF, PDF, LightBurn) gives the "design" in its JSON form and the options of its
+    "job". Any other SVG or DXF file gives "strokes" of path data, one for each object, as strokes of the kind `file`
+    have it: in its real size, y up, the lower left corner of all at the origin. "notes" are sentences on what was left
+    out or guessed. Raises DesignError.
+    """
+    name = printable(os.path.basename(name)) or "drawing"  # noqa: PTH119 - any name
+    recipe = recipe_of(data)
+    design = json_object(recipe.get("design", ""))
+    if design:
+        try:
+            require_parts(design)
+        except DesignError as error:
+            raise error.with_file(name) from None
+        return {"design": design, "job": _job(json_object(recipe.get("job", ""))), "notes": []}
+    if len(data) > BYTES_MAX:
+        raise DrawingError(
+            f"larger than {BYTES_MAX >> 20} MiB", file=name, remedy="Take a part of it, or simplify its curves."
+        )
+    from voronoi_tiles.formats.reading import drawing_of
+
+    return _strokes(drawing_of(data, name), name, unit_mm)
+
+
+def _strokes(drawing: ReadDrawing, name: str, unit_mm: float) -> dict[str, Any]:
+    """The strokes of a drawing. Raises DrawingError."""
+    from voronoi_tiles.designs.drawn_files import chosen_shapes, outlines_of, remarks
+    from voronoi_tiles.formats.caveats import caveats
+    from voronoi_tiles.formats.svg.path_text import path_data
+    from voronoi_tiles.paths.paths import Paths
+
+    shapes = chosen_shapes(drawing, None)
+    found = [outlines_of([shape]) for shape in shapes]
+    outlines = [paths for paths, _ in found if len(paths)]
+    if not outlines:
+        raise DrawingError(
+            "nothing is drawn",
+            file=name,
+            remedy="Draw lines or curves, and show their layer; texts have to be converted to paths.",
+        )
+    together = Paths.concatenate(outlines)
+    if len(together.start) > SEGMENTS_MAX:
+        raise DrawingError(
+            f"has {len(together.start):,} lines and curves, and {SEGMENTS_MAX:,} can be drawn with",
+            file=name,
+            remedy="Take a part of it, or simplify its curves.",
+        )
+    notes = [*caveats(drawing, name)]
+    notes += remarks(name, joined=sum(joined for _, joined in found), guides=len(shapes) < len(drawing.shapes))
+    if len(outlines) > STROKES_MAX:
+        notes.append(
+            f"{name}: its {len(outlines):,} objects are one stroke; {STROKES_MAX} would be strokes of their own"
+        )
+        outlines = [together]
+    left, bottom, _, _ = together.bounds
+    # Path data turn y over once more.
+    lines = (paths.moved(1.0, -complex(left, bottom)).moved(1.0 / unit_mm, 0j, conj=True) for paths in outlines)
+    return {"strokes": [{"path": path_data(paths)} for paths in lines], "notes": notes}
+
+
+def _job(recipe: Mapping[str, Any]) -> dict[str, str | float | bool]:
+    """The options of a job by name, as one would type them: sizes and places are lists in a recipe."""
+    job = {}
+    for name, value in recipe.items():
+        match value:
+            case str() | bool() | int() | float():
+                job[name] = value
+            case [int() | float() as x, int() | float() as y]:
+                job[name] = f"{x!r},{y!r}" if name == "offset" else f"{x!r}x{y!r}mm"
+    return job
