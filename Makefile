@@ -7,9 +7,10 @@
 #   make docs    the documentation, in docs/_build   make paper   docs/paper.md: the paper, reproduced and measured
 #   make wheels  what a release is made of: the source and a wheel for each platform, in dist
 #   make gallery the pictures of docs/gallery.md     make diagrams  the drawings of the other pages
+#   make page-tools  what the tests of the studio's page use, by npm: without it they are left out
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-slow test-pythons lint format types bench fuzz docs paper gallery diagrams wheels clean
+.PHONY: help demo test test-slow test-pythons lint format types bench fuzz docs paper gallery diagrams wheels page-tools clean
 .DELETE_ON_ERROR:
 
 PYTHON ?= python3
@@ -142,7 +143,14 @@ wheels: $(INSTALLED_DEV)
 	done
 	@ls -l dist
 
+# Of exactly the versions that package-lock.json names; nothing of it runs in the page.
+page-tools: tests/studio/node_modules/.package-lock.json
+
+tests/studio/node_modules/.package-lock.json: tests/studio/package-lock.json
+	cd tests/studio && npm ci --silent
+	touch $@
+
 clean:
-	rm -rf $(VENV) $(VENV)-3.* $(TYPES_VENV) $(DEMO) docs/_build build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(VENV)-3.* $(TYPES_VENV) tests/studio/node_modules $(DEMO) docs/_build build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	rm -f voronoi_tiles/base/kernels.compiled.*
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

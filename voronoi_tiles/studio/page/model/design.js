@@ -1,0 +1,343 @@
+// @ts-check
+/**
+ * The design as the page holds it, and its edits.
+ *
+ * A design is the plain object that its file is, in the same keys. Edits are pure functions: they give a new object that
+ * shares what has not changed, and keep keys that they do not know.
+ */
+
+import { MILLIMETRES } from "./lengths.js";
+import { placementIn, kindOf, pointsOf } from "./strokes.js";
+import { inverse, tidyProduct, tidySum, turned } from "./plane.js";
+
+/** @typedef {import("./plane.js").Point} Point */
+/** @typedef {"point" | "segment" | "polyline" | "bezier" | "hermite" | "catmull_rom" | "bspline" | "circle" | "path" | "file"} StrokeKind */
+/** @typedef {"mm" | "cm" | "in"} Unit */
+
+/**
+ * The keys that place strokes, sites and art, applied in this order about the origin.
+ *
+ * @typedef {object} Placed
+ * @property {boolean} [mirror] x -> -x
+ * @property {number} [scale]
+ * @property {number} [rotate] degrees, counterclockwise
+ * @property {Point} [translate]
+ */
+
+/**
+ * The keys of a stroke, one of the kinds among them.
+ *
+ * @typedef {object} StrokeKeys
+ * @property {Point} [point]
+ * @property {Point[]} [segment]
+ * @property {Point[]} [polyline]
+ * @property {Point[]} [bezier] 3 n + 1 control points
+ * @property {Point[]} [hermite]
+ * @property {Point[]} [tangents] beside `hermite`: one for each point
+ * @property {Point[]} [catmull_rom]
+ * @property {number} [alpha]
+ * @property {Point[]} [bspline]
+ * @property {Point} [circle]
+ * @property {number} [radius]
+ * @property {boolean} [closed]
+ * @property {string} [path] SVG path data, y up
+ * @property {string} [file]
+ * @property {string} [layer]
+ * @property {string} [id]
+ */
+
+/** @typedef {Readonly<StrokeKeys & Placed>} Stroke */
+
+/**
+ * @typedef {object} SiteKeys
+ * @property {string} [name]
+ * @property {number} [tolerance]
+ * @property {readonly Stroke[]} strokes
+ * @property {string | Readonly<{file: string} & Placed>} [art]
+ */
+
+/** @typedef {Readonly<SiteKeys & Placed>} Site */
+/** @typedef {Readonly<{a: number, b?: number, angle?: number}>} Cell */
+
+/**
+ * @typedef {object} DesignKeys
+ * @property {number} schema
+ * @property {string} group
+ * @property {Unit} [units]
+ * @property {number} [scale]
+ * @property {Cell} cell
+ * @property {readonly Site[]} site
+ */
+
+/** @typedef {Readonly<DesignKeys>} Design */
+
+/** @typedef {Readonly<{site: number, stroke: number}>} Ref a stroke, by the numbers of its site and of itself */
+/** @typedef {Readonly<Ref & {node: number}>} NodeRef a node of a stroke */
+
+/** The stroke of a reference, undefined where there is none. @type {(design: Design, ref: Ref) => Stroke | undefined} */
+export const strokeAt = (design, ref) => design.site[ref.site]?.strokes[ref.stroke];
+
+/** Whether two references mean the same stroke. @type {(one: Ref, other: Ref) => boolean} */
+export const isSameStroke = (one, other) => one.site === other.site && one.stroke === other.stroke;
+
+/**
+ * The references of all strokes, in the order of the design.
+ *
+ * @param {Design} design
+ * @returns {Ref[]}
+ */
+export function allStrokes(design) {
+    return design.site.flatMap((site, k) => site.strokes.map((_, stroke) => ({ site: k, stroke })));
+}
+
+/**
+ * The design with another list of strokes in one site.
+ *
+ * @param {Design} design
+ * @param {number} site
+ * @param {(strokes: readonly Stroke[]) => readonly Stroke[]} edit
+ * @returns {Design}
+ */
+function withStrokes(design, site, edit) {
+    return withSite(design, site, (old) => ({ ...old, strokes: edit(old.strokes) }));
+}
+
+/**
+ * The design with one site changed; itself where there is no such site.
+ *
+ * @param {Design} design
+ * @param {number} index
+ * @param {(site: Site) => Site} edit
+ * @returns {Design}
+ */
+export function withSite(design, index, edit) {
+    if (!design.site[index]) return design;
+    return { ...design, site: design.site.map((site, k) => (k === index ? edit(site) : site)) };
+}
+
+/**
+ * The design with a stroke after the others of a site; its reference is {site, stroke: how many there were}.
+ *
+ * @param {Design} design
+ * @param {number} site
+ * @param {Stroke} stroke
+ * @returns {Design}
+ */
+export const addStroke = (design, site, stroke) => withStrokes(design, site, (strokes) => [...strokes, stroke]);
+
+/**
+ * The design without some strokes; sites stay, also without any.
+ *
+ * @param {Design} design
+ * @param {readonly Ref[]} refs
+ * @returns {Design}
+ */
+export function removeStrokes(design, refs) {
+    return [...new Set(refs.map((ref) => ref.site))].reduce((found, site) => {
+        const gone = new Set(refs.filter((ref) => ref.site === site).map((ref) => ref.stroke));
+        return withStrokes(found, site, (strokes) => strokes.filter((_, k) => !gone.has(k)));
+    }, design);
+}
+
+/**
+ * The design with a stroke in the place of another, or with several, or none.
+ *
+ * @param {Design} design
+ * @param {Ref} ref
+ * @param {Stroke | readonly Stroke[]} stroke
+ * @returns {Design}
+ */
+export function replaceStroke(design, ref, stroke) {
+    const inPlace = /** @type {readonly Stroke[]} */ (Array.isArray(stroke) ? stroke : [stroke]);
+    return withStrokes(design, ref.site, (strokes) => strokes.flatMap((old, k) => (k === ref.stroke ? inPlace : [old])));
+}
+
+/**
+ * The design with some strokes moved by a vector of the drawing.
+ *
+ * @param {Design} design
+ * @param {readonly Ref[]} refs
+ * @param {Point} vector
+ * @returns {Design}
+ */
+export function moveStrokes(design, refs, vector) {
+    return refs.reduce((found, ref) => {
+        const stroke = strokeAt(found, ref);
+        return stroke ? replaceStroke(found, ref, movedStroke(found.site[ref.site], stroke, vector)) : found;
+    }, design);
+}
+
+/**
+ * A stroke of a site moved by a vector of the drawing: by its points, or by its `translate` where it is placed by keys of
+ * its own or has no points.
+ *
+ * @param {Site} site
+ * @param {Stroke} stroke
+ * @param {Point} vector
+ * @returns {Stroke}
+ */
+export function movedStroke(site, stroke, vector) {
+    const by = turned(inverse(placementIn(site)), vector);
+    const isPlaced = ["mirror", "scale", "rotate", "translate"].some((key) => key in stroke);
+    if (isPlaced || !pointsOf(stroke).length) return { ...stroke, translate: movedPoint(stroke.translate ?? [0, 0], by) };
+    return mapPoints(stroke, (point) => movedPoint(point, by));
+}
+
+/** A point moved by a vector, its coordinates without what binary fractions leave. @type {(p: Point, by: Point) => Point} */
+const movedPoint = (point, by) => [tidySum(point[0], by[0]), tidySum(point[1], by[1])];
+
+/**
+ * A stroke with other points: those of its own key, not the tangents.
+ *
+ * @param {Stroke} stroke
+ * @param {(point: Point, index: number) => Point} map
+ * @returns {Stroke}
+ */
+export function mapPoints(stroke, map) {
+    const kind = kindOf(stroke);
+    const points = pointsOf(stroke).map(map);
+    return points.length ? { ...stroke, [kind]: kind === "point" || kind === "circle" ? points[0] : points } : stroke;
+}
+
+/**
+ * The design with an empty site after the others, under the next name that is free.
+ *
+ * @param {Design} design
+ * @param {readonly Stroke[]} [strokes]
+ * @returns {Design}
+ */
+export function addSite(design, strokes = []) {
+    const taken = new Set(siteNames(design));
+    let number = design.site.length + 1;
+    while (taken.has(`site${number}`)) number++;
+    return { ...design, site: [...design.site, { name: `site${number}`, strokes }] };
+}
+
+/** The names of all sites. @type {(design: Design) => string[]} */
+export const siteNames = (design) => design.site.map((site, k) => site.name ?? `site${k + 1}`);
+
+/**
+ * The design without a site.
+ *
+ * @param {Design} design
+ * @param {number} index
+ * @returns {Design}
+ */
+export function removeSite(design, index) {
+    return { ...design, site: design.site.filter((_, k) => k !== index) };
+}
+
+/**
+ * The design with a site renamed; `nameProblem` says which names there can be.
+ *
+ * @param {Design} design
+ * @param {number} index
+ * @param {string} name
+ * @returns {Design}
+ */
+export const renameSite = (design, index, name) => withSite(design, index, (site) => ({ ...site, name: name.trim() }));
+
+/**
+ * Why a site cannot have a name; null where it can.
+ *
+ * @param {Design} design
+ * @param {number} index
+ * @param {string} name
+ * @returns {string | null}
+ */
+export function nameProblem(design, index, name) {
+    const word = name.trim();
+    if (!word) return "Give the site a name.";
+    if (word.length > 100) return "A name has at most 100 characters.";
+    if (/[\p{C}\p{Zl}\p{Zp}]/u.test(word)) return "A name has printable characters only.";
+    const taken = siteNames(design).some((other, k) => k !== index && other === word);
+    return taken ? `Another site has the name “${word}”.` : null;
+}
+
+/**
+ * The design with keys of its cell changed; undefined takes a key out.
+ *
+ * @param {Design} design
+ * @param {Partial<Cell>} patch
+ * @returns {Design}
+ */
+export function setCell(design, patch) {
+    const entries = Object.entries({ ...design.cell, ...patch }).filter(([, value]) => value !== undefined);
+    return { ...design, cell: /** @type {Cell} */ (Object.fromEntries(entries)) };
+}
+
+/**
+ * The design in other units; with `convert` its numbers change and its size stays, else the other way round.
+ *
+ * @param {Design} design
+ * @param {Unit} units
+ * @param {boolean} convert
+ * @returns {Design}
+ */
+export function setUnits(design, units, convert) {
+    const from = design.units ?? "mm";
+    if (from === units) return design;
+    const factor = MILLIMETRES[from] / MILLIMETRES[units];
+    const renamed = { ...design, units };
+    return convert ? { ...renamed, cell: largerCell(design.cell, factor), site: design.site.map(larger(factor)) } : renamed;
+}
+
+/** A cell whose sides are times a factor. @type {(cell: Cell, factor: number) => Cell} */
+function largerCell(cell, factor) {
+    const b = cell.b === undefined ? {} : { b: tidyProduct(cell.b, factor) };
+    return { ...cell, a: tidyProduct(cell.a, factor), ...b };
+}
+
+/** What makes a site larger by a factor. @type {(factor: number) => (site: Site) => Site} */
+const larger = (factor) => (site) => {
+    /** @type {Site} */
+    const placed = { ...largerShift(site, factor), strokes: site.strokes.map((stroke) => largerStroke(stroke, factor)) };
+    const art = typeof site.art === "object" ? { art: largerShift(site.art, factor) } : {};
+    return { ...placed, ...art, ...largerKey(site, "tolerance", factor) };
+};
+
+/**
+ * A stroke larger by a factor. Path data become so by the stroke's `scale`; drawings in files have a size of their own.
+ *
+ * @param {Stroke} stroke
+ * @param {number} factor
+ * @returns {Stroke}
+ */
+function largerStroke(stroke, factor) {
+    const large = (/** @type {Point} */ point) => largerPoint(point, factor);
+    return {
+        ...mapPoints(largerShift(stroke, factor), large),
+        ...(stroke.tangents ? { tangents: stroke.tangents.map(large) } : {}),
+        ...largerKey(stroke, "radius", factor),
+        ...(stroke.path === undefined ? {} : { scale: tidyProduct(stroke.scale ?? 1, factor) }),
+    };
+}
+
+/** A point times a factor. @type {(point: Point, factor: number) => Point} */
+const largerPoint = ([x, y], factor) => [tidyProduct(x, factor), tidyProduct(y, factor)];
+
+/**
+ * What is placed, moved by a vector that is times a factor.
+ *
+ * @template {Placed} T
+ * @param {T} table
+ * @param {number} factor
+ * @returns {T}
+ */
+function largerShift(table, factor) {
+    return table.translate ? { ...table, translate: largerPoint(table.translate, factor) } : table;
+}
+
+/**
+ * A key of a table with its number times a factor; nothing where it is not there.
+ *
+ * @template {string} K
+ * @param {{[key in K]?: number}} table
+ * @param {K} key
+ * @param {number} factor
+ * @returns {{[key in K]?: number}}
+ */
+function largerKey(table, key, factor) {
+    const value = table[key];
+    return /** @type {{[key in K]?: number}} */ (value === undefined ? {} : { [key]: tidyProduct(value, factor) });
+}
