@@ -48,6 +48,14 @@ def test_page_modules(suite: Path) -> None:
     assert "skipped 0" in done.stdout
 
 
+@pytest.mark.slow
+def test_ten_thousand_stories() -> None:
+    """10,000 random sequences of edits, undo and redo come back to the same bytes."""
+    done = run(TESTS / "page" / "history.test.js", VORONOI_TILES_STORIES="10000")
+    assert done.returncode == 0, done.stdout
+    assert "10000 random stories" in done.stdout
+
+
 def test_model_is_pythons(tmp_path: Path, expected: dict[str, Any]) -> None:
     """Curves, lattices, motions, symmetry elements and copies are the same numbers to 1e-12 of their size."""
     done = run_vectors(tmp_path, expected)

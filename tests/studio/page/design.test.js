@@ -5,12 +5,7 @@ import { test } from "node:test";
 
 import * as edits from "../../../voronoi_tiles/studio/page/model/design.js";
 import { cubicsOf, placementOf } from "../../../voronoi_tiles/studio/page/model/strokes.js";
-
-/** A value that cannot be changed, all through. */
-export function frozen(value) {
-    if (typeof value === "object" && value !== null) Object.values(Object.freeze(value)).forEach(frozen);
-    return value;
-}
+import { assertNear, frozen } from "./helpers.js";
 
 const DESIGN = frozen({
     schema: 1,
@@ -40,12 +35,6 @@ const DESIGN = frozen({
 
 const drawn = (design, site, stroke) =>
     [...cubicsOf(design.site[site].strokes[stroke], placementOf(design.site[site], design.site[site].strokes[stroke]))];
-
-/** Fail where numbers differ by more than rounding. */
-function assertNear(found, expected) {
-    assert.equal(found.length, expected.length);
-    found.forEach((value, k) => assert.ok(Math.abs(value - expected[k]) < 1e-11, `${value} is not ${expected[k]}`));
-}
 
 test("strokes are added, replaced and removed, and the rest is shared", () => {
     const more = edits.addStroke(DESIGN, 1, { point: [3, 4] });

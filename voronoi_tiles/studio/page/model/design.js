@@ -90,6 +90,9 @@ export function allStrokes(design) {
     return design.site.flatMap((site, k) => site.strokes.map((_, stroke) => ({ site: k, stroke })));
 }
 
+/** How many strokes a design has. @type {(design: Design) => number} */
+export const strokeCount = (design) => design.site.reduce((count, site) => count + site.strokes.length, 0);
+
 /**
  * The design with another list of strokes in one site.
  *

@@ -7,11 +7,11 @@
  */
 
 import { pathCubics } from "./pathdata.js";
-import { IDENTITY, apply, compose, factorOf, minus, plus, same, scaled, unitAt } from "./plane.js";
+import { IDENTITY, apply, compose, factorOf, inverse, minus, plus, same, scaled, unitAt } from "./plane.js";
 
 /** @typedef {import("./plane.js").Point} Point */
-/** @typedef {import("./plane.js").Similarity} Similarity */
-/** @typedef {import("./design.js").Placed} Placed */
+/** @typedef {Readonly<import("./plane.js").Similarity>} Placement where a stroke is laid */
+/** @typedef {Readonly<import("./design.js").Placed>} Placed */
 /** @typedef {import("./design.js").Stroke} Stroke */
 /** @typedef {import("./design.js").StrokeKind} StrokeKind */
 
@@ -45,7 +45,7 @@ export function pointsOf(stroke) {
  * What `mirror`, `scale`, `rotate` and `translate` of a table do, in this order about the origin.
  *
  * @param {Placed} table
- * @returns {Similarity}
+ * @returns {Placement}
  */
 export function placementIn({ mirror = false, scale = 1, rotate = 0, translate = [0, 0] }) {
     return { a: scaled(unitAt(rotate), mirror ? -scale : scale), b: translate, conj: mirror };
@@ -56,17 +56,24 @@ export function placementIn({ mirror = false, scale = 1, rotate = 0, translate =
  *
  * @param {Placed} site
  * @param {Placed} stroke
- * @returns {Similarity}
+ * @returns {Placement}
  */
 export const placementOf = (site, stroke) => compose(placementIn(site), placementIn(stroke));
+
+/** A point of a stroke where it is placed. @type {(placement: Placement, at: Point) => Point} */
+export const place = apply;
+
+/** The point of a stroke that is placed there. @type {(placement: Placement, at: Point) => Point} */
+export const unplace = (placement, at) => (placement === IDENTITY ? at : apply(inverse(placement), at));
 
 /**
  * A stroke's cubic pieces where it is placed, 8 numbers each; a straight one is p, p, q, q and a point p, p, p, p.
  *
- * All are exact but circles and arcs of ellipses, which are within 1e-6 of their radius.
+ * All are exact but circles and arcs of ellipses, which are within 1e-6 of their radius. What cannot be drawn, as it has no
+ * points yet or numbers that are none, has no pieces.
  *
  * @param {Stroke} stroke
- * @param {Readonly<Similarity>} [placement]
+ * @param {Placement} [placement]
  * @param {string} [resolved] the path data of the drawing that a stroke of kind `file` names
  * @returns {Float64Array}
  */
@@ -78,16 +85,17 @@ export function cubicsOf(stroke, placement = IDENTITY, resolved = "") {
         placed[k] = image[0];
         placed[k + 1] = image[1];
     }
+    if (!placed.every(Number.isFinite)) return new Float64Array(0);
     if (kindOf(stroke) !== "circle" || !placed.length) return placed;
     // A circle is not turned with its centre: its joints have to fit the mirrors of the group.
-    return Float64Array.from(circleCubics(apply(placement, stroke.circle ?? [0, 0]), radiusOf(stroke, placement)));
+    return Float64Array.from(circleCubics(apply(placement, pointsOf(stroke)[0]), radiusOf(stroke, placement)));
 }
 
 /**
  * The radius of a circle where it is placed.
  *
  * @param {Stroke} stroke
- * @param {Readonly<Similarity>} placement
+ * @param {Placement} placement
  * @returns {number}
  */
 export const radiusOf = (stroke, placement) => (stroke.radius ?? 0) * factorOf(placement);
@@ -104,6 +112,7 @@ function ownCubics(stroke, resolved) {
     if (kind === "path") return pathCubics(stroke.path ?? "");
     if (kind === "file") return pathCubics(resolved);
     const points = pointsOf(stroke);
+    if (!points.length) return [];
     if (points.length === 1 && kind !== "circle") return chain([points[0], points[0]]);
     switch (kind) {
         case "bezier":

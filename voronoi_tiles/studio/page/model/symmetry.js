@@ -9,7 +9,7 @@
 import { apply, compose, cross, distance, dot, length, minus, nearestUnit, plus, scaled, unitAt } from "./plane.js";
 
 /** @typedef {import("./plane.js").Point} Point */
-/** @typedef {import("./plane.js").Similarity} Similarity */
+/** @typedef {import("./plane.js").Similarity} Motion a motion of the group */
 /** @typedef {import("./plane.js").Box} Box */
 /** @typedef {import("./design.js").Design} Design */
 
@@ -96,12 +96,33 @@ export function fold(lattice, z) {
     return minus(z, cartesian(lattice, [Math.floor(x), Math.floor(y)]));
 }
 
+/** The image of a point under a motion. @type {(motion: Motion, at: Point) => Point} */
+export const moved = apply;
+
+/**
+ * The cells that can meet a box, by the integers i and j of their corners i a + j b.
+ *
+ * @param {Lattice} lattice
+ * @param {Box} box
+ * @returns {[number, number][]}
+ */
+export function cellsIn(lattice, [x0, y0, x1, y1]) {
+    const corners = /** @type {Point[]} */ ([[x0, y0], [x1, y0], [x0, y1], [x1, y1]]);
+    const [left, bottom, right, top] = boxOf(corners.flatMap((corner) => fractional(lattice, corner)));
+    /** @type {[number, number][]} */
+    const cells = [];
+    for (let j = Math.floor(bottom); j <= top; j++) {
+        for (let i = Math.floor(left); i <= right; i++) cells.push([i, j]);
+    }
+    return cells;
+}
+
 /**
  * The motions of the group in one cell, the identity first: those of its table's operations, in their order.
  *
  * @param {Design} design
  * @param {Tables} tables
- * @returns {Similarity[]}
+ * @returns {Motion[]}
  */
 export function motionsOf(design, tables) {
     const lattice = latticeOf(design, tables);
@@ -158,7 +179,7 @@ export function imagesIn(lattice, point, box) {
 /**
  * All images of a point under the group in a box.
  *
- * @param {Similarity[]} motions
+ * @param {Motion[]} motions
  * @param {Lattice} lattice
  * @param {Point} point
  * @param {Box} box
@@ -294,7 +315,7 @@ function clip(box, start, direction, margin, slack) {
  *
  * Those that map the site onto itself, with a translation of the lattice, make no new copies.
  *
- * @param {Similarity[]} motions
+ * @param {Motion[]} motions
  * @param {Lattice} lattice
  * @param {ArrayLike<number>} segments the site's, 4 numbers each
  * @returns {number[]}
@@ -317,10 +338,10 @@ export function cosets(motions, lattice, segments) {
 /**
  * The motions that map a site onto itself, the identity first.
  *
- * @param {Similarity[]} motions
+ * @param {Motion[]} motions
  * @param {Lattice} lattice
  * @param {ArrayLike<number>} segments the site's, 4 numbers each
- * @returns {Similarity[]}
+ * @returns {Motion[]}
  */
 export function stabilizerOf(motions, lattice, segments) {
     const [identity, ...others] = motions;
@@ -352,8 +373,8 @@ function latticeVector(lattice, v) {
 /**
  * The number of a motion, up to translations of the lattice.
  *
- * @param {Similarity} motion
- * @param {Similarity[]} motions
+ * @param {Motion} motion
+ * @param {Motion[]} motions
  * @param {Lattice} lattice
  * @returns {number}
  */
@@ -369,7 +390,7 @@ function numberOf(motion, motions, lattice) {
 /**
  * The images of segments, 4 numbers each.
  *
- * @param {Similarity} motion
+ * @param {Motion} motion
  * @param {ArrayLike<number>} segments
  * @returns {Float64Array}
  */

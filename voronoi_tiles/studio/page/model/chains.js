@@ -1,0 +1,94 @@
+// @ts-check
+/** Strokes as chains of cubic Bezier pieces, before they are placed, and what is made of changed chains. */
+
+import { same } from "./plane.js";
+import { cubicsOf, kindOf } from "./strokes.js";
+
+/** @typedef {import("./plane.js").Point} Point */
+/** @typedef {import("./design.js").Stroke} Stroke */
+
+/** @typedef {Point[]} Chain 3 n + 1 control points; it is closed where the last is the first */
+
+/** Whether a chain ends where it begins. @type {(chain: Chain) => boolean} */
+export const isClosed = (chain) => same(chain[0], chain[chain.length - 1]);
+
+/**
+ * The chains of a stroke: one, but for path data with several moves.
+ *
+ * @param {Stroke} stroke
+ * @param {string} [resolved] the path data of a file
+ * @returns {Chain[]}
+ */
+export function chainsOf(stroke, resolved) {
+    const cubics = cubicsOf(stroke, undefined, resolved);
+    /** @type {Chain[]} */
+    const chains = [];
+    for (let k = 0; k < cubics.length; k += 8) {
+        const points = /** @type {Chain} */ ([0, 2, 4, 6].map((n) => [cubics[k + n], cubics[k + n + 1]]));
+        const last = chains.at(-1);
+        if (last && same(last[last.length - 1], points[0])) last.push(...points.slice(1));
+        else chains.push(points);
+    }
+    return chains;
+}
+
+/**
+ * The strokes that are the chains of another one: one of kind `path` where it was one, else a `bezier` each.
+ *
+ * Keys that place it, and unknown ones, are kept.
+ *
+ * @param {Stroke} stroke
+ * @param {Chain[]} chains
+ * @returns {Stroke[]}
+ */
+export function strokesOf(stroke, chains) {
+    if (kindOf(stroke) === "path") return chains.length ? [{ ...stroke, path: pathData(chains) }] : [];
+    return chains.map((chain) => withKind(stroke, "bezier", chain));
+}
+
+/**
+ * A stroke of another kind, with what does not belong to that left out.
+ *
+ * @param {Stroke} stroke
+ * @param {"segment" | "polyline" | "bezier"} kind
+ * @param {Point[]} points
+ * @returns {Stroke}
+ */
+export function withKind(stroke, kind, points) {
+    const own = new Set([kindOf(stroke), "tangents", "alpha", "closed", "radius", "layer", "id"]);
+    const others = Object.entries(stroke).filter(([key]) => !own.has(key));
+    return { [kind]: points, ...Object.fromEntries(others) };
+}
+
+/**
+ * A stroke as strokes of kind `bezier`: one for each of its chains.
+ *
+ * @param {Stroke} stroke
+ * @param {string} [resolved] the path data of a file
+ * @returns {Stroke[]}
+ */
+export function asBezier(stroke, resolved) {
+    if (kindOf(stroke) === "bezier") return [stroke];
+    return chainsOf(stroke, resolved).map((chain) => withKind(stroke, "bezier", chain));
+}
+
+/**
+ * Chains as SVG path data: lines where both inner control points are on their ends.
+ *
+ * @param {Chain[]} chains
+ * @returns {string}
+ */
+export function pathData(chains) {
+    return chains.map((chain) => `M ${chain[0].join(" ")}${pieces(chain).map(command).join("")}`).join(" ");
+}
+
+/** A piece as a command. @type {(piece: Point[]) => string} */
+function command([start, first, second, end]) {
+    const isLine = same(start, first) && same(second, end);
+    return isLine ? ` L ${end.join(" ")}` : ` C ${[first, second, end].flat().join(" ")}`;
+}
+
+/** The pieces of a chain, 4 control points each. @type {(chain: Chain) => Point[][]} */
+export function pieces(chain) {
+    return Array.from({ length: (chain.length - 1) / 3 }, (_, k) => chain.slice(3 * k, 3 * k + 4));
+}
