@@ -128,9 +128,14 @@ def _strokes(chance: np.random.Generator) -> Iterator[dict[str, Any]]:
                 stroke = {**drawn, **keys}
                 resolved = drawn.get("path", resolved)
                 # So coarse that a circle is a polygon of 12 sides.
-                line, curved = schema.stroke(stroke, 1e6, schema.placement(site), lambda _table, data=resolved: data)
+                line, curved = schema.stroke(stroke, 1e6, schema.placement(site), _drawing(resolved))
                 cubics = line if curved else _straight(line)
                 yield {"site": site, "stroke": stroke, "resolved": resolved, "cubics": numbers(cubics)}
+
+
+def _drawing(data: str) -> schema.PathDataOf:
+    """What reads a drawing in a file: always these path data."""
+    return lambda _table: data
 
 
 def _straight(line: Complexes) -> Complexes:

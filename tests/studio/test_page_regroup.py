@@ -27,7 +27,7 @@ def tables() -> dict[str, Any]:
 def call(module: str, name: str, calls: list[list[Any]]) -> list[Any]:
     """What a function of the model gives for each list of arguments."""
     asked = json.dumps({"module": module, "name": name, "calls": calls})
-    command = [node(), TESTS / "page" / "call.js"]
+    command = [node(), str(TESTS / "page" / "call.js")]
     done = subprocess.run(command, input=asked, capture_output=True, encoding="utf-8", timeout=600, check=True)
     found: list[Any] = json.loads(done.stdout)
     return found

@@ -12,7 +12,7 @@ from helpers.page import PAGE, TESTS, node, tool
 
 def check(config: Path) -> subprocess.CompletedProcess[str]:
     """Check what a jsconfig.json names."""
-    command = [node(), tool("typescript/bin/tsc"), "--project", config, "--pretty", "false"]
+    command = [node(), tool("typescript/bin/tsc"), "--project", str(config), "--pretty", "false"]
     return subprocess.run(command, capture_output=True, encoding="utf-8", timeout=300, check=False)
 
 

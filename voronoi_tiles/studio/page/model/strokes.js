@@ -30,15 +30,20 @@ const HALVINGS_MAX = 16;
 export const kindOf = (stroke) => KINDS.find((kind) => stroke[kind] !== undefined) ?? "point";
 
 /**
- * The points that a stroke's own key lists; for kinds that have no list, none.
+ * The points that a stroke's own key lists; none for kinds that have no list, and where something in it is no point.
  *
  * @param {Stroke} stroke
  * @returns {Point[]}
  */
 export function pointsOf(stroke) {
     const own = stroke[kindOf(stroke)];
-    if (!Array.isArray(own)) return [];
-    return /** @type {Point[]} */ (typeof own[0] === "number" ? [own] : own);
+    return Array.isArray(own) && typeof own[0] === "number" ? pointsIn([own]) : pointsIn(own);
+}
+
+/** A list if all in it are points, else none. @type {(list: unknown) => Point[]} */
+function pointsIn(list) {
+    const isPoint = (/** @type {unknown} */ item) => Array.isArray(item) && item.length === 2;
+    return Array.isArray(list) && list.every(isPoint) ? list : [];
 }
 
 /**
@@ -118,7 +123,7 @@ function ownCubics(stroke, resolved) {
         case "bezier":
             return bezierCubics(points);
         case "hermite":
-            return hermiteCubics(points, stroke.tangents ?? []);
+            return hermiteCubics(points, pointsIn(stroke.tangents));
         case "catmull_rom":
             return catmullRomCubics(points, stroke.alpha ?? 0.5, stroke.closed ?? false);
         case "bspline":
