@@ -3,5 +3,7 @@
 import { readFileSync } from "node:fs";
 
 const { module, name, calls } = JSON.parse(readFileSync(0, "utf8"));
-const { [name]: called } = await import(new URL(`../../../voronoi_tiles/studio/page/model/${module}`, import.meta.url).href);
+const { [name]: called } = await import(
+    new URL(`../../../voronoi_tiles/studio/page/model/${module}`, import.meta.url).href
+);
 process.stdout.write(JSON.stringify(calls.map((values) => called(...values))));

@@ -46,11 +46,14 @@ test("pieces meet with one tangent, but in corners", () => {
 
 test("corners stay corners", () => {
     const corners = [[0, 0], [30, 0], [30, 30], [5, 12]];
-    const trail = corners.slice(1).flatMap((end, k) => trailOf(40, (t) => corners[k].map((value, n) => value + t * (end[n] - value))));
+    const trail = corners
+        .slice(1)
+        .flatMap((end, k) => trailOf(40, (t) => corners[k].map((value, n) => value + t * (end[n] - value))));
     const { stroke, pieces, away } = drawn(trail, 0.3);
     assert.equal(pieces, 3);
     assert.ok(away <= 0.33);
-    for (const corner of corners) assert.ok(stroke.bezier.some((point) => Math.hypot(point[0] - corner[0], point[1] - corner[1]) < 0.1));
+    for (const corner of corners)
+        assert.ok(stroke.bezier.some((point) => Math.hypot(point[0] - corner[0], point[1] - corner[1]) < 0.1));
 });
 
 test("a trail that comes back is closed", () => {
@@ -61,8 +64,20 @@ test("a trail that comes back is closed", () => {
 });
 
 test("two points are a line, and one is nothing", () => {
-    assertNear(fit([[0, 0], [9, 3]], 0.3).bezier.flat(), [0, 0, 3, 1, 6, 2, 9, 3]);
-    assert.equal(fit([[1, 1], [1, 1], [1.01, 1]], 0.3), null);
+    assertNear(
+        fit(
+            [[0, 0], [9, 3]],
+            0.3,
+        ).bezier.flat(),
+        [0, 0, 3, 1, 6, 2, 9, 3],
+    );
+    assert.equal(
+        fit(
+            [[1, 1], [1, 1], [1.01, 1]],
+            0.3,
+        ),
+        null,
+    );
     assert.equal(fit([], 0.3), null);
 });
 

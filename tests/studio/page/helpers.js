@@ -11,7 +11,9 @@ export function frozen(value) {
 /** Fail where lists of numbers differ by more than rounding leaves. */
 export function assertNear(found, expected, near = 1e-9, what = "") {
     assert.equal(found.length, expected.length, what);
-    expected.forEach((value, k) => assert.ok(Math.abs(found[k] - value) <= near, `${what}: ${found[k]} is not ${value} (${k})`));
+    expected.forEach((value, k) =>
+        assert.ok(Math.abs(found[k] - value) <= near, `${what}: ${found[k]} is not ${value} (${k})`),
+    );
 }
 
 /** Random numbers from 0 to 1 that a seed determines (mulberry32). */

@@ -6,7 +6,13 @@ import { test } from "node:test";
 import * as edits from "../../../voronoi_tiles/studio/page/model/design.js";
 import { History } from "../../../voronoi_tiles/studio/page/model/history.js";
 import {
-    deleteNodes, insertNode, moveNodes, nodesOf, penStroke, pullHandles, toggleSmooth,
+    deleteNodes,
+    insertNode,
+    moveNodes,
+    nodesOf,
+    penStroke,
+    pullHandles,
+    toggleSmooth,
 } from "../../../voronoi_tiles/studio/page/model/nodes.js";
 import { cubicsOf, placementOf } from "../../../voronoi_tiles/studio/page/model/strokes.js";
 import { setGroup } from "../../../voronoi_tiles/studio/page/model/regroup.js";
@@ -19,15 +25,33 @@ const square = [[0, 0], [0.5, 0], [0.5, 0.5], [0, 0.5]];
 const identity = { name: "x,y", w: [1, 0, 0, 1], t: [0, 0] };
 const TABLES = frozen({
     groups: [
-        { name: "p1", free: ["a", "b", "angle"], angle: null, operations: [identity], region: [[0, 0], [1, 0], [1, 1], [0, 1]] },
         {
-            name: "p4", free: ["a"], angle: 90, region: square,
-            operations: [identity, ...[[-1, 0, 0, -1], [0, -1, 1, 0], [0, 1, -1, 0]].map((w) => ({ name: "", w, t: [0, 0] }))],
+            name: "p1",
+            free: ["a", "b", "angle"],
+            angle: null,
+            operations: [identity],
+            region: [[0, 0], [1, 0], [1, 1], [0, 1]],
+        },
+        {
+            name: "p4",
+            free: ["a"],
+            angle: 90,
+            region: square,
+            operations: [
+                identity,
+                ...[[-1, 0, 0, -1], [0, -1, 1, 0], [0, 1, -1, 0]].map((w) => ({ name: "", w, t: [0, 0] })),
+            ],
         },
     ],
 });
 
-const START = frozen({ schema: 1, group: "p1", cell: { a: 60, b: 50, angle: 75 }, site: [{ strokes: [] }], unknown: [1] });
+const START = frozen({
+    schema: 1,
+    group: "p1",
+    cell: { a: 60, b: 50, angle: 75 },
+    site: [{ strokes: [] }],
+    unknown: [1],
+});
 
 /** A random edit of a design: what it makes of it. */
 function edited(design, chance) {
@@ -45,10 +69,30 @@ function edited(design, chance) {
     };
     const choices = [
         () => edits.addStroke(design, site, { ...pick(STROKES), ...pick(PLACEMENTS)[1] }),
-        () => edits.addStroke(design, site, penStroke([0, 1, 2].map(() => ({ at: point(), in: point(), out: point() })), placementOf(design.site[site], {}))),
-        () => edits.moveStrokes(design, refs.filter(() => chance() < 0.5), point()),
-        () => edits.removeStrokes(design, refs.filter(() => chance() < 0.3)),
-        () => ofStroke((stroke, placement, { node }) => moveNodes(stroke, placement, [{ node, to: point() }], { alone: chance() < 0.5 })),
+        () =>
+            edits.addStroke(
+                design,
+                site,
+                penStroke(
+                    [0, 1, 2].map(() => ({ at: point(), in: point(), out: point() })),
+                    placementOf(design.site[site], {}),
+                ),
+            ),
+        () =>
+            edits.moveStrokes(
+                design,
+                refs.filter(() => chance() < 0.5),
+                point(),
+            ),
+        () =>
+            edits.removeStrokes(
+                design,
+                refs.filter(() => chance() < 0.3),
+            ),
+        () =>
+            ofStroke((stroke, placement, { node }) =>
+                moveNodes(stroke, placement, [{ node, to: point() }], { alone: chance() < 0.5 }),
+            ),
         () => ofStroke((stroke, placement, { node }) => pullHandles(stroke, placement, node, point())),
         () => ofStroke((stroke, _, { node }) => toggleSmooth(stroke, node)),
         () => ofStroke((stroke, _, { node }) => deleteNodes(stroke, [node], { cut: chance() < 0.5 })),

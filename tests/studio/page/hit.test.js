@@ -3,7 +3,13 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { nearestNode, nearestStroke, nodesIn, strokesIn } from "../../../voronoi_tiles/studio/page/model/hit.js";
+import {
+    nearestCopy,
+    nearestNode,
+    nearestStroke,
+    nodesIn,
+    strokesIn,
+} from "../../../voronoi_tiles/studio/page/model/hit.js";
 import { nodesOf } from "../../../voronoi_tiles/studio/page/model/nodes.js";
 import { rounded, snap } from "../../../voronoi_tiles/studio/page/model/snapping.js";
 import { cubicsOf } from "../../../voronoi_tiles/studio/page/model/strokes.js";
@@ -28,6 +34,22 @@ test("the nearest stroke is found, with its piece, and of two at one place the u
     assert.deepEqual(nearestStroke(twice, [5, 0.1], 1).ref, { site: 1, stroke: 0 });
 });
 
+test("a copy leads to its stroke, and to the motion that makes it", () => {
+    const mirror = { a: [-1, 0], b: [0, 0], conj: true };
+    const motions = [{ a: [1, 0], b: [0, 0], conj: false }, mirror];
+    const lattice = { a: [60, 0], b: [0, 50] };
+    const own = nearestCopy(entries, motions, lattice, [10.2, 5], 0.5);
+    assert.deepEqual([own.ref.stroke, own.motion], [1, 0]);
+    for (const [i, j] of [[0, 0], [3, -2], [-1, 4]]) {
+        const at = [-10.2 + 60 * i, 5 + 50 * j];
+        const hit = nearestCopy(entries, motions, lattice, at, 0.5);
+        assert.deepEqual([hit.ref.stroke, hit.piece, hit.motion], [1, 1, 1]);
+        assertNear([...hit.at, hit.distance], [10, 5, 0.2], 1e-6);
+        assert.equal(nearestCopy(entries, motions, lattice, at, 0.1), null);
+    }
+    assert.equal(nearestCopy([], motions, lattice, [0, 0], 1), null);
+});
+
 test("the nearest node is found, of two at one place the upper one, and handles above anchors", () => {
     assert.deepEqual(nearestNode(nodes, [2.1, 3.1], 0.5).role, "out");
     assert.equal(nearestNode(nodes, [2.1, 3.1], 0.1), null);
@@ -38,8 +60,14 @@ test("the nearest node is found, of two at one place the upper one, and handles 
 });
 
 test("a box holds the strokes and nodes that are inside", () => {
-    assert.deepEqual(strokesIn(entries, [-1, -1, 11, 11]).map(({ stroke }) => stroke), [0, 1]);
-    assert.deepEqual(strokesIn(entries, [0, 0, 7, 4]).map(({ stroke }) => stroke), [0]);
+    assert.deepEqual(
+        strokesIn(entries, [-1, -1, 11, 11]).map(({ stroke }) => stroke),
+        [0, 1],
+    );
+    assert.deepEqual(
+        strokesIn(entries, [0, 0, 7, 4]).map(({ stroke }) => stroke),
+        [0],
+    );
     assert.deepEqual(nodesIn(nodes, [9, -1, 21, 21]), [
         { site: 0, stroke: 1, node: 1 },
         { site: 0, stroke: 1, node: 2 },

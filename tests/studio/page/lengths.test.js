@@ -46,6 +46,12 @@ test("what is no length is refused in words, with what to write", () => {
 });
 
 test("lengths are shown short", () => {
-    assert.deepEqual([100, 12.5, 0.12345, -0.0001, 1000].map((value) => shown(value, "mm")), ["100", "12.5", "0.123", "0", "1000"]);
-    assert.deepEqual([0.25, 1 / 3].map((value) => shown(value, "in")), ["0.25", "0.3333"]);
+    assert.deepEqual(
+        [100, 12.5, 0.12345, -0.0001, 1000].map((value) => shown(value, "mm")),
+        ["100", "12.5", "0.123", "0", "1000"],
+    );
+    assert.deepEqual(
+        [0.25, 1 / 3].map((value) => shown(value, "in")),
+        ["0.25", "0.3333"],
+    );
 });

@@ -4,7 +4,15 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import {
-    asBezier, deleteNodes, insertNode, moveNodes, nearestOn, nodesOf, penStroke, pullHandles, toggleSmooth,
+    asBezier,
+    deleteNodes,
+    insertNode,
+    moveNodes,
+    nearestOn,
+    nodesOf,
+    penStroke,
+    pullHandles,
+    toggleSmooth,
 } from "../../../voronoi_tiles/studio/page/model/nodes.js";
 import { pointOn } from "../../../voronoi_tiles/studio/page/model/nearest.js";
 import { cubicsOf, kindOf, placementOf } from "../../../voronoi_tiles/studio/page/model/strokes.js";
@@ -22,7 +30,11 @@ const at = (nodes, number) => nodes.find(({ node }) => node === number)?.at;
 /** Points all along a curve. */
 function samples(cubics, count = 12) {
     return Array.from({ length: (cubics.length / 8) * count + 1 }, (_, k) =>
-        pointOn(cubics, Math.min(Math.floor(k / count), cubics.length / 8 - 1), k === (cubics.length / 8) * count ? 1 : (k % count) / count),
+        pointOn(
+            cubics,
+            Math.min(Math.floor(k / count), cubics.length / 8 - 1),
+            k === (cubics.length / 8) * count ? 1 : (k % count) / count,
+        ),
     );
 }
 
@@ -39,10 +51,14 @@ test("anchors lie on their curves, and are numbered as the points are listed", (
             if (role === "anchor" && kindOf(stroke) !== "bspline") {
                 assert.ok(nearestOn(cubicsOf(stroke, placement), place).distance < 1e-9, what);
                 assert.equal(of, node);
-            } else if (role !== "anchor") assert.ok(["anchor", "centre"].includes(nodes.find((other) => other.node === of).role));
+            } else if (role !== "anchor")
+                assert.ok(["anchor", "centre"].includes(nodes.find((other) => other.node === of).role));
         }
     }
-    const roles = (k) => nodesOf(STROKES[k]).map(({ node, role, of, smooth }) => `${node}${role[0]}${of}${smooth ? "~" : ""}`).join(" ");
+    const roles = (k) =>
+        nodesOf(STROKES[k])
+            .map(({ node, role, of, smooth }) => `${node}${role[0]}${of}${smooth ? "~" : ""}`)
+            .join(" ");
     assert.equal(roles(4), "0a0 1o0 2i3~ 3a3~ 4o3~ 5i6 6a6");
     assert.equal(roles(5), "0a0~ 1o0~ 2i3~ 3a3~ 4o3~ 5i0~");
     assert.equal(roles(6), "0a0 1o0 2i3~ 3a3~ 4o3~ 5i6 6a6");
@@ -68,7 +84,10 @@ test("a node that is moved is where it was moved to, and nothing but its handles
             assertNear(at(after, node), to, 1e-9, `${what} node ${node}`);
             for (const other of nodes.filter((one) => one.node !== node)) {
                 const goesAlong = other.of === node;
-                const turns = other.role !== "anchor" && role !== "anchor" && other.of === nodes.find((one) => one.node === node).of;
+                const turns =
+                    other.role !== "anchor" &&
+                    role !== "anchor" &&
+                    other.of === nodes.find((one) => one.node === node).of;
                 const expected = goesAlong ? [other.at[0] + 0.7, other.at[1] - 0.45] : other.at;
                 if (!turns) assertNear(at(after, other.node), expected, 1e-9, `${what} node ${node}, ${other.node}`);
             }
@@ -80,7 +99,12 @@ test("all nodes together move the curve as it is", () => {
     for (const { stroke, placement, what } of cases) {
         const moves = nodesOf(stroke, placement).map(({ node, at: [x, y] }) => ({ node, to: [x + 3, y - 2] }));
         const moved = cubicsOf(moveNodes(stroke, placement, moves, {}), placement);
-        assertNear([...moved], [...cubicsOf(stroke, placement)].map((value, k) => value + (k % 2 ? -2 : 3)), 1e-9, what);
+        assertNear(
+            [...moved],
+            [...cubicsOf(stroke, placement)].map((value, k) => value + (k % 2 ? -2 : 3)),
+            1e-9,
+            what,
+        );
     }
 });
 
@@ -91,7 +115,8 @@ test("numbers that do not change are written as before, and those that do withou
     });
     const hermite = frozen({ hermite: [[0.1, 0.7], [1.1, 2]], tangents: [[1.1, 2.3], [0.7, 0.1]] });
     assert.deepEqual(moveNodes(hermite, placementOf({}, {}), [{ node: 3, to: [1.4, 2] }], {}), {
-        hermite: [[0.1, 0.7], [1.4, 2]], tangents: [[1.1, 2.3], [0.7, 0.1]],
+        hermite: [[0.1, 0.7], [1.4, 2]],
+        tangents: [[1.1, 2.3], [0.7, 0.1]],
     });
 });
 
@@ -99,11 +124,17 @@ test("a handle of a smooth anchor turns the opposite one, which keeps its length
     const stroke = STROKES[4];
     const turned = moveNodes(stroke, placementOf({}, {}), [{ node: 2, to: [7, 4] }], {});
     assertNear(turned.bezier[4], [7, 1 - Math.hypot(2, 3)]);
-    assert.deepEqual(moveNodes(stroke, placementOf({}, {}), [{ node: 2, to: [7, 4] }], { alone: true }).bezier[4], [9, -2]);
+    assert.deepEqual(
+        moveNodes(stroke, placementOf({}, {}), [{ node: 2, to: [7, 4] }], { alone: true }).bezier[4],
+        [9, -2],
+    );
     const corner = moveNodes(stroke, placementOf({}, {}), [{ node: 2, to: [7, 4] }], { alone: true });
     assert.deepEqual(moveNodes(corner, placementOf({}, {}), [{ node: 4, to: [9, 9] }], {}).bezier[2], [7, 4]);
     // Round the seam of a closed chain.
-    assertNear(moveNodes(STROKES[5], placementOf({}, {}), [{ node: 1, to: [0, 5] }], {}).bezier[5], [0, -Math.hypot(2, 3)]);
+    assertNear(moveNodes(STROKES[5], placementOf({}, {}), [{ node: 1, to: [0, 5] }], {}).bezier[5], [
+        0,
+        -Math.hypot(2, 3),
+    ]);
 });
 
 test("hermite strokes have one tangent a point until a handle is moved alone", () => {
@@ -150,11 +181,21 @@ test("a node put in keeps the shape of lines and Bezier curves, and lies on all 
                 continue;
             }
             const what = `${JSON.stringify(stroke)} piece ${piece}`;
-            assert.ok(nodesOf(more).some((node) => Math.hypot(node.at[0] - place[0], node.at[1] - place[1]) < 1e-9), what);
+            assert.ok(
+                nodesOf(more).some((node) => Math.hypot(node.at[0] - place[0], node.at[1] - place[1]) < 1e-9),
+                what,
+            );
             if (["catmull_rom", "bspline"].includes(kindOf(stroke))) {
                 assert.equal(nodesOf(more).length, nodesOf(stroke).length + 1);
-                const order = nodesOf(more).map((node) => nearestOn(cubics, node.at)).map((near) => near.piece + near.t);
-                if (!stroke.closed) assert.deepEqual(order, order.toSorted((p, q) => p - q), what);
+                const order = nodesOf(more)
+                    .map((node) => nearestOn(cubics, node.at))
+                    .map((near) => near.piece + near.t);
+                if (!stroke.closed)
+                    assert.deepEqual(
+                        order,
+                        order.toSorted((p, q) => p - q),
+                        what,
+                    );
             } else {
                 assertOn(cubicsOf(more), cubics, what);
                 assertOn(cubics, cubicsOf(more), what);
@@ -185,7 +226,11 @@ test("deleting heals: the other nodes stay", () => {
             const found = left.flatMap((one) => nodesOf(one)).filter(({ role }) => role === "anchor");
             const stays = anchors.filter((node) => node !== gone);
             const key = (node) => node.at.map((value) => value.toFixed(9)).join();
-            assert.deepEqual(new Set(found.map(key)), new Set(stays.map(key)), `${JSON.stringify(stroke)} ${gone.node}`);
+            assert.deepEqual(
+                new Set(found.map(key)),
+                new Set(stays.map(key)),
+                `${JSON.stringify(stroke)} ${gone.node}`,
+            );
         }
     }
 });
@@ -197,7 +242,14 @@ test("deleting all or too many nodes leaves what can be drawn", () => {
         assert.deepEqual(deleteNodes(stroke, all, { cut: true }), [], JSON.stringify(stroke));
         assert.deepEqual(deleteNodes(stroke, [], {}).length, 1);
     }
-    assert.deepEqual(deleteNodes({ bspline: [[0, 0], [1, 2], [3, 1], [4, 4]] }, [1], {}), [{ polyline: [[0, 0], [3, 1], [4, 4]] }]);
+    assert.deepEqual(
+        deleteNodes(
+            { bspline: [[0, 0], [1, 2], [3, 1], [4, 4]] },
+            [1],
+            {},
+        ),
+        [{ polyline: [[0, 0], [3, 1], [4, 4]] }],
+    );
     assert.deepEqual(deleteNodes(STROKES[3], [1], {}), [{ polyline: [[1, 2], [3, 9]] }]);
     assert.deepEqual(deleteNodes(STROKES[1], [1], {}), []);
     assert.deepEqual(deleteNodes(STROKES[12], [1], {}), [STROKES[12]]);
@@ -205,10 +257,14 @@ test("deleting all or too many nodes leaves what can be drawn", () => {
 });
 
 test("cutting takes the pieces at a node as well", () => {
-    assert.deepEqual(deleteNodes({ polyline: [[0, 0], [1, 0], [2, 0], [3, 0], [4, 0]], rotate: 5 }, [2], { cut: true }), [
-        { polyline: [[0, 0], [1, 0]], rotate: 5 },
-        { polyline: [[3, 0], [4, 0]], rotate: 5 },
-    ]);
+    assert.deepEqual(
+        deleteNodes(
+            { polyline: [[0, 0], [1, 0], [2, 0], [3, 0], [4, 0]], rotate: 5 },
+            [2],
+            { cut: true },
+        ),
+        [{ polyline: [[0, 0], [1, 0]], rotate: 5 }, { polyline: [[3, 0], [4, 0]], rotate: 5 }],
+    );
     assert.deepEqual(deleteNodes(STROKES[3], [1], { cut: true }), [{ polyline: [[3, 9], [1, 2]] }]);
     assert.deepEqual(deleteNodes(STROKES[4], [0], { cut: true }), [{ bezier: STROKES[4].bezier.slice(3) }]);
     assert.deepEqual(deleteNodes(STROKES[5], [0], { cut: true }), []);
@@ -221,7 +277,10 @@ test("cutting takes the pieces at a node as well", () => {
 
 test("a handle that is deleted goes back into its anchor", () => {
     assert.deepEqual(deleteNodes(STROKES[4], [2], {})[0].bezier[2], [7, 1]);
-    assert.deepEqual(nodesOf(deleteNodes(STROKES[6], [4], {})[0]).map(({ node }) => node), [0, 1, 2, 3, 5, 6]);
+    assert.deepEqual(
+        nodesOf(deleteNodes(STROKES[6], [4], {})[0]).map(({ node }) => node),
+        [0, 1, 2, 3, 5, 6],
+    );
 });
 
 test("a smooth anchor becomes a corner, and a corner smooth", () => {
@@ -233,7 +292,10 @@ test("a smooth anchor becomes a corner, and a corner smooth", () => {
     const again = toggleSmooth(hermite, 3);
     assert.equal(kindOf(again), "hermite");
     assert.ok(nodesOf(again).find(({ node }) => node === 3).smooth);
-    const line = toggleSmooth({ polyline: [[0, 0], [3, 3], [6, 0]], rotate: 9 }, 1);
+    const line = toggleSmooth(
+        { polyline: [[0, 0], [3, 3], [6, 0]], rotate: 9 },
+        1,
+    );
     assertNear(line.bezier.flat(), [0, 0, 0, 0, 3 - Math.SQRT2, 3, 3, 3, 3 + Math.SQRT2, 3, 6, 0, 6, 0]);
     assert.equal(line.rotate, 9);
     const straight = { polyline: [[0, 0], [3, 0], [0, 0]] };
@@ -274,7 +336,23 @@ test("the pen draws hermite while handles are even, then bezier, of one shape", 
         for (const [points, kind] of [[even, "hermite"], [broken, "bezier"]]) {
             const stroke = penStroke(points, placement);
             assert.equal(kindOf(stroke), kind);
-            const expected = [0, 0, 1, 2, ...[0, 1].map((k) => points[1].at[k] + points[1].in[k]), 5, 1, 5, 1, 6, 0, 9, 0, 9, 0];
+            const expected = [
+                0,
+                0,
+                1,
+                2,
+                ...[0, 1].map((k) => points[1].at[k] + points[1].in[k]),
+                5,
+                1,
+                5,
+                1,
+                6,
+                0,
+                9,
+                0,
+                9,
+                0,
+            ];
             assertNear([...cubicsOf(stroke, placement)], expected);
         }
     }
@@ -288,7 +366,12 @@ test("any stroke is Bezier chains of the same shape", () => {
         const chains = asBezier(stroke);
         // A circle's own pieces are not turned, and have to be compared before it is placed.
         const by = kindOf(stroke) === "circle" ? undefined : placement;
-        assertNear(chains.flatMap((chain) => [...cubicsOf(chain, by)]), [...cubicsOf(stroke, by)], 1e-9, what);
+        assertNear(
+            chains.flatMap((chain) => [...cubicsOf(chain, by)]),
+            [...cubicsOf(stroke, by)],
+            1e-9,
+            what,
+        );
         assert.ok(chains.every((chain) => chain.unknown === 7 && kindOf(chain) === "bezier"));
     }
 });

@@ -5,7 +5,20 @@ import { test } from "node:test";
 
 import { apply, compose, inverse, unitAt } from "../../../voronoi_tiles/studio/page/model/plane.js";
 import {
-    cartesian, cellArea, cellsIn, cosets, elementsIn, fold, fractional, imagesIn, latticeOf, motionsOf, moved, orbitIn, reduced, regionOf,
+    cartesian,
+    cellArea,
+    cellsIn,
+    cosets,
+    elementsIn,
+    fold,
+    fractional,
+    imagesIn,
+    latticeOf,
+    motionsOf,
+    moved,
+    orbitIn,
+    reduced,
+    regionOf,
 } from "../../../voronoi_tiles/studio/page/model/symmetry.js";
 import { assertNear, random } from "./helpers.js";
 
@@ -13,13 +26,24 @@ const operation = (w, t = [0, 0]) => ({ name: "", w, t });
 const TABLES = {
     groups: [
         {
-            name: "p1", free: ["a", "b", "angle"], angle: null, centres: [], mirrors: [], glides: [],
-            operations: [operation([1, 0, 0, 1])], region: [[0, 0], [1, 0], [1, 1], [0, 1]],
+            name: "p1",
+            free: ["a", "b", "angle"],
+            angle: null,
+            centres: [],
+            mirrors: [],
+            glides: [],
+            operations: [operation([1, 0, 0, 1])],
+            region: [[0, 0], [1, 0], [1, 1], [0, 1]],
         },
         {
-            name: "pm", free: ["a", "b"], angle: 90, centres: [], glides: [],
+            name: "pm",
+            free: ["a", "b"],
+            angle: 90,
+            centres: [],
+            glides: [],
             mirrors: [{ through: [0, 0], along: [0, 1] }, { through: [0.5, 0], along: [0, 1] }],
-            operations: [operation([1, 0, 0, 1]), operation([-1, 0, 0, 1])], region: [[0, 0], [0.5, 0], [0.5, 1], [0, 1]],
+            operations: [operation([1, 0, 0, 1]), operation([-1, 0, 0, 1])],
+            region: [[0, 0], [0.5, 0], [0.5, 1], [0, 1]],
         },
     ],
 };
@@ -46,7 +70,11 @@ test("skew and turned-over lattices: images, cells and folding agree with counti
         for (let i = -60; i <= 60; i++) {
             for (let j = -60; j <= 60; j++) all.push(cartesian(lattice, [i, j]).map((value, k) => value + point[k]));
         }
-        const key = (list) => list.filter(isIn).map((at) => at.map((value) => value.toFixed(6)).join()).toSorted();
+        const key = (list) =>
+            list
+                .filter(isIn)
+                .map((at) => at.map((value) => value.toFixed(6)).join())
+                .toSorted();
         assert.deepEqual(key(imagesIn(lattice, point, BOX)), key(all));
         const cells = new Set(cellsIn(lattice, BOX).map(String));
         for (const at of all.filter(isIn)) assert.ok(cells.has(String(fractional(lattice, at).map(Math.floor))));
@@ -61,7 +89,10 @@ test("orbits are the images under all motions", () => {
     const own = design("pm", { a: 60, b: 50 });
     const [lattice, motions] = [latticeOf(own, TABLES), motionsOf(own, TABLES)];
     const orbit = orbitIn(motions, lattice, [7, 5], [-10, 0, 70, 49]);
-    assert.deepEqual(orbit.map(([x, y]) => [x, y]).toSorted((p, q) => p[0] - q[0]), [[-7, 5], [7, 5], [53, 5], [67, 5]]);
+    assert.deepEqual(
+        orbit.map(([x, y]) => [x, y]).toSorted((p, q) => p[0] - q[0]),
+        [[-7, 5], [7, 5], [53, 5], [67, 5]],
+    );
     assert.deepEqual(moved(motions[1], [7, 5]), [-7, 5]);
     assertNear(regionOf(own, TABLES).flat(), [0, 0, 30, 0, 30, 50, 0, 50]);
 });

@@ -1,4 +1,6 @@
-/** The page's model against Python's, by the file that VORONOI_TILES_VECTORS names: see tests/helpers/page_vectors.py. */
+/**
+ * The page's model against Python's, by the file that VORONOI_TILES_VECTORS names: see tests/helpers/page_vectors.py.
+ */
 
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
@@ -9,7 +11,9 @@ import { cubicsOf, flatten, placementOf } from "../../../voronoi_tiles/studio/pa
 import { cosets, elementsIn, latticeOf, motionsOf } from "../../../voronoi_tiles/studio/page/model/symmetry.js";
 
 const file = process.env.VORONOI_TILES_VECTORS;
-const options = { skip: file ? false : "VORONOI_TILES_VECTORS names no file; tests/studio/test_page_model.py writes one" };
+const options = {
+    skip: file ? false : "VORONOI_TILES_VECTORS names no file; tests/studio/test_page_model.py writes one",
+};
 const vectors = file ? JSON.parse(readFileSync(file, "utf8")) : {};
 
 /** How near numbers must be; relative to the size of what is compared. */
@@ -45,7 +49,11 @@ test("strokes are Python's curves where they are placed", options, () => {
         const isJoint = (_, k) => k % 8 < 2 || k === cubics.length - 2 || k === cubics.length - 1;
         const isCircle = "circle" in stroke;
         // A circle of 12 curves and the polygon of 12 sides have their joints in common.
-        assertNear(isCircle ? found.filter(isJoint) : found, isCircle ? cubics.filter(isJoint) : cubics, JSON.stringify(stroke));
+        assertNear(
+            isCircle ? found.filter(isJoint) : found,
+            isCircle ? cubics.filter(isJoint) : cubics,
+            JSON.stringify(stroke),
+        );
         kinds.add(Object.keys(stroke)[0]);
     }
     assert.equal(kinds.size, 10);
@@ -103,5 +111,8 @@ test("copies of sites in special positions are counted once, as the engine does"
             counts.add(motions.length / operations.length);
         }
     }
-    assert.deepEqual([...counts].sort((p, q) => p - q), [1, 2, 3, 4, 6, 8, 12]);
+    assert.deepEqual(
+        [...counts].sort((p, q) => p - q),
+        [1, 2, 3, 4, 6, 8, 12],
+    );
 });

@@ -2,8 +2,8 @@
 /**
  * The design as the page holds it, and its edits.
  *
- * A design is the plain object that its file is, in the same keys. Edits are pure functions: they give a new object that
- * shares what has not changed, and keep keys that they do not know.
+ * A design is the plain object that its file is, in the same keys. Edits are pure functions: they give a new object
+ * that shares what has not changed, and keep keys that they do not know.
  */
 
 import { MILLIMETRES } from "./lengths.js";
@@ -11,7 +11,10 @@ import { placementIn, kindOf, pointsOf } from "./strokes.js";
 import { inverse, tidyProduct, tidySum, turned } from "./plane.js";
 
 /** @typedef {import("./plane.js").Point} Point */
-/** @typedef {"point" | "segment" | "polyline" | "bezier" | "hermite" | "catmull_rom" | "bspline" | "circle" | "path" | "file"} StrokeKind */
+/**
+ * @typedef {"point" | "segment" | "polyline" | "bezier" | "hermite" | "catmull_rom" | "bspline" | "circle" | "path" |
+ * "file"} StrokeKind
+ */
 /** @typedef {"mm" | "cm" | "in"} Unit */
 
 /**
@@ -74,7 +77,11 @@ import { inverse, tidyProduct, tidySum, turned } from "./plane.js";
 /** @typedef {Readonly<{site: number, stroke: number}>} Ref a stroke, by the numbers of its site and of itself */
 /** @typedef {Readonly<Ref & {node: number}>} NodeRef a node of a stroke */
 
-/** The stroke of a reference, undefined where there is none. @type {(design: Design, ref: Ref) => Stroke | undefined} */
+/**
+ * The stroke of a reference, undefined where there is none.
+ *
+ * @type {(design: Design, ref: Ref) => Stroke | undefined}
+ */
 export const strokeAt = (design, ref) => design.site[ref.site]?.strokes[ref.stroke];
 
 /** Whether two references mean the same stroke. @type {(one: Ref, other: Ref) => boolean} */
@@ -152,7 +159,9 @@ export function removeStrokes(design, refs) {
  */
 export function replaceStroke(design, ref, stroke) {
     const inPlace = /** @type {readonly Stroke[]} */ (Array.isArray(stroke) ? stroke : [stroke]);
-    return withStrokes(design, ref.site, (strokes) => strokes.flatMap((old, k) => (k === ref.stroke ? inPlace : [old])));
+    return withStrokes(design, ref.site, (strokes) =>
+        strokes.flatMap((old, k) => (k === ref.stroke ? inPlace : [old])),
+    );
 }
 
 /**
@@ -171,8 +180,8 @@ export function moveStrokes(design, refs, vector) {
 }
 
 /**
- * A stroke of a site moved by a vector of the drawing: by its points, or by its `translate` where it is placed by keys of
- * its own or has no points.
+ * A stroke of a site moved by a vector of the drawing: by its points, or by its `translate` where it is placed by keys
+ * of its own or has no points.
  *
  * @param {Site} site
  * @param {Stroke} stroke
@@ -182,11 +191,16 @@ export function moveStrokes(design, refs, vector) {
 export function movedStroke(site, stroke, vector) {
     const by = turned(inverse(placementIn(site)), vector);
     const isPlaced = ["mirror", "scale", "rotate", "translate"].some((key) => key in stroke);
-    if (isPlaced || !pointsOf(stroke).length) return { ...stroke, translate: movedPoint(stroke.translate ?? [0, 0], by) };
+    if (isPlaced || !pointsOf(stroke).length)
+        return { ...stroke, translate: movedPoint(stroke.translate ?? [0, 0], by) };
     return mapPoints(stroke, (point) => movedPoint(point, by));
 }
 
-/** A point moved by a vector, its coordinates without what binary fractions leave. @type {(p: Point, by: Point) => Point} */
+/**
+ * A point moved by a vector, its coordinates without what binary fractions leave.
+ *
+ * @type {(p: Point, by: Point) => Point}
+ */
 const movedPoint = (point, by) => [tidySum(point[0], by[0]), tidySum(point[1], by[1])];
 
 /**
@@ -282,7 +296,9 @@ export function setUnits(design, units, convert) {
     if (from === units) return design;
     const factor = MILLIMETRES[from] / MILLIMETRES[units];
     const renamed = { ...design, units };
-    return convert ? { ...renamed, cell: largerCell(design.cell, factor), site: design.site.map(larger(factor)) } : renamed;
+    return convert
+        ? { ...renamed, cell: largerCell(design.cell, factor), site: design.site.map(larger(factor)) }
+        : renamed;
 }
 
 /** A cell whose sides are times a factor. @type {(cell: Cell, factor: number) => Cell} */
@@ -294,7 +310,10 @@ function largerCell(cell, factor) {
 /** What makes a site larger by a factor. @type {(factor: number) => (site: Site) => Site} */
 const larger = (factor) => (site) => {
     /** @type {Site} */
-    const placed = { ...largerShift(site, factor), strokes: site.strokes.map((stroke) => largerStroke(stroke, factor)) };
+    const placed = {
+        ...largerShift(site, factor),
+        strokes: site.strokes.map((stroke) => largerStroke(stroke, factor)),
+    };
     const art = typeof site.art === "object" ? { art: largerShift(site.art, factor) } : {};
     return { ...placed, ...art, ...largerKey(site, "tolerance", factor) };
 };

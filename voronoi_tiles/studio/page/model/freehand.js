@@ -41,7 +41,11 @@ export function fit(points, accuracy) {
     return { bezier: chain.map((point) => rounded(point, accuracy / 30)) };
 }
 
-/** The points that are at least so far from the one before, and the last one. @type {(points: readonly Point[], least: number) => Point[]} */
+/**
+ * The points that are at least so far from the one before, and the last one.
+ *
+ * @type {(points: readonly Point[], least: number) => Point[]}
+ */
 function thinned(points, least) {
     /** @type {Point[]} */
     const kept = [];
@@ -88,7 +92,11 @@ function cornersOf(trail, reach) {
     return corners;
 }
 
-/** The first point at a distance from another, along a trail; null where there is none. @type {(trail: Point[], from: number, step: 1 | -1, reach: number) => Point | null} */
+/**
+ * The first point at a distance from another, along a trail; null where there is none.
+ *
+ * @type {(trail: Point[], from: number, step: 1 | -1, reach: number) => Point | null}
+ */
 function chordFrom(trail, from, step, reach) {
     for (let k = from + step; k >= 0 && k < trail.length; k += step) {
         if (distance(trail[k], trail[from]) >= reach) return trail[k];
@@ -105,10 +113,19 @@ function chordFrom(trail, from, step, reach) {
  */
 function fitted(points, accuracy) {
     const last = points.length - 1;
-    return fitRun(points, unit(endTangent(points, 0, 1, accuracy)), unit(endTangent(points, last, -1, accuracy)), accuracy);
+    return fitRun(
+        points,
+        unit(endTangent(points, 0, 1, accuracy)),
+        unit(endTangent(points, last, -1, accuracy)),
+        accuracy,
+    );
 }
 
-/** The direction in which a run leaves one of its ends, taken over some accuracies. @type {(points: Point[], from: number, step: 1 | -1, accuracy: number) => Point} */
+/**
+ * The direction in which a run leaves one of its ends, taken over some accuracies.
+ *
+ * @type {(points: Point[], from: number, step: 1 | -1, accuracy: number) => Point}
+ */
 function endTangent(points, from, step, accuracy) {
     const towards = chordFrom(points, from, step, 3 * accuracy) ?? points[step > 0 ? points.length - 1 : 0];
     const [x, y] = minus(towards, points[from]);
@@ -148,7 +165,11 @@ function fitRun(points, leaving, arriving, accuracy) {
     ];
 }
 
-/** A cubic with handles a third of its length. @type {(start: Point, end: Point, leaving: Point, arriving: Point) => Cubic} */
+/**
+ * A cubic with handles a third of its length.
+ *
+ * @type {(start: Point, end: Point, leaving: Point, arriving: Point) => Cubic}
+ */
 function straight(start, end, leaving, arriving) {
     const third = distance(start, end) / 3;
     return [start, plus(start, scaled(leaving, third)), plus(end, scaled(arriving, third)), end];
@@ -191,7 +212,11 @@ function leastSquares(points, places, leaving, arriving) {
     return [start, plus(start, scaled(leaving, first)), plus(end, scaled(arriving, second)), end];
 }
 
-/** The point that is farthest from its place on a cubic, but for the ends. @type {(cubic: Cubic, points: Point[], places: number[]) => {error: number, index: number}} */
+/**
+ * The point that is farthest from its place on a cubic, but for the ends.
+ *
+ * @type {(cubic: Cubic, points: Point[], places: number[]) => {error: number, index: number}}
+ */
 function farthest(cubic, points, places) {
     const flat = Float64Array.from(cubic.flat());
     return points.slice(1, -1).reduce(
@@ -203,7 +228,11 @@ function farthest(cubic, points, places) {
     );
 }
 
-/** A step of Newton's method towards the parameter of the point nearest to another. @type {(cubic: Cubic, point: Point, t: number) => number} */
+/**
+ * A step of Newton's method towards the parameter of the point nearest to another.
+ *
+ * @type {(cubic: Cubic, point: Point, t: number) => number}
+ */
 function improved(cubic, point, t) {
     const away = minus(pointOn(Float64Array.from(cubic.flat()), 0, t), point);
     const legs = [0, 1, 2].map((k) => scaled(minus(cubic[k + 1], cubic[k]), 3));

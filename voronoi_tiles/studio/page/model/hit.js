@@ -1,8 +1,9 @@
 // @ts-check
 /** What is under the pointer, or in a box: strokes and nodes. */
 
-import { distance } from "./plane.js";
+import { apply, distance, inverse } from "./plane.js";
 import { nearestOn } from "./nearest.js";
+import { boxOf, imagesIn } from "./symmetry.js";
 
 /** @typedef {import("./plane.js").Point} Point */
 /** @typedef {import("./plane.js").Box} Box left, bottom, right, top */
@@ -15,7 +16,11 @@ import { nearestOn } from "./nearest.js";
 /** @typedef {Node & {ref: Ref}} OwnedNode a node with the reference of its stroke */
 /** @typedef {{ref: Ref, cubics: Float64Array}} Drawn a stroke with its pieces where it is placed */
 
-/** Which of two nodes at one place is taken: handles hide under their anchors. @type {Readonly<Record<string, number>>} */
+/**
+ * Which of two nodes at one place is taken: handles hide under their anchors.
+ *
+ * @type {Readonly<Record<string, number>>}
+ */
 const ORDER = { in: 0, out: 0, radius: 0, anchor: 1, centre: 1 };
 
 /**
@@ -59,6 +64,31 @@ export function nearestStroke(entries, at, reach) {
     return best;
 }
 
+/**
+ * The stroke whose copy is nearest to a point, with the number of the motion that makes it; null where none is within
+ * reach. `at` is the place on the stroke itself, `distance` that from the copy.
+ *
+ * @param {readonly Drawn[]} entries
+ * @param {readonly Motion[]} motions
+ * @param {Lattice} lattice
+ * @param {Point} at
+ * @param {number} reach
+ * @returns {({ref: Ref, motion: number} & import("./nearest.js").Nearest) | null}
+ */
+export function nearestCopy(entries, motions, lattice, at, reach) {
+    const [left, bottom, right, top] = boxOf(entries.flatMap(({ cubics }) => [...cubics]));
+    if (!(left <= right)) return null;
+    const box = /** @type {Box} */ ([left - reach, bottom - reach, right + reach, top + reach]);
+    // The copies are moved onto the strokes, and the point with them.
+    const hits = motions.flatMap((map, motion) =>
+        imagesIn(lattice, apply(inverse(map), at), box).flatMap((image) => {
+            const hit = nearestStroke(entries, image, reach);
+            return hit ? [{ ...hit, motion }] : [];
+        }),
+    );
+    return hits.length ? hits.reduce((best, hit) => (hit.distance < best.distance ? hit : best)) : null;
+}
+
 /** Whether a point is in a box, its border included. @type {(box: Box, at: Point) => boolean} */
 const isIn = ([x0, y0, x1, y1], [x, y]) => x0 <= x && x <= x1 && y0 <= y && y <= y1;
 
@@ -83,5 +113,7 @@ export function strokesIn(entries, box) {
  * @returns {NodeRef[]}
  */
 export function nodesIn(nodes, box) {
-    return nodes.filter(({ at }) => isIn(box, at)).map(({ ref, node }) => ({ site: ref.site, stroke: ref.stroke, node }));
+    return nodes
+        .filter(({ at }) => isIn(box, at))
+        .map(({ ref, node }) => ({ site: ref.site, stroke: ref.stroke, node }));
 }

@@ -7,7 +7,15 @@
 export const MILLIMETRES = Object.freeze({ mm: 1, cm: 10, in: 25.4 });
 
 /** The ways to write the units. @type {ReadonlyMap<string, Unit>} */
-const WORDS = new Map([["mm", "mm"], ["cm", "cm"], ["in", "in"], ["inch", "in"], ["inches", "in"], ['"', "in"], ["″", "in"]]);
+const WORDS = new Map([
+    ["mm", "mm"],
+    ["cm", "cm"],
+    ["in", "in"],
+    ["inch", "in"],
+    ["inches", "in"],
+    ['"', "in"],
+    ["″", "in"],
+]);
 
 const REMEDY = "Write a length such as 12.5mm, 1/4in or 60 - 2*3.5.";
 
@@ -16,16 +24,23 @@ const TOKEN = /\s*(?:(\d+(?:[.,]\d*)?(?:e[+-]?\d+)?|[.,]\d+(?:e[+-]?\d+)?)|([a-z
 /** Signs that stand for others. @type {Readonly<Record<string, string>>} */
 const SIGNS = { "−": "-", "×": "*", "·": "*", "÷": "/" };
 
-/** A quantity: how much, and whether it is a length (in millimetres) or a number. @typedef {{value: number, isLength: boolean}} Quantity */
+/**
+ * A quantity: how much, and whether it is a length (in millimetres) or a number.
+ *
+ * @typedef {{value: number, isLength: boolean}} Quantity
+ */
 
 /** @typedef {{number?: number, word?: string, sign?: string}} Token */
-/** @typedef {{tokens: Token[], at: number, size: number}} Reader the tokens, how many are read, and the unit in millimetres */
+/**
+ * @typedef {{tokens: Token[], at: number, size: number}} Reader the tokens, how many are read, and the unit in
+ * millimetres
+ */
 
 /**
  * The length that a text says, in a unit, which is also that of numbers without one.
  *
- * Sums, differences, products, quotients and brackets are taken; a comma is a point. Throws an Error whose message tells
- * what is wrong and what to write.
+ * Sums, differences, products, quotients and brackets are taken; a comma is a point. Throws an Error whose message
+ * tells what is wrong and what to write.
  *
  * @param {string} text
  * @param {string} unit
@@ -54,7 +69,11 @@ function sum(from) {
     return left;
 }
 
-/** A product of factors, of which one may be a length; a quotient's unit follows it. @type {(from: Reader) => Quantity} */
+/**
+ * A product of factors, of which one may be a length; a quotient's unit follows it.
+ *
+ * @type {(from: Reader) => Quantity}
+ */
 function product(from) {
     let left = withUnit(from, factor(from));
     for (let sign = taken(from, "*/"); sign; sign = taken(from, "*/")) {
@@ -84,7 +103,8 @@ function factor(from) {
         return inner;
     }
     const token = from.tokens[from.at];
-    if (token?.number === undefined) throw new Error(`A number is missing${token ? ` before ${named(token)}` : ""}. ${REMEDY}`);
+    if (token?.number === undefined)
+        throw new Error(`A number is missing${token ? ` before ${named(token)}` : ""}. ${REMEDY}`);
     from.at++;
     return { value: token.number, isLength: false };
 }

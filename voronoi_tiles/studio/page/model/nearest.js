@@ -3,7 +3,9 @@
 
 /** @typedef {import("./plane.js").Point} Point */
 
-/** @typedef {{piece: number, t: number, at: Point, distance: number}} Nearest on which piece, where on it, how far away */
+/**
+ * @typedef {{piece: number, t: number, at: Point, distance: number}} Nearest on which piece, where on it, how far away
+ */
 
 /** Places on each piece that the search begins with. */
 const SAMPLES = 24;
@@ -49,14 +51,22 @@ function nearestOnPiece(cubics, piece, at) {
         return Math.hypot(x - at[0], y - at[1]);
     };
     const samples = Array.from({ length: SAMPLES + 1 }, (_, k) => distanceAt(k / SAMPLES));
-    const lows = samples.flatMap((away, k) => (away <= (samples[k - 1] ?? away) && away <= (samples[k + 1] ?? away) ? [k] : []));
-    const found = lows.map((k) => leastBetween(distanceAt, Math.max(0, k - 1) / SAMPLES, Math.min(SAMPLES, k + 1) / SAMPLES));
+    const lows = samples.flatMap((away, k) =>
+        away <= (samples[k - 1] ?? away) && away <= (samples[k + 1] ?? away) ? [k] : [],
+    );
+    const found = lows.map((k) =>
+        leastBetween(distanceAt, Math.max(0, k - 1) / SAMPLES, Math.min(SAMPLES, k + 1) / SAMPLES),
+    );
     // An end is met exactly.
     const t = [0, 1, ...found].reduce((p, q) => (distanceAt(p) <= distanceAt(q) ? p : q));
     return { piece, t, at: pointOn(cubics, piece, t), distance: distanceAt(t) };
 }
 
-/** Where a function is least in an interval in which it falls and then rises. @type {(f: (t: number) => number, low: number, high: number) => number} */
+/**
+ * Where a function is least in an interval in which it falls and then rises.
+ *
+ * @type {(f: (t: number) => number, low: number, high: number) => number}
+ */
 function leastBetween(f, low, high) {
     let [one, other] = [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
     let [left, right] = [f(one), f(other)];

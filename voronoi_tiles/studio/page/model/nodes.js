@@ -2,9 +2,9 @@
 /**
  * The nodes of strokes: what is dragged, and what becomes of the stroke.
  *
- * A node is known by its number: that of the point in the stroke's list; for `hermite` and `path`, as for `bezier`, that
- * of the control point in the chains of cubic pieces; a circle has its centre, 0, and its rim, 1. A handle that lies on
- * its anchor is no node. Nodes are in the drawing's coordinates, strokes before their placement.
+ * A node is known by its number: that of the point in the stroke's list; for `hermite` and `path`, as for `bezier`,
+ * that of the control point in the chains of cubic pieces; a circle has its centre, 0, and its rim, 1. A handle that
+ * lies on its anchor is no node. Nodes are in the drawing's coordinates, strokes before their placement.
  */
 
 import { asBezier, chainsOf, isClosed, strokesOf } from "./chains.js";
@@ -55,12 +55,22 @@ export function nodesOf(stroke, placement = IDENTITY) {
             return chainNodes(chainsOf(stroke), placement);
         default: {
             const smooth = kind === "catmull_rom" || kind === "bspline";
-            return pointsOf(stroke).map((at, node) => ({ node, role: "anchor", at: apply(placement, at), of: node, smooth }));
+            return pointsOf(stroke).map((at, node) => ({
+                node,
+                role: "anchor",
+                at: apply(placement, at),
+                of: node,
+                smooth,
+            }));
         }
     }
 }
 
-/** The nodes of a circle; its rim's is to the right, as a circle is not turned. @type {(s: Stroke, p: Placement) => Node[]} */
+/**
+ * The nodes of a circle; its rim's is to the right, as a circle is not turned.
+ *
+ * @type {(s: Stroke, p: Placement) => Node[]}
+ */
 function circleNodes(stroke, placement) {
     return pointsOf(stroke).flatMap((own) => {
         const at = apply(placement, own);
@@ -94,20 +104,32 @@ function chainNodes(chains, placement) {
     });
 }
 
-/** The number of a control point's anchor; the last one of a closed chain is the first. @type {(chain: Chain, k: number) => number} */
+/**
+ * The number of a control point's anchor; the last one of a closed chain is the first.
+ *
+ * @type {(chain: Chain, k: number) => number}
+ */
 function anchorOf(chain, k) {
     const anchor = 3 * Math.round(k / 3);
     return anchor === chain.length - 1 && isClosed(chain) ? 0 : anchor;
 }
 
-/** The numbers of the handles before and after an anchor, -1 for one that there is not. @type {(c: Chain, k: number) => [number, number]} */
+/**
+ * The numbers of the handles before and after an anchor, -1 for one that there is not.
+ *
+ * @type {(c: Chain, k: number) => [number, number]}
+ */
 function handlesOf(chain, anchor) {
     const closed = isClosed(chain);
     const before = anchor > 0 ? anchor - 1 : closed ? chain.length - 2 : -1;
     return [before, anchor < chain.length - 1 ? anchor + 1 : -1];
 }
 
-/** Whether both handles of an anchor are there, and point opposite ways. @type {(chain: Chain, anchor: number) => boolean} */
+/**
+ * Whether both handles of an anchor are there, and point opposite ways.
+ *
+ * @type {(chain: Chain, anchor: number) => boolean}
+ */
 function isSmooth(chain, anchor) {
     const [before, after] = handlesOf(chain, anchor).map((k) => (k < 0 ? null : minus(chain[k], chain[anchor])));
     if (!before || !after) return false;
@@ -118,8 +140,8 @@ function isSmooth(chain, anchor) {
 /**
  * A stroke with some nodes moved.
  *
- * An anchor takes its handles along. A handle of a smooth anchor turns the opposite one; with `alone` it does not, and a
- * `hermite` stroke, whose points have one tangent each, becomes a `bezier`.
+ * An anchor takes its handles along. A handle of a smooth anchor turns the opposite one; with `alone` it does not, and
+ * a `hermite` stroke, whose points have one tangent each, becomes a `bezier`.
  *
  * @param {Stroke} stroke
  * @param {Placement} placement
@@ -304,8 +326,8 @@ export function toggleSmooth(stroke, node) {
 }
 
 /**
- * Handles of an anchor that make it smooth: along the line from the anchor before to the one after, a third of the way to
- * each long; handles that are there keep their lengths.
+ * Handles of an anchor that make it smooth: along the line from the anchor before to the one after, a third of the way
+ * to each long; handles that are there keep their lengths.
  *
  * @param {Chain} chain
  * @param {number} anchor

@@ -29,9 +29,7 @@ export const ARC_SHARE = 1e-6;
 const RADIUS_MIN = 1e-100;
 
 /** What each command takes: n a number, f a flag. @type {Readonly<Record<string, string>>} */
-const ARGUMENTS = {
-    M: "nn", L: "nn", H: "n", V: "n", C: "nnnnnn", S: "nnnn", Q: "nnnn", T: "nn", A: "nnnffnn", Z: "",
-};
+const ARGUMENTS = { M: "nn", L: "nn", H: "n", V: "n", C: "nnnnnn", S: "nnnn", Q: "nnnn", T: "nn", A: "nnnffnn", Z: "" };
 
 const COMMAND = /[\s]*([MmLlHhVvCcSsQqTtAaZz])/y;
 const NUMBER = /[\s,]*([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)/y;

@@ -2,7 +2,8 @@
 /**
  * Points of the plane, and the similarities that place and repeat what is drawn.
  *
- * The names are those of `voronoi_tiles.base.maps`, and so is the arithmetic: turns by multiples of 30 degrees are exact.
+ * The names are those of `voronoi_tiles.base.maps`, and so is the arithmetic: turns by multiples of 30 degrees are
+ * exact.
  */
 
 /** @typedef {[number, number]} Point x to the right, y up; also a vector, and a complex number */
@@ -22,8 +23,18 @@ const HALF_SQRT3 = Math.sqrt(3) / 2;
 
 /** @type {readonly Point[]} The unit complex numbers at the multiples of 30 degrees. */
 const UNITS = [
-    [1, 0], [HALF_SQRT3, 0.5], [0.5, HALF_SQRT3], [0, 1], [-0.5, HALF_SQRT3], [-HALF_SQRT3, 0.5],
-    [-1, 0], [-HALF_SQRT3, -0.5], [-0.5, -HALF_SQRT3], [0, -1], [0.5, -HALF_SQRT3], [HALF_SQRT3, -0.5],
+    [1, 0],
+    [HALF_SQRT3, 0.5],
+    [0.5, HALF_SQRT3],
+    [0, 1],
+    [-0.5, HALF_SQRT3],
+    [-HALF_SQRT3, 0.5],
+    [-1, 0],
+    [-HALF_SQRT3, -0.5],
+    [-0.5, -HALF_SQRT3],
+    [0, -1],
+    [0.5, -HALF_SQRT3],
+    [HALF_SQRT3, -0.5],
 ];
 
 /** What moves nothing. @type {Readonly<Similarity>} */

@@ -3,7 +3,18 @@
 
 import { between, cross, dot, length, minus, plus, scaled, tidyProduct, tidySum } from "./plane.js";
 import { cubicsOf, flatten, placementOf } from "./strokes.js";
-import { boxOf, cellArea, cosets, groupOf, latticeOf, mapped, motionsOf, reduced, regionOf, segmentDistance } from "./symmetry.js";
+import {
+    boxOf,
+    cellArea,
+    cosets,
+    groupOf,
+    latticeOf,
+    mapped,
+    motionsOf,
+    reduced,
+    regionOf,
+    segmentDistance,
+} from "./symmetry.js";
 
 /** @typedef {import("./plane.js").Point} Point */
 /** @typedef {import("./design.js").Cell} Cell */
@@ -28,9 +39,9 @@ const STEPS = 40;
 /**
  * A design in another group, and what was done to it in words, "" for nothing.
  *
- * The side a stays, and the others where the group leaves them free; what it frees is as it was. The drawing stays where
- * it is; but where its copies would touch, or lie in each other, it is laid into one asymmetric unit, smaller if need be,
- * by the `scale` and `translate` of its sites: there no copies meet.
+ * The side a stays, and the others where the group leaves them free; what it frees is as it was. The drawing stays
+ * where it is; but where its copies would touch, or lie in each other, it is laid into one asymmetric unit, smaller if
+ * need be, by the `scale` and `translate` of its sites: there no copies meet.
  *
  * @param {Design} design
  * @param {string} name
@@ -61,7 +72,8 @@ function cellFor(design, name, tables) {
     const { a, b } = latticeOf(design, tables);
     const { b: _b, angle: _angle, ...others } = design.cell;
     const side = design.cell.b ?? length(b);
-    const angle = design.cell.angle ?? groupOf(design, tables).angle ?? (Math.atan2(cross(a, b), dot(a, b)) * 180) / Math.PI;
+    const angle =
+        design.cell.angle ?? groupOf(design, tables).angle ?? (Math.atan2(cross(a, b), dot(a, b)) * 180) / Math.PI;
     return { ...others, ...(free.includes("b") ? { b: side } : {}), ...(free.includes("angle") ? { angle } : {}) };
 }
 
@@ -90,13 +102,19 @@ export function copiesTouch(design, tables, resolved = {}) {
     const apart = APART * length(lattice.a);
     const copies = sites.map((segments) => cosets(motions, lattice, segments).map((k) => mapped(motions[k], segments)));
     return sites.some((segments, one) =>
-        copies.slice(one).some((images, other) =>
-            images.some((image, k) => imageTouches(segments, image, lattice, apart, other === 0 && k === 0)),
-        ),
+        copies
+            .slice(one)
+            .some((images, other) =>
+                images.some((image, k) => imageTouches(segments, image, lattice, apart, other === 0 && k === 0)),
+            ),
     );
 }
 
-/** A site's segments, coarse. @type {(d: Design, k: number, resolved: Readonly<Record<string, string>>) => Float64Array} */
+/**
+ * A site's segments, coarse.
+ *
+ * @type {(d: Design, k: number, resolved: Readonly<Record<string, string>>) => Float64Array}
+ */
 function segmentsOf(design, k, resolved) {
     const site = design.site[k];
     const parts = site.strokes.map((stroke, n) => [
@@ -119,7 +137,12 @@ function imageTouches(segments, image, lattice, apart, isItself) {
     const [left, bottom, right, top] = boxOf(segments);
     const box = boxOf(image);
     // Translations t with which the image's box, moved by t, meets that of the segments.
-    const window = /** @type {const} */ ([left - box[2] - apart, bottom - box[3] - apart, right - box[0] + apart, top - box[1] + apart]);
+    const window = /** @type {const} */ ([
+        left - box[2] - apart,
+        bottom - box[3] - apart,
+        right - box[0] + apart,
+        top - box[1] + apart,
+    ]);
     return translationsIn(lattice, [...window]).some((t) => {
         if (isItself && t[0] === 0 && t[1] === 0) return false;
         return segmentsTouch(segments, mapped({ a: [1, 0], b: t, conj: false }, image), apart);
@@ -145,7 +168,11 @@ function translationsIn(lattice, [x0, y0, x1, y1]) {
     return found;
 }
 
-/** Whether some segments come near others. @type {(some: Float64Array, others: Float64Array, apart: number) => boolean} */
+/**
+ * Whether some segments come near others.
+ *
+ * @type {(some: Float64Array, others: Float64Array, apart: number) => boolean}
+ */
 function segmentsTouch(some, others, apart) {
     for (let i = 0; i < some.length; i += 4) {
         for (let j = 0; j < others.length; j += 4) {
@@ -163,7 +190,11 @@ function segmentsTouch(some, others, apart) {
     return false;
 }
 
-/** How far the boxes of two segments are apart along an axis. @type {(p: Float64Array, i: number, q: Float64Array, j: number) => number} */
+/**
+ * How far the boxes of two segments are apart along an axis.
+ *
+ * @type {(p: Float64Array, i: number, q: Float64Array, j: number) => number}
+ */
 function boxesApart(p, i, q, j) {
     const along = (/** @type {number} */ k) =>
         Math.max(
@@ -175,14 +206,20 @@ function boxesApart(p, i, q, j) {
 
 /** Whether two segments cross. @type {(p: Float64Array, i: number, q: Float64Array, j: number) => boolean} */
 function segmentsCross(p, i, q, j) {
-    const [a, b, c, d] = /** @type {Point[]} */ ([[p[i], p[i + 1]], [p[i + 2], p[i + 3]], [q[j], q[j + 1]], [q[j + 2], q[j + 3]]]);
-    const side = (/** @type {Point} */ from, /** @type {Point} */ to, /** @type {Point} */ at) => cross(minus(to, from), minus(at, from));
+    const [a, b, c, d] = /** @type {Point[]} */ ([
+        [p[i], p[i + 1]],
+        [p[i + 2], p[i + 3]],
+        [q[j], q[j + 1]],
+        [q[j + 2], q[j + 3]],
+    ]);
+    const side = (/** @type {Point} */ from, /** @type {Point} */ to, /** @type {Point} */ at) =>
+        cross(minus(to, from), minus(at, from));
     return side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0;
 }
 
 /**
- * A design with its drawing laid into a convex region, as large as it fits but no larger than it is; null where there is
- * nothing to lay.
+ * A design with its drawing laid into a convex region, as large as it fits but no larger than it is; null where there
+ * is nothing to lay.
  *
  * @param {Design} design
  * @param {Point[]} region its corners, counterclockwise

@@ -163,7 +163,9 @@ function healedHermite(stroke, gone) {
     const stays = points.flatMap((_, k) => (gone.has(3 * k) || (closed && k === last) ? [] : [k]));
     if (stays.length < 2) return [];
     const ring = closed && stays.length > 2 ? [...stays, stays[0]] : stays;
-    return [{ ...stroke, hermite: ring.map((k) => points[k]), tangents: ring.map((k) => stroke.tangents?.[k] ?? [0, 0]) }];
+    return [
+        { ...stroke, hermite: ring.map((k) => points[k]), tangents: ring.map((k) => stroke.tangents?.[k] ?? [0, 0]) },
+    ];
 }
 
 /**
@@ -191,21 +193,36 @@ function withoutNodes(chains, gone, cut) {
     });
 }
 
-/** The anchor at which a closed chain is opened: one that is cut out, else one that stays. @type {(a: Set<number>, c: Chain, cut: boolean) => number} */
+/**
+ * The anchor at which a closed chain is opened: one that is cut out, else one that stays.
+ *
+ * @type {(a: Set<number>, c: Chain, cut: boolean) => number}
+ */
 function behindAny(anchors, chain, cut) {
     const count = (chain.length - 1) / 3;
     const numbers = Array.from({ length: count }, (_, k) => k);
-    return Math.max(0, numbers.findIndex((k) => anchors.has(k) === cut));
+    return Math.max(
+        0,
+        numbers.findIndex((k) => anchors.has(k) === cut),
+    );
 }
 
-/** A closed chain that begins at another anchor, and that anchor. @type {(chain: Chain, from: number) => {chain: Chain, from: number}} */
+/**
+ * A closed chain that begins at another anchor, and that anchor.
+ *
+ * @type {(chain: Chain, from: number) => {chain: Chain, from: number}}
+ */
 function rotated(chain, from) {
     const ring = chain.slice(0, -1);
     const turned = [...ring.slice(3 * from), ...ring.slice(0, 3 * from)];
     return { chain: [...turned, turned[0]], from };
 }
 
-/** The runs of pieces that end at no anchor that is gone. @type {(chain: Chain, isGone: (k: number) => boolean) => Chain[]} */
+/**
+ * The runs of pieces that end at no anchor that is gone.
+ *
+ * @type {(chain: Chain, isGone: (k: number) => boolean) => Chain[]}
+ */
 function cutChain(chain, isGone) {
     /** @type {Chain[]} */
     const runs = [];

@@ -10,7 +10,12 @@ import { cross, distance, dot, length, minus, plus, scaled } from "./plane.js";
 /** @typedef {{at: Point, kind: SnapKind, label: string}} Snapped */
 
 /** @type {Readonly<Record<number, string>>} */
-const CENTRES = { 2: "centre of half turns", 3: "centre of third turns", 4: "centre of quarter turns", 6: "centre of sixth turns" };
+const CENTRES = {
+    2: "centre of half turns",
+    3: "centre of third turns",
+    4: "centre of quarter turns",
+    6: "centre of sixth turns",
+};
 
 /**
  * @typedef {object} Attractions
@@ -49,7 +54,9 @@ export function snap(at, { elements = { centres: [], mirrors: [], glides: [] }, 
     const crossings = near.flatMap(({ line, kind, label }, k) =>
         near.slice(k + 1).flatMap((other) => {
             const crossing = crossingOf(line, other.line);
-            return crossing ? [{ at: crossing, kind, label: label === other.label ? `${label}s` : `${label}, ${other.label}` }] : [];
+            return crossing
+                ? [{ at: crossing, kind, label: label === other.label ? `${label}s` : `${label}, ${other.label}` }]
+                : [];
         }),
     );
     const gridded = grid ? [{ at: onGrid(at, grid), kind: /** @type {const} */ ("grid"), label: "grid" }] : [];
@@ -66,7 +73,11 @@ function tidy([x, y]) {
     return [Number(x.toFixed(Math.max(0, digits))) + 0, Number(y.toFixed(Math.max(0, digits))) + 0];
 }
 
-/** The nearest within reach; of two the first. @type {(choices: Snapped[], at: Point, reach: number) => Snapped | null} */
+/**
+ * The nearest within reach; of two the first.
+ *
+ * @type {(choices: Snapped[], at: Point, reach: number) => Snapped | null}
+ */
 function nearest(choices, at, reach) {
     /** @type {Snapped | null} */
     let best = null;

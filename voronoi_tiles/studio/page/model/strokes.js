@@ -2,8 +2,8 @@
 /**
  * Strokes as cubic Bezier pieces, placed, and their flattening into segments.
  *
- * The curves are those of `voronoi_tiles.designs.strokes`. What cannot be drawn yet, such as a point that is repeated, is
- * left out: the server says what is wrong with it.
+ * The curves are those of `voronoi_tiles.designs.strokes`. What cannot be drawn yet, such as a point that is repeated,
+ * is left out: the server says what is wrong with it.
  */
 
 import { pathCubics } from "./pathdata.js";
@@ -17,7 +17,16 @@ import { IDENTITY, apply, compose, factorOf, inverse, minus, plus, same, scaled,
 
 /** @type {readonly StrokeKind[]} The kinds of strokes, each the name of a stroke's own key. */
 export const KINDS = Object.freeze([
-    "point", "segment", "polyline", "bezier", "hermite", "catmull_rom", "bspline", "circle", "path", "file",
+    "point",
+    "segment",
+    "polyline",
+    "bezier",
+    "hermite",
+    "catmull_rom",
+    "bspline",
+    "circle",
+    "path",
+    "file",
 ]);
 
 /** Pieces of a circle: 12 keep to 1e-6 of the radius, and the group's turns and mirrors map them onto each other. */
@@ -74,8 +83,8 @@ export const unplace = (placement, at) => (placement === IDENTITY ? at : apply(i
 /**
  * A stroke's cubic pieces where it is placed, 8 numbers each; a straight one is p, p, q, q and a point p, p, p, p.
  *
- * All are exact but circles and arcs of ellipses, which are within 1e-6 of their radius. What cannot be drawn, as it has no
- * points yet or numbers that are none, has no pieces.
+ * All are exact but circles and arcs of ellipses, which are within 1e-6 of their radius. What cannot be drawn, as it
+ * has no points yet or numbers that are none, has no pieces.
  *
  * @param {Stroke} stroke
  * @param {Placement} [placement]
@@ -250,8 +259,8 @@ function circleCubics(centre, radius) {
 /**
  * The segments of pieces that stay within `tolerance` of them, 4 numbers each: x0, y0, x1, y1.
  *
- * Pieces are halved (de Casteljau) until each is proven flat, as `voronoi_tiles.designs.strokes.flatten` does; a point is
- * a segment whose ends are equal.
+ * Pieces are halved (de Casteljau) until each is proven flat, as `voronoi_tiles.designs.strokes.flatten` does; a point
+ * is a segment whose ends are equal.
  *
  * @param {Float64Array} cubics
  * @param {number} tolerance
@@ -293,41 +302,53 @@ function flattenPiece(piece, tolerance, depth, segments) {
  * @returns {[Piece, Piece]}
  */
 function halves([x0, y0, x1, y1, x2, y2, x3, y3]) {
-    const xa = (x0 + x1) / 2, ya = (y0 + y1) / 2;
-    const xb = (x1 + x2) / 2, yb = (y1 + y2) / 2;
-    const xc = (x2 + x3) / 2, yc = (y2 + y3) / 2;
-    const xd = (xa + xb) / 2, yd = (ya + yb) / 2;
-    const xe = (xb + xc) / 2, ye = (yb + yc) / 2;
-    const x = (xd + xe) / 2, y = (yd + ye) / 2;
+    const xa = (x0 + x1) / 2,
+        ya = (y0 + y1) / 2;
+    const xb = (x1 + x2) / 2,
+        yb = (y1 + y2) / 2;
+    const xc = (x2 + x3) / 2,
+        yc = (y2 + y3) / 2;
+    const xd = (xa + xb) / 2,
+        yd = (ya + yb) / 2;
+    const xe = (xb + xc) / 2,
+        ye = (yb + yc) / 2;
+    const x = (xd + xe) / 2,
+        y = (yd + ye) / 2;
     return [[x0, y0, xa, ya, xd, yd, x, y], [x, y, xe, ye, xc, yc, x3, y3]];
 }
 
 /**
  * Whether a piece and its chord are proven to be within `tolerance` of each other.
  *
- * The bound is that of `voronoi_tiles.designs.strokes`: 3/4 of the larger distance of the inner control points from their
- * places on the evenly run chord; only across the chord where they project into it, and 4/9 of that on different sides.
+ * The bound is that of `voronoi_tiles.designs.strokes`: 3/4 of the larger distance of the inner control points from
+ * their places on the evenly run chord; only across the chord where they project into it, and 4/9 of that on different
+ * sides.
  *
  * @param {Piece} piece
  * @param {number} tolerance
  * @returns {boolean}
  */
 function isFlat([x0, y0, x1, y1, x2, y2, x3, y3], tolerance) {
-    const cx = x3 - x0, cy = y3 - y0;
+    const cx = x3 - x0,
+        cy = y3 - y0;
     if (cx === 0 && cy === 0) return x0 === x1 && x1 === x2 && y0 === y1 && y1 === y2;
     const off = Math.max(
         square(x1 - (2 * x0 + x3) / 3, y1 - (2 * y0 + y3) / 3),
         square(x2 - (2 * x3 + x0) / 3, y2 - (2 * y3 + y0) / 3),
     );
     if (0.5625 * off <= tolerance * tolerance) return true;
-    const sx = x1 - x0, sy = y1 - y0, ex = x2 - x3, ey = y2 - y3;
+    const sx = x1 - x0,
+        sy = y1 - y0,
+        ex = x2 - x3,
+        ey = y2 - y3;
     const inside =
         sx * cx + sy * cy >= 0 &&
         ex * cx + ey * cy <= 0 &&
         (x2 - x0) * cx + (y2 - y0) * cy >= 0 &&
         (x3 - x1) * cx + (y3 - y1) * cy >= 0;
     if (!inside) return false;
-    const h1 = sx * cy - sy * cx, h2 = ex * cy - ey * cx;
+    const h1 = sx * cy - sy * cx,
+        h2 = ex * cy - ey * cx;
     const across = (h1 * h2 < 0 ? 4 / 9 : 0.75) * Math.max(Math.abs(h1), Math.abs(h2));
     return across <= tolerance * Math.sqrt(square(cx, cy));
 }

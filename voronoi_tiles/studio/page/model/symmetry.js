@@ -234,7 +234,7 @@ export function regionOf(design, tables) {
 function linesIn(lattice, { through, along: [p, q] }, box) {
     const along = cartesian(lattice, [p, q]);
     const margin = marginOf(box);
-    // The cross product of `along` with the points of a line is -det times q x - p y, to which translations add integers.
+    // The cross product of `along` with the points of a line is -det times q x - p y; translations add integers to that.
     const [low, high] = across(box, along, margin);
     const area = cellArea(lattice);
     const own = q * through[0] - p * through[1];
@@ -441,7 +441,11 @@ function liesOn(some, others, close) {
     return true;
 }
 
-/** Whether a point is near one of some segments. @type {(z: Point, segments: ArrayLike<number>, near: number) => boolean} */
+/**
+ * Whether a point is near one of some segments.
+ *
+ * @type {(z: Point, segments: ArrayLike<number>, near: number) => boolean}
+ */
 function isNear(z, segments, near) {
     for (let k = 0; k < segments.length; k += 4) {
         if (segmentDistance(z, segments, k) <= near) return true;
