@@ -193,7 +193,7 @@ test("a node put in keeps the shape of lines and Bezier curves, and lies on all 
                 if (!stroke.closed)
                     assert.deepEqual(
                         order,
-                        order.toSorted((p, q) => p - q),
+                        [...order].sort((p, q) => p - q),
                         what,
                     );
             } else {

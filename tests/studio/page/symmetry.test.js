@@ -74,7 +74,7 @@ test("skew and turned-over lattices: images, cells and folding agree with counti
             list
                 .filter(isIn)
                 .map((at) => at.map((value) => value.toFixed(6)).join())
-                .toSorted();
+                .sort();
         assert.deepEqual(key(imagesIn(lattice, point, BOX)), key(all));
         const cells = new Set(cellsIn(lattice, BOX).map(String));
         for (const at of all.filter(isIn)) assert.ok(cells.has(String(fractional(lattice, at).map(Math.floor))));
@@ -90,7 +90,7 @@ test("orbits are the images under all motions", () => {
     const [lattice, motions] = [latticeOf(own, TABLES), motionsOf(own, TABLES)];
     const orbit = orbitIn(motions, lattice, [7, 5], [-10, 0, 70, 49]);
     assert.deepEqual(
-        orbit.map(([x, y]) => [x, y]).toSorted((p, q) => p[0] - q[0]),
+        orbit.map(([x, y]) => [x, y]).sort((p, q) => p[0] - q[0]),
         [[-7, 5], [7, 5], [53, 5], [67, 5]],
     );
     assert.deepEqual(moved(motions[1], [7, 5]), [-7, 5]);

@@ -36,7 +36,7 @@ function sorted(rows) {
         const k = key(one).findIndex((value, index) => value !== key(other)[index]);
         return k < 0 ? 0 : key(one)[k] - key(other)[k];
     };
-    return rows.toSorted(before).flat();
+    return rows.sort(before).flat();
 }
 
 /** The ends of a line, the lower one first. */

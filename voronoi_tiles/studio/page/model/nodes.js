@@ -382,7 +382,7 @@ function withAnchor(stroke, node, handles) {
         const place = places[side];
         if (number >= 0 && place) changed[number] = place;
     });
-    return strokesOf(found, chains.with(index, changed))[0];
+    return strokesOf(found, chains.map((old) => (old === chain ? changed : old)))[0];
 }
 
 /**
