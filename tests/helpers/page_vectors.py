@@ -28,6 +28,9 @@ ARC_SHARE: Final = 1e-6
 CELLS: Final = {"oblique": {"a": 60.0, "b": 44.0, "angle": 77.0}, "rectangular": {"a": 60.0, "b": 50.0}}
 """Cells by system; square and hexagonal ones have a side alone."""
 
+BOXES: Final = [(-71.5, -43.25, 96.75, 88.5), (0.0, 0.0, 120.0, 60.0)]
+"""Boxes to look for symmetry elements in; many of these run along the sides of the second, or touch its corners."""
+
 PLACEMENTS: Final[list[tuple[dict[str, Any], dict[str, Any]]]] = [
     ({}, {}),
     ({"translate": [4, -2.5]}, {"rotate": 30}),
@@ -41,6 +44,7 @@ PATHS: Final = (
     "M 1 2 L 3 4 H 7 V -2 Z",
     "m1,2 3,4-5 .5e1h2v-3zl1 1",
     "M0 0C1 2 3 4 5 0S9-4 10 0 12 3 14 1s1 1 2-2",
+    "M0 0C1 2 3 4 5 0T9 1 10 3S11 4 12 0q1 1 2 0s1 2 3 1",
     "M0 0Q2 4 4 0T8 0t4 0 2 2M20,20q1 1 2 0L30 30",
     "M 0 0 A 5 3 20 0 1 8 1 A 5 3 20 1 0 8 9 a 4 4 0 0 0 1 1 a 0 3 0 0 0 1 1",
     "M 0 0 a 1 1 0 0 1 30 0 a25 25 -30 01 50 -25 z m 5 5 a 9 9 90 1 1 1e-3 0",
@@ -191,20 +195,24 @@ def _group(group: WallpaperGroup, chance: np.random.Generator) -> dict[str, Any]
     """A group over a cell: its lattice, its motions, its elements in a box, and sites in special positions."""
     cell = cell_of(group)
     lattice = group.lattice(**cell)
-    box = (-71.5, -43.25, 96.75, 88.5)
-    found = placed(symmetry_elements(group), lattice, box)
     return {
         "group": group.name,
         "cell": cell,
         "lattice": {"a": xy(lattice.a), "b": xy(lattice.b)},
         "motions": [_motion(lattice.isometry(operation)) for operation in group.operations],
-        "box": box,
-        "elements": {
-            "centres": [{"at": xy(z), "order": int(n)} for z, n in zip(found.centres, found.orders, strict=True)],
-            "mirrors": [[xy(start), xy(end)] for start, end in found.mirrors],
-            "glides": [[xy(start), xy(end)] for start, end in found.glides],
-        },
+        "elements": [_elements(group, lattice, box) for box in BOXES],
         "sites": list(_sites(group, lattice, chance)),
+    }
+
+
+def _elements(group: WallpaperGroup, lattice: Lattice, box: tuple[float, float, float, float]) -> dict[str, Any]:
+    """The symmetry elements of a group in a box."""
+    found = placed(symmetry_elements(group), lattice, box)
+    return {
+        "box": box,
+        "centres": [{"at": xy(z), "order": int(n)} for z, n in zip(found.centres, found.orders, strict=True)],
+        "mirrors": [[xy(start), xy(end)] for start, end in found.mirrors],
+        "glides": [[xy(start), xy(end)] for start, end in found.glides],
     }
 
 

@@ -70,7 +70,7 @@ def test_broken_vectors_are_seen(tmp_path: Path, expected: dict[str, Any]) -> No
     broken["strokes"][40]["cubics"][-1] *= off
     broken["flattened"][7]["segments"][-1] *= off
     broken["groups"][14]["motions"][1]["a"][1] *= off
-    broken["groups"][13]["elements"]["mirrors"][-1][1][0] *= off
+    broken["groups"][13]["elements"][0]["mirrors"][-1][1][0] *= off
     broken["groups"][-1]["sites"][-1]["operations"].pop()
     done = run_vectors(tmp_path, broken)
     assert done.returncode == 1

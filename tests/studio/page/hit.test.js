@@ -36,17 +36,20 @@ test("the nearest stroke is found, with its piece, and of two at one place the u
 
 test("a copy leads to its stroke, and to the motion that makes it", () => {
     const mirror = { a: [-1, 0], b: [0, 0], conj: true };
-    const motions = [{ a: [1, 0], b: [0, 0], conj: false }, mirror];
-    const lattice = { a: [60, 0], b: [0, 50] };
+    const quarter = { a: [0, 1], b: [0, 0], conj: false };
+    const motions = [{ a: [1, 0], b: [0, 0], conj: false }, mirror, quarter];
+    const lattice = { a: [60, 0], b: [0, 60] };
     const own = nearestCopy(entries, motions, lattice, [10.2, 5], 0.5);
     assert.deepEqual([own.ref.stroke, own.motion], [1, 0]);
     for (const [i, j] of [[0, 0], [3, -2], [-1, 4]]) {
-        const at = [-10.2 + 60 * i, 5 + 50 * j];
+        const at = [-10.2 + 60 * i, 5 + 60 * j];
         const hit = nearestCopy(entries, motions, lattice, at, 0.5);
         assert.deepEqual([hit.ref.stroke, hit.piece, hit.motion], [1, 1, 1]);
         assertNear([...hit.at, hit.distance], [10, 5, 0.2], 1e-6);
         assert.equal(nearestCopy(entries, motions, lattice, at, 0.1), null);
     }
+    const turned = nearestCopy(entries, motions, lattice, [115, 10.2], 0.5);
+    assert.deepEqual([turned.ref.stroke, turned.piece, turned.motion], [1, 1, 2]);
     assert.equal(nearestCopy([], motions, lattice, [0, 0], 1), null);
 });
 

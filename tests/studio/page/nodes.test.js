@@ -130,6 +130,10 @@ test("a handle of a smooth anchor turns the opposite one, which keeps its length
     );
     const corner = moveNodes(stroke, placementOf({}, {}), [{ node: 2, to: [7, 4] }], { alone: true });
     assert.deepEqual(moveNodes(corner, placementOf({}, {}), [{ node: 4, to: [9, 9] }], {}).bezier[2], [7, 4]);
+    // Two handles on one side are a cusp.
+    const cusp = frozen({ bezier: [[0, 0], [1, 1], [4, 4], [5, 0], [4, 4], [8, 1], [9, 0]] });
+    assert.equal(nodesOf(cusp).find(({ node }) => node === 3).smooth, false);
+    assert.deepEqual(moveNodes(cusp, placementOf({}, {}), [{ node: 2, to: [3, 3] }], {}).bezier[4], [4, 4]);
     // Round the seam of a closed chain.
     assertNear(moveNodes(STROKES[5], placementOf({}, {}), [{ node: 1, to: [0, 5] }], {}).bezier[5], [
         0,

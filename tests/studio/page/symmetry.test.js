@@ -81,7 +81,9 @@ test("skew and turned-over lattices: images, cells and folding agree with counti
         for (const at of all) assertNear(fold(lattice, at), fold(lattice, point), 1e-7);
         const short = reduced(lattice);
         assertNear([cellArea(short)], [cellArea(lattice)], 1e-9);
-        assert.ok(Math.hypot(...short.a) <= Math.hypot(...short.b));
+        const square = ([x, y]) => x * x + y * y;
+        const [one, other] = [1, -1].map((sign) => short.b.map((value, k) => value + sign * short.a[k]));
+        assert.ok(square(short.a) <= square(short.b) && square(short.b) <= Math.min(square(one), square(other)));
     }
 });
 
@@ -106,6 +108,15 @@ test("too many cells have no elements to show", () => {
     const own = design("pm", { a: 1, b: 1 });
     assert.equal(elementsIn(own, TABLES, [0.1, 0.1, 49, 49]).mirrors.length, 98);
     assert.deepEqual(elementsIn(own, TABLES, [0, 0, 60, 60]), { centres: [], mirrors: [], glides: [] });
+});
+
+test("what is an ulp outside a box is on its border", () => {
+    const own = design("pm", { a: 60, b: 50 });
+    for (const box of [[7, 1, 30 - 2 ** -48, 49], [30 + 2 ** -48, 1, 40, 49]]) {
+        assert.equal(elementsIn(own, TABLES, box).mirrors.length, 1);
+        assert.equal(imagesIn(latticeOf(own, TABLES), [30, 5], box).length, 1);
+        assert.equal(imagesIn(latticeOf(own, TABLES), [30 + 1e-9, 5], [7, 1, 30, 49]).length, 0);
+    }
 });
 
 test("a site that its mirror maps onto itself has one copy, however its lines are divided", () => {
