@@ -112,7 +112,7 @@ def test_touching_copies_are_seen(tables: dict[str, Any]) -> None:
         for line, _ in lines.values()
     ]
     wanted = [touches for _, touches in lines.values()]
-    assert call("regroup.js", "copiesTouch", [[design, tables] for design in designs]) == wanted
+    assert call("touching.js", "copiesTouch", [[design, tables] for design in designs]) == wanted
     for design, touches in zip(designs, wanted, strict=True):
         if touches:
             with pytest.raises(vt.TouchingCopiesError):

@@ -16,7 +16,7 @@ import {
     placementOf,
     unplace,
 } from "../../../voronoi_tiles/studio/page/model/strokes.js";
-import { segmentDistance } from "../../../voronoi_tiles/studio/page/model/symmetry.js";
+import { segmentDistance } from "../../../voronoi_tiles/studio/page/model/segments.js";
 import { PLACEMENTS, STROKES, assertNear, random } from "./helpers.js";
 
 test("every kind is known by its key", () => {

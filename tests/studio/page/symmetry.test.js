@@ -4,20 +4,22 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { apply, compose, inverse, unitAt } from "../../../voronoi_tiles/studio/page/model/plane.js";
+import { cosets } from "../../../voronoi_tiles/studio/page/model/copies.js";
 import {
     cartesian,
     cellArea,
     cellsIn,
-    cosets,
-    elementsIn,
     fold,
     fractional,
     imagesIn,
+    orbitIn,
+    reduced,
+} from "../../../voronoi_tiles/studio/page/model/lattice.js";
+import {
+    elementsIn,
     latticeOf,
     motionsOf,
     moved,
-    orbitIn,
-    reduced,
     regionOf,
 } from "../../../voronoi_tiles/studio/page/model/symmetry.js";
 import { assertNear, random } from "./helpers.js";

@@ -1,7 +1,7 @@
 // @ts-check
-/** Strokes as chains of cubic Bezier pieces, before they are placed, and what is made of changed chains. */
+/** Strokes as chains of cubic Bezier pieces, before they are placed: anchors and handles, and strokes made of them. */
 
-import { same } from "./plane.js";
+import { cross, dot, length, minus, same } from "./plane.js";
 import { cubicsOf, kindOf } from "./strokes.js";
 
 /** @typedef {import("./plane.js").Point} Point */
@@ -91,4 +91,40 @@ function command([start, first, second, end]) {
 /** The pieces of a chain, 4 control points each. @type {(chain: Chain) => Point[][]} */
 export function pieces(chain) {
     return Array.from({ length: (chain.length - 1) / 3 }, (_, k) => chain.slice(3 * k, 3 * k + 4));
+}
+
+/** The sine of an angle that is none, between the two handles of a smooth anchor. */
+const STRAIGHT = 1e-6;
+
+/**
+ * The number of a control point's anchor; the last one of a closed chain is the first.
+ *
+ * @type {(chain: Chain, k: number) => number}
+ */
+export function anchorOf(chain, k) {
+    const anchor = 3 * Math.round(k / 3);
+    return anchor === chain.length - 1 && isClosed(chain) ? 0 : anchor;
+}
+
+/**
+ * The numbers of the handles before and after an anchor, -1 for one that there is not.
+ *
+ * @type {(c: Chain, k: number) => [number, number]}
+ */
+export function handlesOf(chain, anchor) {
+    const closed = isClosed(chain);
+    const before = anchor > 0 ? anchor - 1 : closed ? chain.length - 2 : -1;
+    return [before, anchor < chain.length - 1 ? anchor + 1 : -1];
+}
+
+/**
+ * Whether both handles of an anchor are there, and point opposite ways.
+ *
+ * @type {(chain: Chain, anchor: number) => boolean}
+ */
+export function isSmooth(chain, anchor) {
+    const [before, after] = handlesOf(chain, anchor).map((k) => (k < 0 ? null : minus(chain[k], chain[anchor])));
+    if (!before || !after) return false;
+    const sizes = length(before) * length(after);
+    return sizes > 0 && dot(before, after) < 0 && Math.abs(cross(before, after)) <= STRAIGHT * sizes;
 }

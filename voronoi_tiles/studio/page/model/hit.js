@@ -3,7 +3,8 @@
 
 import { apply, distance, inverse } from "./plane.js";
 import { nearestOn } from "./nearest.js";
-import { boxOf, imagesIn } from "./symmetry.js";
+import { imagesIn } from "./lattice.js";
+import { boxOf } from "./segments.js";
 
 /** @typedef {import("./plane.js").Point} Point */
 /** @typedef {import("./plane.js").Box} Box left, bottom, right, top */
@@ -11,7 +12,7 @@ import { boxOf, imagesIn } from "./symmetry.js";
 /** @typedef {import("./design.js").NodeRef} NodeRef */
 /** @typedef {import("./nodes.js").Node} Node */
 /** @typedef {import("./symmetry.js").Motion} Motion */
-/** @typedef {import("./symmetry.js").Lattice} Lattice */
+/** @typedef {import("./lattice.js").Lattice} Lattice */
 
 /** @typedef {Node & {ref: Ref}} OwnedNode a node with the reference of its stroke */
 /** @typedef {{ref: Ref, cubics: Float64Array}} Drawn a stroke with its pieces where it is placed */

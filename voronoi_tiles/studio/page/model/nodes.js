@@ -7,14 +7,15 @@
  * lies on its anchor is no node. Nodes are in the drawing's coordinates, strokes before their placement.
  */
 
-import { asBezier, chainsOf, isClosed, strokesOf } from "./chains.js";
+import { anchorOf, asBezier, chainsOf, handlesOf, isSmooth, strokesOf } from "./chains.js";
 import { mapPoints } from "./design.js";
-import { IDENTITY, apply, cross, dot, inverse, length, minus, plus, same, scaled, tidySum, turned } from "./plane.js";
-import { kindOf, pointsOf, radiusOf, unplace } from "./strokes.js";
+import { IDENTITY, apply, inverse, length, minus, plus, same, scaled, tidySum, turned } from "./plane.js";
+import { kindOf, pointsOf, radiusOf, tangentsOf } from "./strokes.js";
 
 export { asBezier } from "./chains.js";
-export { deleteNodes, insertNode } from "./reshaping.js";
+export { penStroke, pullHandles, toggleSmooth } from "./handles.js";
 export { nearestOn } from "./nearest.js";
+export { deleteNodes, insertNode } from "./reshaping.js";
 
 /** @typedef {import("./plane.js").Point} Point */
 /** @typedef {import("./chains.js").Chain} Chain */
@@ -31,9 +32,6 @@ export { nearestOn } from "./nearest.js";
  */
 
 /** @typedef {Readonly<{node: number, to: Point}>} Move */
-
-/** The sine of an angle that is none, between the two handles of a smooth anchor. */
-const STRAIGHT = 1e-6;
 
 /**
  * The nodes of a stroke where it is placed, in the order of their numbers.
@@ -102,39 +100,6 @@ function chainNodes(chains, placement) {
             return [{ node: offset + k, role, at, of: offset + anchor, smooth: isSmooth(chain, anchor) }];
         });
     });
-}
-
-/**
- * The number of a control point's anchor; the last one of a closed chain is the first.
- *
- * @type {(chain: Chain, k: number) => number}
- */
-function anchorOf(chain, k) {
-    const anchor = 3 * Math.round(k / 3);
-    return anchor === chain.length - 1 && isClosed(chain) ? 0 : anchor;
-}
-
-/**
- * The numbers of the handles before and after an anchor, -1 for one that there is not.
- *
- * @type {(c: Chain, k: number) => [number, number]}
- */
-function handlesOf(chain, anchor) {
-    const closed = isClosed(chain);
-    const before = anchor > 0 ? anchor - 1 : closed ? chain.length - 2 : -1;
-    return [before, anchor < chain.length - 1 ? anchor + 1 : -1];
-}
-
-/**
- * Whether both handles of an anchor are there, and point opposite ways.
- *
- * @type {(chain: Chain, anchor: number) => boolean}
- */
-function isSmooth(chain, anchor) {
-    const [before, after] = handlesOf(chain, anchor).map((k) => (k < 0 ? null : minus(chain[k], chain[anchor])));
-    if (!before || !after) return false;
-    const sizes = length(before) * length(after);
-    return sizes > 0 && dot(before, after) < 0 && Math.abs(cross(before, after)) <= STRAIGHT * sizes;
 }
 
 /**
@@ -228,9 +193,6 @@ function hasSeam(stroke) {
     return last > 0 && same(points[0], points[last]) && !same(tangents[0], tangents[last]);
 }
 
-/** The tangents of a `hermite` stroke, one for each point. @type {(stroke: Stroke) => Point[]} */
-const tangentsOf = (stroke) => pointsOf(stroke).map((_, k) => stroke.tangents?.[k] ?? [0, 0]);
-
 /**
  * A stroke of chains with some nodes moved.
  *
@@ -283,152 +245,4 @@ function opposite(anchor, handle, size) {
     const direction = minus(anchor, handle);
     const own = length(direction);
     return own ? plus(anchor, scaled(direction, size / own)) : anchor;
-}
-
-/**
- * A stroke with one anchor's handles pulled out to a point of the drawing, the other one opposite.
- *
- * Straight lines become a `bezier`; curves through points alone, circles and drawings stay as they are.
- *
- * @param {Stroke} stroke
- * @param {Placement} placement
- * @param {number} node
- * @param {Point} to
- * @returns {Stroke}
- */
-export function pullHandles(stroke, placement, node, to) {
-    const handle = unplace(placement, to);
-    return withAnchor(stroke, node, (chain, anchor) => {
-        const [before, after] = handlesOf(chain, anchor);
-        const other = minus(scaled(chain[anchor], 2), handle);
-        // At the end of an open chain the handle before is the one in the hand.
-        return after < 0 ? [handle, null] : [before < 0 ? null : other, handle];
-    });
-}
-
-/**
- * A stroke with a smooth anchor made a corner, its handles gone; or a corner smooth.
- *
- * Straight lines become a `bezier`; curves through points alone, circles and drawings stay as they are.
- *
- * @param {Stroke} stroke
- * @param {number} node
- * @returns {Stroke}
- */
-export function toggleSmooth(stroke, node) {
-    return withAnchor(stroke, node, (chain, anchor) => {
-        const at = chain[anchor];
-        const [before, after] = handlesOf(chain, anchor);
-        const hasHandles = [before, after].some((k) => k >= 0 && !same(chain[k], at));
-        if (isSmooth(chain, anchor) || (hasHandles && (before < 0 || after < 0))) return [at, at];
-        return smoothHandles(chain, anchor);
-    });
-}
-
-/**
- * Handles of an anchor that make it smooth: along the line from the anchor before to the one after, a third of the way
- * to each long; handles that are there keep their lengths.
- *
- * @param {Chain} chain
- * @param {number} anchor
- * @returns {[Point | null, Point | null]}
- */
-function smoothHandles(chain, anchor) {
-    const at = chain[anchor];
-    const [before, after] = handlesOf(chain, anchor);
-    const previous = before < 0 ? at : chain[before - 2];
-    const next = after < 0 ? at : chain[after + 2];
-    const along = minus(next, previous);
-    // A chain that turns back: across.
-    const direction = same(along, [0, 0]) ? /** @type {Point} */ ([at[1] - next[1], next[0] - at[0]]) : along;
-    const unit = scaled(direction, 1 / (length(direction) || 1));
-    const size = (/** @type {number} */ handle, /** @type {Point} */ neighbour) =>
-        length(minus(chain[handle], at)) || length(minus(neighbour, at)) / 3;
-    return [
-        before < 0 ? null : plus(at, scaled(unit, -size(before, previous))),
-        after < 0 ? null : plus(at, scaled(unit, size(after, next))),
-    ];
-}
-
-/**
- * A stroke with the handles of one anchor set, before and after it; null leaves one as it is.
- *
- * @param {Stroke} stroke
- * @param {number} node
- * @param {(chain: Chain, anchor: number) => [Point | null, Point | null]} handles
- * @returns {Stroke}
- */
-function withAnchor(stroke, node, handles) {
-    const kind = kindOf(stroke);
-    const straight = kind === "segment" || kind === "polyline";
-    const found = straight ? asBezier(stroke)[0] : stroke;
-    if (!found || !(straight || kind === "bezier" || kind === "hermite" || kind === "path")) return stroke;
-    let offset = 0;
-    const wanted = straight ? 3 * node : node;
-    const chains = chainsOf(found);
-    const index = chains.findIndex((chain) => {
-        if (wanted < offset + chain.length) return true;
-        offset += chain.length;
-        return false;
-    });
-    if (index < 0) return stroke;
-    const chain = chains[index];
-    const anchor = anchorOf(chain, wanted - offset);
-    const numbers = handlesOf(chain, anchor);
-    const places = handles(chain, anchor);
-    if (kind === "hermite") return withTangent(stroke, anchor / 3, chain[anchor], places);
-    const changed = [...chain];
-    numbers.forEach((number, side) => {
-        const place = places[side];
-        if (number >= 0 && place) changed[number] = place;
-    });
-    return strokesOf(found, chains.map((old) => (old === chain ? changed : old)))[0];
-}
-
-/**
- * A `hermite` stroke with the tangent at one point taken from its handles.
- *
- * @param {Stroke} stroke
- * @param {number} index
- * @param {Point} at
- * @param {[Point | null, Point | null]} handles
- * @returns {Stroke}
- */
-function withTangent(stroke, index, at, [before, after]) {
-    const points = pointsOf(stroke);
-    const isTwin = (/** @type {number} */ k) => index === 0 && k === points.length - 1 && same(points[k], points[0]);
-    const tangent = after ? scaled(minus(after, at), 3) : scaled(minus(at, before ?? at), 3);
-    return { ...stroke, tangents: tangentsOf(stroke).map((old, k) => (k === index || isTwin(k) ? tangent : old)) };
-}
-
-/**
- * @typedef {object} PenPoint a point with its handles, as vectors from it, in the drawing
- * @property {Point} at
- * @property {Point} in
- * @property {Point} out
- */
-
-/**
- * The stroke of the pen: `hermite` while the handles of each point are opposite and as long, else `bezier`.
- *
- * @param {readonly PenPoint[]} points
- * @param {Placement} placement
- * @returns {Stroke}
- */
-export function penStroke(points, placement) {
-    const back = inverse(placement);
-    const own = points.map((point) => ({
-        at: unplace(placement, point.at),
-        before: turned(back, point.in),
-        after: turned(back, point.out),
-    }));
-    const last = own.length - 1;
-    const isEven = points.every((point, k) => k === 0 || k === last || same(point.in, scaled(point.out, -1)));
-    const closes = last > 0 && same(points[0].at, points[last].at);
-    if (isEven && (!closes || same(points[last].in, scaled(points[0].out, -1)))) {
-        const tangents = own.map(({ before, after }, k) => scaled(k < last ? after : scaled(before, -1), 3));
-        return { hermite: own.map(({ at }) => at), tangents };
-    }
-    const chain = own.flatMap(({ at, before, after }) => [plus(at, before), at, plus(at, after)]);
-    return { bezier: chain.slice(1, -1) };
 }

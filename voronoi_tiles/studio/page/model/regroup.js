@@ -2,36 +2,17 @@
 /** Another group for the same drawing: its cell, and the drawing laid into that where its copies would touch. */
 
 import { between, cross, dot, length, minus, plus, scaled, tidyProduct, tidySum } from "./plane.js";
-import { cubicsOf, flatten, placementOf } from "./strokes.js";
-import {
-    boxOf,
-    cellArea,
-    cosets,
-    groupOf,
-    latticeOf,
-    mapped,
-    motionsOf,
-    reduced,
-    regionOf,
-    segmentDistance,
-} from "./symmetry.js";
+import { groupOf, latticeOf, regionOf } from "./symmetry.js";
+import { copiesTouch, segmentsOf } from "./touching.js";
 
 /** @typedef {import("./plane.js").Point} Point */
 /** @typedef {import("./design.js").Cell} Cell */
 /** @typedef {import("./design.js").Design} Design */
 /** @typedef {import("./design.js").Site} Site */
-/** @typedef {import("./symmetry.js").Lattice} Lattice */
-/** @typedef {import("./symmetry.js").Motion} Motion */
 /** @typedef {import("./symmetry.js").Tables} Tables */
-
-/** How far apart copies must be to stay; relative to a. */
-const APART = 2e-3;
 
 /** The share of an asymmetric unit's width that is left free along each of its sides. */
 const BORDER = 0.06;
-
-/** How exactly strokes are flattened to look for copies that touch; relative to a. */
-const FLATTENING = 1e-3;
 
 /** How often the size of the drawing is halved in on. */
 const STEPS = 40;
@@ -85,136 +66,6 @@ function cellNote(before, after) {
         ...(come.length ? [`Free now: ${come.map((key) => `${key} = ${after[key]}`).join(", ")}.`] : []),
         ...(gone.length ? [`Fixed now: ${gone.join(" and ")}.`] : []),
     ].join(" ");
-}
-
-/**
- * Whether copies of a design's sites touch, or nearly so.
- *
- * @param {Design} design
- * @param {Tables} tables
- * @param {Readonly<Record<string, string>>} [resolved]
- * @returns {boolean}
- */
-export function copiesTouch(design, tables, resolved = {}) {
-    const lattice = latticeOf(design, tables);
-    const motions = motionsOf(design, tables);
-    const sites = design.site.map((_, k) => segmentsOf(design, k, resolved)).filter((segments) => segments.length);
-    const apart = APART * length(lattice.a);
-    const copies = sites.map((segments) => cosets(motions, lattice, segments).map((k) => mapped(motions[k], segments)));
-    return sites.some((segments, one) =>
-        copies
-            .slice(one)
-            .some((images, other) =>
-                images.some((image, k) => imageTouches(segments, image, lattice, apart, other === 0 && k === 0)),
-            ),
-    );
-}
-
-/**
- * A site's segments, coarse.
- *
- * @type {(d: Design, k: number, resolved: Readonly<Record<string, string>>) => Float64Array}
- */
-function segmentsOf(design, k, resolved) {
-    const site = design.site[k];
-    const parts = site.strokes.map((stroke, n) => [
-        ...flatten(cubicsOf(stroke, placementOf(site, stroke), resolved[`${k}.${n}`]), FLATTENING * design.cell.a),
-    ]);
-    return Float64Array.from(parts.flat());
-}
-
-/**
- * Whether segments are nearer than `apart` to a translate of an image of theirs, or of another site's.
- *
- * @param {Float64Array} segments
- * @param {Float64Array} image
- * @param {Lattice} lattice
- * @param {number} apart
- * @param {boolean} isItself whether the image is the segments, so that the zero translation does not count
- * @returns {boolean}
- */
-function imageTouches(segments, image, lattice, apart, isItself) {
-    const [left, bottom, right, top] = boxOf(segments);
-    const box = boxOf(image);
-    // Translations t with which the image's box, moved by t, meets that of the segments.
-    const window = /** @type {const} */ ([
-        left - box[2] - apart,
-        bottom - box[3] - apart,
-        right - box[0] + apart,
-        top - box[1] + apart,
-    ]);
-    return translationsIn(lattice, [...window]).some((t) => {
-        if (isItself && t[0] === 0 && t[1] === 0) return false;
-        return segmentsTouch(segments, mapped({ a: [1, 0], b: t, conj: false }, image), apart);
-    });
-}
-
-/** The vectors of a lattice in a box. @type {(lattice: Lattice, box: import("./plane.js").Box) => Point[]} */
-function translationsIn(lattice, [x0, y0, x1, y1]) {
-    const { a, b } = reduced(lattice);
-    const middle = /** @type {Point} */ ([(x0 + x1) / 2, (y0 + y1) / 2]);
-    const reach = Math.hypot(x1 - x0, y1 - y0) / 2;
-    const height = cellArea({ a, b }) / length(a);
-    const width = cellArea({ a, b }) / length(b);
-    const [s, t] = [cross(middle, b) / cross(a, b), cross(a, middle) / cross(a, b)];
-    /** @type {Point[]} */
-    const found = [];
-    for (let j = Math.ceil(t - reach / height); j <= t + reach / height; j++) {
-        for (let i = Math.ceil(s - reach / width); i <= s + reach / width; i++) {
-            const [x, y] = plus(scaled(a, i), scaled(b, j));
-            if (x0 <= x && x <= x1 && y0 <= y && y <= y1) found.push([x, y]);
-        }
-    }
-    return found;
-}
-
-/**
- * Whether some segments come near others.
- *
- * @type {(some: Float64Array, others: Float64Array, apart: number) => boolean}
- */
-function segmentsTouch(some, others, apart) {
-    for (let i = 0; i < some.length; i += 4) {
-        for (let j = 0; j < others.length; j += 4) {
-            if (boxesApart(some, i, others, j) > apart) continue;
-            if (segmentsCross(some, i, others, j)) return true;
-            const nearest = Math.min(
-                segmentDistance([some[i], some[i + 1]], others, j),
-                segmentDistance([some[i + 2], some[i + 3]], others, j),
-                segmentDistance([others[j], others[j + 1]], some, i),
-                segmentDistance([others[j + 2], others[j + 3]], some, i),
-            );
-            if (nearest <= apart) return true;
-        }
-    }
-    return false;
-}
-
-/**
- * How far the boxes of two segments are apart along an axis.
- *
- * @type {(p: Float64Array, i: number, q: Float64Array, j: number) => number}
- */
-function boxesApart(p, i, q, j) {
-    const along = (/** @type {number} */ k) =>
-        Math.max(
-            Math.min(p[i + k], p[i + k + 2]) - Math.max(q[j + k], q[j + k + 2]),
-            Math.min(q[j + k], q[j + k + 2]) - Math.max(p[i + k], p[i + k + 2]),
-        );
-    return Math.max(along(0), along(1));
-}
-
-/** Whether two segments cross. @type {(p: Float64Array, i: number, q: Float64Array, j: number) => boolean} */
-function segmentsCross(p, i, q, j) {
-    const [a, b, c, d] = /** @type {Point[]} */ ([
-        [p[i], p[i + 1]],
-        [p[i + 2], p[i + 3]],
-        [q[j], q[j + 1]],
-        [q[j + 2], q[j + 3]],
-    ]);
-    const side = (/** @type {Point} */ from, /** @type {Point} */ to, /** @type {Point} */ at) =>
-        cross(minus(to, from), minus(at, from));
-    return side(a, b, c) * side(a, b, d) < 0 && side(c, d, a) * side(c, d, b) < 0;
 }
 
 /**

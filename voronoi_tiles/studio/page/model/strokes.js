@@ -55,6 +55,12 @@ function pointsIn(list) {
     return Array.isArray(list) && list.every(isPoint) ? list : [];
 }
 
+/** The tangents of a `hermite` stroke, one for each point. @type {(stroke: Stroke) => Point[]} */
+export function tangentsOf(stroke) {
+    const tangents = pointsIn(stroke.tangents);
+    return pointsOf(stroke).map((_, k) => tangents[k] ?? [0, 0]);
+}
+
 /**
  * What `mirror`, `scale`, `rotate` and `translate` of a table do, in this order about the origin.
  *

@@ -1,0 +1,156 @@
+// @ts-check
+/** Lattices of the plane: their cells, and the images of points under them. */
+
+import { apply, cross, dot, length, minus, plus, scaled } from "./plane.js";
+import { boxOf } from "./segments.js";
+
+/** @typedef {import("./plane.js").Point} Point */
+/** @typedef {import("./plane.js").Box} Box */
+/** @typedef {import("./plane.js").Similarity} Similarity */
+
+/** @typedef {{a: Point, b: Point}} Lattice all i a + j b with integers i, j; b to the left of a, which lies along x */
+
+/** How far outside a box counts as on its border, in ulps of its largest coordinate. */
+const BORDER = 64 * 2 ** -52;
+
+/** The sine of an angle that is none. */
+const PARALLEL = 4 * 2 ** -52;
+
+/** The area of the cell. @type {(lattice: Lattice) => number} */
+export const cellArea = ({ a, b }) => cross(a, b);
+
+/** The point of fractional coordinates. @type {(lattice: Lattice, at: Point) => Point} */
+export const cartesian = ({ a, b }, [x, y]) => plus(scaled(a, x), scaled(b, y));
+
+/** The fractional coordinates of a point. @type {(lattice: Lattice, z: Point) => Point} */
+export const fractional = ({ a, b }, z) => scaled([cross(z, b), cross(a, z)], 1 / cross(a, b));
+
+/**
+ * The image of a point under the lattice that is in the cell at the origin.
+ *
+ * @param {Lattice} lattice
+ * @param {Point} z
+ * @returns {Point}
+ */
+export function fold(lattice, z) {
+    const [x, y] = fractional(lattice, z);
+    return minus(z, cartesian(lattice, [Math.floor(x), Math.floor(y)]));
+}
+
+/**
+ * The cells that can meet a box, by the integers i and j of their corners i a + j b.
+ *
+ * @param {Lattice} lattice
+ * @param {Box} box
+ * @returns {[number, number][]}
+ */
+export function cellsIn(lattice, [x0, y0, x1, y1]) {
+    const corners = /** @type {Point[]} */ ([[x0, y0], [x1, y0], [x0, y1], [x1, y1]]);
+    const [left, bottom, right, top] = boxOf(corners.flatMap((corner) => fractional(lattice, corner)));
+    /** @type {[number, number][]} */
+    const cells = [];
+    for (let j = Math.floor(bottom); j <= top; j++) {
+        for (let i = Math.floor(left); i <= right; i++) cells.push([i, j]);
+    }
+    return cells;
+}
+
+/**
+ * The shortest basis of a lattice, |a| <= |b|. Source: Lagrange, Gauss.
+ *
+ * @param {Lattice} lattice
+ * @returns {Lattice}
+ */
+export function reduced({ a, b }) {
+    let [u, v] = length(a) > length(b) ? [b, scaled(a, -1)] : [a, b];
+    // Each step shortens v by a factor, or is the last.
+    for (let step = 0; step < 2000; step++) {
+        v = minus(v, scaled(u, Math.round(dot(u, v) / dot(u, u))));
+        if (length(u) <= length(v)) break;
+        [u, v] = [v, scaled(u, -1)];
+    }
+    return { a: u, b: v };
+}
+
+/**
+ * The images of a point under the lattice in a box, its border included.
+ *
+ * They stand in rows along the shorter vector of the reduced basis, so that few rows have none.
+ *
+ * @param {Lattice} lattice
+ * @param {Point} point
+ * @param {Box} box
+ * @returns {Point[]}
+ */
+export function imagesIn(lattice, point, box) {
+    const { a: u, b: v } = reduced(lattice);
+    const margin = marginOf(box);
+    const [low, high] = across(box, u, margin);
+    const own = cross(u, point);
+    const step = cross(u, v);
+    /** @type {Point[]} */
+    const images = [];
+    for (let row = Math.ceil((low - own) / step); row <= Math.floor((high - own) / step); row++) {
+        const start = plus(point, scaled(v, row));
+        const [first, last] = clip(box, start, u, margin, margin);
+        for (let k = Math.ceil(first); k <= Math.floor(last); k++) images.push(plus(start, scaled(u, k)));
+    }
+    return images;
+}
+
+/**
+ * All images of a point under the group in a box.
+ *
+ * @param {Similarity[]} motions
+ * @param {Lattice} lattice
+ * @param {Point} point
+ * @param {Box} box
+ * @returns {Point[]}
+ */
+export function orbitIn(motions, lattice, point, box) {
+    return motions.flatMap((motion) => imagesIn(lattice, apply(motion, point), box));
+}
+
+/** The length that counts as nothing in a box. @type {(box: Box) => number} */
+export const marginOf = (box) => BORDER * Math.max(...box.map(Math.abs));
+
+/**
+ * The least and the greatest cross product of a direction with a point of a box.
+ *
+ * @param {Box} box
+ * @param {Point} direction
+ * @param {number} margin
+ * @returns {[number, number]}
+ */
+export function across([x0, y0, x1, y1], [dx, dy], margin) {
+    const slack = margin * Math.hypot(dx, dy);
+    const [ys, xs] = [[dx * y0, dx * y1], [dy * x0, dy * x1]];
+    return [Math.min(...ys) - Math.max(...xs) - slack, Math.max(...ys) - Math.min(...xs) + slack];
+}
+
+/**
+ * The range of s in which start + s direction is at most `slack` outside a box; first > last where it never is.
+ *
+ * What runs along a side may be outside by the margin.
+ *
+ * @param {Box} box
+ * @param {Point} start
+ * @param {Point} direction
+ * @param {number} margin
+ * @param {number} slack
+ * @returns {[number, number]}
+ */
+export function clip(box, start, direction, margin, slack) {
+    let [first, last] = [-Infinity, Infinity];
+    for (const side of [0, 1]) {
+        const [low, high, from, step] = [box[side], box[side + 2], start[side], direction[side]];
+        if (Math.abs(step) <= PARALLEL * length(direction)) {
+            if (from < low - margin || from > high + margin) last = -Infinity;
+        } else {
+            const ends = [(low - slack - from) / step, (high + slack - from) / step];
+            first = Math.max(first, Math.min(...ends));
+            last = Math.min(last, Math.max(...ends));
+        }
+    }
+    return [first, last];
+}
