@@ -75,10 +75,10 @@ def test_a_users_preset_changes_single_keys(tmp_path: Path) -> None:
     file = tmp_path / "lab.toml"
     file.write_text(
         'extends = "redcut"\nstroke = 0.1\ncolours = { cut = "#FF00FE" }\ncurves = { dxf = "spline" }\n'
-        'unread = { dxf = "svg" }\n'
+        'unread = { dxf = "svg" }\ntitle = "The laser of our lab"\n'
     )
     preset, base = load_preset(str(file)), load_preset("redcut")
-    assert preset.name == "lab"
+    assert (preset.name, preset.title) == ("lab", "The laser of our lab")
     assert preset.colours == {**base.colours, "cut": "#ff00fe"}
     assert preset.palette == base.palette
     assert (preset.stroke, preset.svg_curves, preset.dxf_curves) == (0.1, base.svg_curves, "spline")
@@ -99,6 +99,7 @@ def test_an_unknown_name_is_refused(name: str) -> None:
     ("text", "key", "message"),
     [
         ("strok = 1", None, r'unknown key .strok.\. Did you mean "stroke"\?'),
+        ("title = 3", "title", "must be a text"),
         ("stroke = 0", "stroke", "must be greater than 0"),
         ("stroke = 11", "stroke", "at most 10"),
         ("stroke = true", "stroke", "must be a number, not true"),

@@ -29,14 +29,24 @@ ROLES: Final[tuple[Role, ...]] = get_args(Role)
 FORMATS: Final[tuple[Format, ...]] = get_args(Format)
 DEFAULT: Final = "plain"
 
-_KEYS: Final = ("colours", "stroke", "stroke_kerf", "layers", "dxf_layers", "curves", "unread", "fill_engraving")
+_KEYS: Final = (
+    "title",
+    "colours",
+    "stroke",
+    "stroke_kerf",
+    "layers",
+    "dxf_layers",
+    "curves",
+    "unread",
+    "fill_engraving",
+)
 _TABLES: Final = ("colours", "layers", "dxf_layers", "curves")
 _STROKE_MAX: Final = 10.0  # a line of more millimetres hides what it draws
 
 
 @dataclass(frozen=True)
 class Preset:
-    """What a fabrication target takes.
+    """What a fabrication target takes; `title` says in a line which one that is.
 
     `colours` ("#rrggbb"), `layers` and `dxf_layers` (names) have an entry for each of ROLES: cuts around pieces, cuts
     inside them, scores, engraving. `palette` are the colours of further layers of cuts. `stroke` is the width of lines
@@ -46,6 +56,7 @@ class Preset:
     """
 
     name: str
+    title: str
     colours: Mapping[Role, str]
     palette: tuple[str, ...]
     stroke: float
@@ -84,6 +95,11 @@ def load_preset(name_or_path: str) -> Preset:
     if name_or_path.lower().endswith(".toml"):
         return _load_file(name_or_path)
     return _read(name_or_path, _known(name_or_path, "preset"))
+
+
+def preset_names() -> tuple[str, ...]:
+    """The names of the presets that are built in."""
+    return tuple(_built_in())
 
 
 @cache
@@ -145,6 +161,7 @@ def _read(name: str, values: Mapping[str, Any]) -> Preset:
         dxf = _at("dxf", lambda value: _choice(value, get_args(DxfCurves)), curves["dxf"])
     return Preset(
         name=name,
+        title=_at("title", _text, values["title"]),
         colours=chosen,
         palette=palette,
         stroke=_at("stroke", _width, values["stroke"]),
