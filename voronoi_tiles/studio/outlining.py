@@ -1,0 +1,149 @@
+"""From a design of the page to the exact outlines that it draws, as fast as the pointer moves."""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import lru_cache
+from typing import Any, Final
+
+from voronoi_tiles.base.errors import TouchingCopiesError
+from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.base.tolerance import FLATTENING_MM
+from voronoi_tiles.base.units import UNIT_MM
+from voronoi_tiles.base.values import is_number
+from voronoi_tiles.designs.design import Design
+from voronoi_tiles.formats.svg.path_text import path_data
+from voronoi_tiles.groups.wallpaper import WallpaperGroup
+from voronoi_tiles.studio.page_colouring import Colourist
+from voronoi_tiles.vector.outline import Outline
+from voronoi_tiles.vector.proof import prove, proved_tiles
+from voronoi_tiles.vector.tessellation import TileRecord, tessellate
+
+PROOF_S: Final = 0.016
+"""What engine and proof may take together for outlines to be proved while the pointer moves: a frame of a display."""
+
+_FADING: Final = 0.9
+"""How what a slow proof took fades with each outline that is not proved: a busy machine may have been to blame."""
+
+
+@dataclass
+class Outliner:
+    """Outlines of one design after the other; `proof_s` is what the last proof took for each edge, in seconds."""
+
+    proof_s: float = 0.0
+    colourist: Colourist = field(default_factory=Colourist)
+
+    def outline(self, rev: int, design: Mapping[str, Any], *, rest: bool, tolerance: float | None) -> dict[str, Any]:
+        """The message "outline" of a design: proved at rest, and while the pointer moves where that is quick enough.
+
+        Strokes are flattened within `tolerance` while the pointer moves, in the coordinates of the drawing; None is as
+        the design says. Raises DesignError, TouchingCopiesError and ProofError.
+        """
+        begun = time.perf_counter()
+        if rest or tolerance is None:
+            read = Design.from_dict(design)
+            tiles, proved = self._tiles(read, rest)
+        else:
+            read = Design.from_dict(coarser(design, tolerance))
+            try:
+                tiles, proved = self._tiles(read, rest)
+            except TouchingCopiesError:  # perhaps as they are flattened, and not as they are drawn
+                read = Design.from_dict(design)
+                tiles, proved = self._tiles(read, rest)
+        documents = [tile_document(tile, read.group) for tile in tiles]
+        colouring = {}
+        if rest:  # the page keeps the last one meanwhile
+            operations = [document["operations"] for document in documents]
+            colouring = {"colouring": self.colourist.colour(tiles[0].tessellation, operations)}
+        return {
+            "type": "outline",
+            "rev": rev,
+            "proved": proved,
+            "scale": read.scale,
+            "tiles": documents,
+            "resolved": resolved(read),
+            **colouring,
+            "ms": round(1000 * (time.perf_counter() - begun), 3),
+        }
+
+    def _tiles(self, design: Design, rest: bool) -> tuple[list[TileRecord], bool]:
+        """The tiles of a design, and whether they are proved."""
+        begun = time.perf_counter()
+        tiles = tessellate(design.noded, design.group, design.lattice)
+        now = time.perf_counter()
+        edges = sum(len(tile.outline) for tile in tiles)
+        if not rest and now - begun + self.proof_s * edges > PROOF_S:
+            self.proof_s *= _FADING
+            return tiles, False
+        passed = prove(design.group, design.lattice, tiles).passed
+        self.proof_s = (time.perf_counter() - now) / edges
+        if not passed:  # once more, as designs are tessellated that are not shown but written
+            tiles, _ = proved_tiles(design.noded, design.group, design.lattice)
+        return tiles, True
+
+
+def coarser(design: Mapping[str, Any], tolerance: float) -> Mapping[str, Any]:
+    """A design, not checked yet, whose strokes are flattened within a tolerance at least; before its `scale`."""
+    sites, scale = design.get("site"), design.get("scale", 1.0)
+    if not (isinstance(sites, list) and is_number(scale)):
+        return design
+    unit_mm = {str(name): size for name, size in UNIT_MM.items()}.get(str(design.get("units")), 1.0)
+    found = []
+    for site in sites:
+        own: Any = site.get("tolerance", FLATTENING_MM / unit_mm) if isinstance(site, Mapping) else None
+        found.append({**site, "tolerance": max(own, tolerance * scale)} if is_number(own) and own > 0.0 else site)
+    return {**design, "site": found}
+
+
+def tile_document(tile: TileRecord, group: WallpaperGroup) -> dict[str, Any]:
+    """A tile as the page draws it: its path, y up, and the operations that take it to its copies in a cell."""
+    outline = tile.outline
+    left, bottom, right, top = outline.bounds
+    operations = cosets(group, tile.symmetry)
+    return {
+        "site": tile.name,
+        "path": path_of(outline),
+        "area": outline.area,
+        "edges": len(outline),
+        "neighbours": len(outline.neighbours),
+        "width": right - left,
+        "height": top - bottom,
+        "copies": len(operations),
+        "operations": operations,
+    }
+
+
+def path_of(outline: Outline) -> str:
+    """The rings of an outline as SVG path data in units, y up."""
+    return path_data(outline.paths.moved(1.0, 0j, conj=True))
+
+
+@lru_cache(maxsize=1024)
+def cosets(group: WallpaperGroup, symmetry: tuple[Operation, ...]) -> tuple[int, ...]:
+    """The indices of the group's operations that give each copy of a site in a cell once, the identity first.
+
+    `symmetry` are the operations that map the site onto itself.
+    """
+    found: list[int] = []
+    covered: set[Operation] = set()
+    for k, operation in enumerate(group.operations):
+        if operation.reduced() not in covered:
+            found.append(k)
+            covered |= {(operation @ own).reduced() for own in symmetry}
+    return tuple(found)
+
+
+def resolved(design: Design) -> dict[str, str]:
+    """The path data of the strokes that name drawings, by the numbers of site and stroke: "0.2"."""
+    if not design.drawings:
+        return {}
+    drawn, source = (json.loads(text)["site"] for text in (design.drawn, design.source))
+    return {
+        f"{k}.{i}": source[k]["strokes"][i]["path"]
+        for k, site in enumerate(drawn)
+        for i, stroke in enumerate(site["strokes"])
+        if "file" in stroke
+    }
