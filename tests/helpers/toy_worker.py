@@ -1,0 +1,56 @@
+"""A worker of the studio's own kind whose tasks are toys: they sleep, die, spin, print and fail as they are told."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Mapping
+from typing import Any
+
+from voronoi_tiles.base.errors import ArgumentError
+from voronoi_tiles.studio.work import Done, run
+
+
+def echo(request: Mapping[str, Any], body: bytes) -> Done:
+    """Give back what came."""
+    return {"said": request.get("say"), "pid": os.getpid()}, body
+
+
+def nap(request: Mapping[str, Any], _body: bytes) -> Done:
+    """Sleep for so many seconds."""
+    time.sleep(request["seconds"])
+    return {"said": request.get("say")}, b""
+
+
+def spin(_request: Mapping[str, Any], _body: bytes) -> Done:
+    """Never come to an end, and keep the interpreter busy."""
+    while True:
+        pass
+
+
+def die(_request: Mapping[str, Any], _body: bytes) -> Done:
+    """End without a word."""
+    os._exit(3)
+
+
+def chatter(_request: Mapping[str, Any], _body: bytes) -> Done:
+    """Print, as some libraries do, from Python and past it."""
+    print("hello", flush=True)  # noqa: T201 - that is what it is for
+    os.write(1, b"hello")
+    return {"said": "printed"}, b""
+
+
+def fail(request: Mapping[str, Any], _body: bytes) -> Done:
+    """Raise an error for people, or a bug."""
+    if request.get("bug"):
+        raise KeyError("bug")
+    raise ArgumentError("the `kerf` is wrong", remedy="Mend it.")
+
+
+def hoard(request: Mapping[str, Any], _body: bytes) -> Done:
+    """Take so many bytes of memory."""
+    return {"said": len(bytearray(request["bytes"]))}, b""
+
+
+if __name__ == "__main__":
+    run({task.__name__: task for task in (echo, nap, spin, die, chatter, fail, hoard)})

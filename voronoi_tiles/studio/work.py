@@ -1,0 +1,173 @@
+"""What a worker does: reads requests from its standard input until it ends, and answers each on its standard output.
+
+A request is a frame: an object with a "task", which names the function that does it, and what that needs.
+An answer is a frame, too: its head has an "error", or else what there is to say of its body.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import queue
+import sys
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from functools import cache
+from typing import TYPE_CHECKING, Any, BinaryIO, Final
+
+from voronoi_tiles.studio.frames import FRAME_START, pack, sizes_of
+from voronoi_tiles.studio.refusals import error_document
+
+if TYPE_CHECKING:
+    from voronoi_tiles.studio.outlining import Outliner
+
+Request = Mapping[str, Any]
+Done = tuple[Mapping[str, Any], bytes]
+
+_MEMORY: Final = 4 << 30
+"""How much memory a worker may have; bytes. What takes more is refused, and the machine lives on."""
+
+
+def text_of(message: Mapping[str, Any] | Sequence[Any]) -> Done:
+    """An answer that is text: a message."""
+    return {}, json.dumps(message, separators=(",", ":"), allow_nan=False).encode()
+
+
+def tables(_request: Request, _body: bytes) -> Done:
+    """What the page knows of groups, strokes, jobs and presets."""
+    from voronoi_tiles.studio.tables import page_tables
+
+    return text_of(page_tables())
+
+
+def examples(_request: Request, _body: bytes) -> Done:
+    """The starter designs."""
+    from voronoi_tiles.studio.tables import starter_designs
+
+    return text_of(starter_designs())
+
+
+def outline(request: Request, _body: bytes) -> Done:
+    """The outlines of a design."""
+    asked = {name: request[name] for name in ("rev", "design", "rest", "tolerance")}
+    return text_of(_outliner().outline(**asked))
+
+
+def product(request: Request, _body: bytes) -> Done:
+    """What a job makes of a design."""
+    from voronoi_tiles.studio.making import product as made
+
+    return text_of(made(**{name: request[name] for name in ("rev", "design", "job", "limits", "name")}))
+
+
+def group(request: Request, _body: bytes) -> Done:
+    """A design in another group."""
+    from voronoi_tiles.studio.grouping import group_message
+
+    return text_of(group_message(request["rev"], request["design"], request["group"]))
+
+
+def export(request: Request, _body: bytes) -> Done:
+    """The file that a job makes of a design."""
+    from voronoi_tiles.studio.making import exported
+
+    return _file(*exported(request["design"], request["job"], request["name"]))
+
+
+def coupon(request: Request, _body: bytes) -> Done:
+    """The file of a coupon."""
+    from voronoi_tiles.studio.making import coupon_file
+
+    return _file(*coupon_file(request["options"]))
+
+
+def drop(request: Request, body: bytes) -> Done:
+    """What a drawing, or a file of ours, that is dropped onto the page holds."""
+    from voronoi_tiles.base.units import UNIT_MM
+    from voronoi_tiles.studio.drop import dropped
+
+    return text_of(dropped(body, request["name"], UNIT_MM[request["units"]]))
+
+
+def _file(name: str, data: bytes) -> Done:
+    """An answer that is a file."""
+    return {"file": name}, data
+
+
+@cache
+def _outliner() -> Outliner:
+    """What outlines designs in this worker."""
+    from voronoi_tiles.studio.outlining import Outliner
+
+    return Outliner()
+
+
+Tasks = Mapping[str, Callable[[Request, bytes], Done]]
+
+TASKS: Final[Tasks] = {
+    "tables": tables,
+    "examples": examples,
+    "outline": outline,
+    "product": product,
+    "group": group,
+    "export": export,
+    "coupon": coupon,
+    "drop": drop,
+}
+
+
+def do(request: Request, body: bytes, tasks: Tasks = TASKS) -> bytes:
+    """Do what is asked for; the frame of the answer. Whatever goes wrong becomes an error for people."""
+    try:
+        head, data = tasks[request["task"]](request, body)
+        return pack(head, data)
+    except Exception as error:  # noqa: BLE001 - a worker goes on
+        scale = request.get("design", {}).get("scale", 1.0)
+        return pack({"error": error_document(error, scale if isinstance(scale, float | int) and scale > 0 else 1.0)})
+
+
+def run(tasks: Tasks = TASKS, warm: Callable[[], object] | None = None) -> None:
+    """Do what is asked for until nobody is there to ask; `warm` does what makes the first time as quick as others."""
+    _bound_memory()
+    answers = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)  # what some library prints is no answer
+    requests: queue.SimpleQueue[tuple[Request, bytes]] = queue.SimpleQueue()
+    threading.Thread(target=_read, args=(sys.stdin.buffer, requests), daemon=True).start()
+    if warm is not None:
+        warm()
+    frame = pack({"ready": True})
+    while True:
+        answers.write(frame)
+        answers.flush()
+        frame = do(*requests.get(), tasks)
+
+
+def _read(file: BinaryIO, requests: queue.SimpleQueue[tuple[Request, bytes]]) -> None:
+    """Read requests, and end the process with the last, whatever it is doing: the server is gone."""
+    with suppress(Exception):
+        while len(start := file.read(FRAME_START)) == FRAME_START:
+            head, body = sizes_of(start)
+            request = json.loads(file.read(head))
+            requests.put((request, file.read(body)))
+    os._exit(0)
+
+
+def warm_up() -> None:
+    """Import what the first design needs, and run through it."""
+    from voronoi_tiles.designs.starters import starter
+
+    starter("p4").tessellate()
+
+
+def _bound_memory() -> None:
+    """Let the system refuse more memory than a design should take, where it can."""
+    with suppress(ImportError, OSError, ValueError):
+        import resource
+
+        resource.setrlimit(resource.RLIMIT_DATA, (_MEMORY, _MEMORY))
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    run(warm=warm_up)
