@@ -50,6 +50,23 @@ def test_a_command_loads_what_it_needs(command: str, needed: str, tmp_path: Path
     assert loaded <= set(needed.split()), loaded - set(needed.split())
 
 
+SERVER = {"starlette", "uvicorn", "websockets"}
+"""What the studio's server is made of."""
+
+
+@pytest.mark.parametrize("command", ["--help", "studio --help", "export --help"])
+def test_help_loads_nothing_heavy(command: str) -> None:
+    """It is read before anything is done: neither numpy nor the studio's server is loaded for it."""
+    script = (
+        "import sys\nfrom voronoi_tiles.cli.main import run\n"
+        f"sys.argv[1:] = {command.split()!r}\n"
+        "try:\n    run()\nexcept SystemExit as exit:\n    assert not exit.code, exit.code\n"
+        "print(*sys.modules, file=sys.stderr)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)
+    assert not (HEAVY | SERVER) & set(done.stderr.split())
+
+
 def test_openblas_starts_no_threads() -> None:
     """Its threads would take half as long as numpy's import; who sets their number is heard."""
     script = "import os\nfrom voronoi_tiles.cli import main\nmain._run = lambda: print(os.environ['{0}'])\nmain.run()"

@@ -1,0 +1,163 @@
+"""The desk: what is drawn is noted in time, trouble is told once, and others' changes when somebody is there."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import pytest
+from starlette.websockets import WebSocket
+from test_lanes import lane
+
+from voronoi_tiles.base.errors import DesignError, OutputError
+from voronoi_tiles.studio import sessions
+from voronoi_tiles.studio.sessions import Desk
+
+
+def naming(file: str) -> dict[str, Any]:
+    """A design whose art is a file."""
+    return {"site": [{"art": file}]}
+
+
+class Keeper:
+    """A document that remembers what it is told, on a disk that can be full."""
+
+    name, folder = "bird", "/nowhere/here"
+
+    def __init__(self) -> None:
+        self.noted: list[Mapping[str, Any]] = []
+        self.full = False
+        self.change: dict[str, Any] | None = None
+
+    def opened(self) -> dict[str, Any]:
+        """What is open."""
+        return {"file": "bird.toml", "design": naming("../on-disk.svg"), "recovery": {"design": naming("../noted.svg")}}
+
+    def note(self, design: Mapping[str, Any]) -> None:
+        """Take a recovery copy."""
+        if self.full:
+            raise OutputError("the disk is full", remedy="Make room.")
+        self.noted.append(design)
+
+    def changed(self) -> dict[str, Any] | None:
+        """What others have done, once."""
+        change, self.change = self.change, None
+        return change
+
+
+class Page:
+    """A page: what it sends, and what it is told."""
+
+    def __init__(self) -> None:
+        self.heard: list[dict[str, Any]] = []
+        self.said: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
+        self.said.put_nowait({"type": "websocket.connect"})
+        scope = {"type": "websocket", "headers": [], "query_string": b"", "path": "/ws"}
+        self.socket = WebSocket(scope, self.said.get, self._hear)
+
+    def say(self, **message: Any) -> None:
+        """Send a message."""
+        self.said.put_nowait({"type": "websocket.receive", "text": json.dumps(message)})
+
+    def leave(self) -> None:
+        """Close the connection."""
+        self.said.put_nowait({"type": "websocket.disconnect", "code": 1001})
+
+    async def _hear(self, message: Any) -> None:
+        if message["type"] == "websocket.send":
+            self.heard.append(json.loads(message["text"]))
+
+
+async def until(reached: Callable[[], bool]) -> None:
+    """Wait for something, for half a minute at most."""
+    async with asyncio.timeout(30):
+        while not reached():  # noqa: ASYNC110 - what is waited for knows of no event
+            await asyncio.sleep(0.005)
+
+
+def at_desk(story: Callable[[Desk, Keeper, Page, asyncio.Task[None]], Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    """Run a story with a desk that is watched and a page at it, which the task serves."""
+    monkeypatch.setattr(sessions, "_NOTED_EVERY_S", 0.02)
+
+    async def run() -> None:
+        keeper, page = Keeper(), Page()
+        desk = Desk(keeper, lane(), lane())  # type: ignore[arg-type]
+        watching = asyncio.create_task(desk.watch())
+        serving = asyncio.create_task(desk.serve(page.socket))
+        await until(lambda: bool(page.heard))
+        await story(desk, keeper, page, serving)
+        watching.cancel()
+        serving.cancel()
+        await asyncio.gather(watching, serving, return_exceptions=True)
+
+    asyncio.run(run())
+
+
+def test_the_newest_design_is_noted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every so often while it changes, also where it is refused, and at once when the page leaves."""
+
+    async def story(_desk: Desk, keeper: Keeper, page: Page, serving: asyncio.Task[None]) -> None:
+        for k in range(50):
+            page.say(type="design", rev=k, design={"number": k})
+        await until(lambda: {"number": 49} in keeper.noted)
+        assert len(keeper.noted) < 25
+        noted = len(keeper.noted)
+        await asyncio.sleep(0.1)
+        assert len(keeper.noted) == noted  # nothing is new
+        page.say(type="design", rev=50, design=naming("/etc/passwd"))
+        await until(lambda: keeper.noted[-1] == naming("/etc/passwd"))
+        page.say(type="design", rev=51, design={"number": 51})
+        page.leave()
+        await serving
+        assert keeper.noted[-1] == {"number": 51}
+
+    at_desk(story, monkeypatch)
+
+
+def test_what_the_design_on_disk_names_may_be_read(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Wherever it is; what a page has named, and a copy for recovery has, may not."""
+
+    async def story(desk: Desk, _keeper: Keeper, _page: Page, _serving: asyncio.Task[None]) -> None:
+        desk.check_files(naming("../on-disk.svg"), {})
+        with pytest.raises(DesignError, match="outside"):
+            desk.check_files(naming("../noted.svg"), {})
+
+    at_desk(story, monkeypatch)
+
+
+def test_a_full_disk_is_told_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """And what could not be noted is, as soon as there is room."""
+
+    async def story(_desk: Desk, keeper: Keeper, page: Page, _serving: asyncio.Task[None]) -> None:
+        keeper.full = True
+        page.say(type="design", rev=1, design={"number": 1})
+        await until(lambda: page.heard[-1]["type"] == "trouble")
+        assert page.heard[-1] == {"type": "trouble", "message": "the disk is full.", "remedy": "Make room."}
+        await asyncio.sleep(0.2)
+        assert [message["type"] for message in page.heard].count("trouble") == 1
+        keeper.full = False
+        await until(lambda: keeper.noted == [{"number": 1}])
+
+    at_desk(story, monkeypatch)
+
+
+def test_changes_wait_for_somebody_to_tell(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What others do to the file while no page is there is told to the one that comes."""
+
+    async def story(desk: Desk, keeper: Keeper, page: Page, serving: asyncio.Task[None]) -> None:
+        keeper.change = {"design": {"number": 1}, "file": "bird.toml"}
+        await until(lambda: page.heard[-1]["type"] == "changed")
+        page.leave()
+        await serving
+        keeper.change = {"design": {"number": 2}, "file": "bird.toml"}
+        await asyncio.sleep(0.1)
+        other = Page()
+        later = asyncio.create_task(desk.serve(other.socket))
+        await until(lambda: bool(other.heard) and other.heard[-1]["type"] == "changed")
+        assert other.heard[-1]["design"] == {"number": 2}
+        other.leave()
+        await later
+
+    at_desk(story, monkeypatch)

@@ -1,0 +1,215 @@
+"""The page's end of the live connection: what it asks for, and what it is told."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from typing import Any, Final
+
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from voronoi_tiles.base.errors import VoronoiTilesError
+from voronoi_tiles.designs.starters import GROUP_NAMES
+from voronoi_tiles.studio.design_document import Document
+from voronoi_tiles.studio.lanes import Answer, Deliver, Lane
+from voronoi_tiles.studio.messages import (
+    ByeMessage,
+    DesignMessage,
+    GroupsMessage,
+    JobMessage,
+    Message,
+    ReloadMessage,
+    SaveMessage,
+    Table,
+    check_files,
+    named_files,
+    read_message,
+    read_object,
+)
+from voronoi_tiles.studio.refusals import error_document, refusal
+
+TAKEN_OVER: Final = 4001
+"""The code that a page's connection is closed with when another page takes its place."""
+
+_NOTED_EVERY_S: Final = 0.8
+"""How often the newest design is noted for recovery, and the file looked at; seconds."""
+
+
+class Desk:
+    """What all pages of a studio share: the document and the lanes. One page at a time is at it.
+
+    Two pages at one document would overwrite each other's work: a new one takes the place of the one before.
+    """
+
+    def __init__(self, document: Document, outlines: Lane, jobs: Lane) -> None:
+        self.document, self.outlines, self.jobs = document, outlines, jobs
+        self._own: set[str] = set()
+        self._keeper = asyncio.Lock()
+        self._page: Session | None = None
+        self._newest: Table | None = None
+        self._opened: dict[str, Any] = {}
+
+    async def keeper(self, call: Callable[..., Any], *arguments: Any) -> Any:
+        """Have the document do something, in a thread, and one thing at a time."""
+        async with self._keeper:
+            return await asyncio.to_thread(call, *arguments)
+
+    async def opened(self, *, again: bool = False, recover: bool = True) -> dict[str, Any]:
+        """The message "opened": the file as it is now, with what can be recovered.
+
+        To a page that comes `again`, and has what it has drawn, the file stays as it was read last: what others have
+        made of it meanwhile is still a change. Raises VoronoiTilesError.
+        """
+        if not (again and self._opened):
+            call = self.document.opened if recover else self.document.reload
+            self._opened = await self.keeper(call)
+            self.know(self._opened.get("design"))
+        return {"type": "opened", **self._opened, "again": again}
+
+    def know(self, design: Table | None) -> None:
+        """Remember what files the design on disk names: these may be read, wherever they are.
+
+        What a page has sent is not asked, nor a recovery copy of it.
+        """
+        if design is not None:
+            self._own |= named_files(design)
+
+    def check_files(self, design: Table, job: Table) -> None:
+        """Refuse what names files that are not the design's. Raises DesignError."""
+        check_files(design, job, self.document.folder, self._own)
+
+    def note(self, design: Table) -> None:
+        """Keep the newest design, for the recovery copy."""
+        self._newest = design
+
+    async def note_now(self) -> None:
+        """Write the recovery copy, where there is something new."""
+        newest = self._newest
+        if newest is not None:
+            await self.keeper(self.document.note, newest)
+            if self._newest is newest:  # no newer one has come meanwhile
+                self._newest = None
+
+    async def serve(self, websocket: WebSocket) -> None:
+        """Serve a page until it is gone."""
+        before, self._page = self._page, (page := Session(self, websocket))
+        if before is not None:
+            await before.close()
+        try:
+            await page.run()
+        finally:
+            if self._page is page:
+                self._page = None
+            with suppress(VoronoiTilesError):  # it was told, while there was somebody to tell
+                await self.note_now()
+
+    async def watch(self) -> None:
+        """Note what is new, and tell the page what others do to the file, again and again; trouble is told once."""
+        told = ""
+        while True:
+            await asyncio.sleep(_NOTED_EVERY_S)
+            try:
+                await self.note_now()
+                if self._page is not None:  # else it is looked for when there is somebody to tell
+                    await self._tell_changes()
+                told = ""
+            except Exception as error:  # noqa: BLE001 - whatever it is, the next copy may be written
+                if str(error) != told:
+                    told = str(error)
+                    await self.tell({"type": "trouble", **error_document(error)})
+
+    async def _tell_changes(self) -> None:
+        """Tell the page what others have made of the file, where it is new."""
+        changed = await self.keeper(self.document.changed)
+        if changed is not None:
+            self.know(changed.get("design"))
+            await self.tell({"type": "changed", **changed})
+
+    async def tell(self, message: Mapping[str, Any]) -> None:
+        """Tell the page, where there is one."""
+        if self._page is not None:
+            await self._page.send(message)
+
+
+class Session:
+    """A page at the desk."""
+
+    def __init__(self, desk: Desk, websocket: WebSocket) -> None:
+        self._desk, self._websocket = desk, websocket
+
+    async def send(self, message: Mapping[str, Any]) -> None:
+        """Send a message; that the page is gone is no error."""
+        await self._send_text(json.dumps(message, separators=(",", ":"), allow_nan=False))
+
+    async def _send_text(self, text: str) -> None:
+        with suppress(WebSocketDisconnect, RuntimeError, OSError):
+            await self._websocket.send_text(text)
+
+    async def close(self) -> None:
+        """Close the connection: another page is at the desk."""
+        with suppress(RuntimeError, OSError):
+            await self._websocket.close(TAKEN_OVER, "the studio was opened in another page")
+
+    async def run(self) -> None:
+        """Say what is open, and do what the page asks for until it is gone."""
+        await self._websocket.accept()
+        try:
+            await self.send(await self._desk.opened(again="again" in self._websocket.query_params))
+        except VoronoiTilesError as error:
+            await self.send(refusal({}, error))
+        try:
+            while (received := await self._websocket.receive())["type"] == "websocket.receive":
+                await self._take(received.get("text"))
+        finally:
+            self._desk.outlines.forget(self)
+            self._desk.jobs.forget(self, *((self, name) for name in GROUP_NAMES))
+
+    async def _take(self, text: str | None) -> None:
+        """Do what a message says, or say what is wrong with it."""
+        table: Table = {}
+        try:
+            table = read_object("" if text is None else text)
+            await self._answer(read_message(table), table)
+        except Exception as error:  # noqa: BLE001 - whatever it is, the page is told, and the next message may be right
+            await self.send(refusal(table, error))
+
+    async def _answer(self, message: Message, table: Table) -> None:
+        """Do what a message says. Raises VoronoiTilesError for what cannot be done."""
+        desk = self._desk
+        match message:
+            case DesignMessage(rev, design, rest, tolerance):
+                desk.note(design)
+                desk.check_files(design, {})
+                asked = {"task": "outline", "rev": rev, "design": design, "rest": rest, "tolerance": tolerance}
+                desk.outlines.put(self, asked, self._deliver(table))
+            case JobMessage(rev, design, job, limits):
+                desk.check_files(design, job)
+                asked = {"task": "product", "rev": rev, "design": design, "job": job, "limits": limits}
+                desk.jobs.put(self, {**asked, "name": desk.document.name}, self._deliver(table))
+            case GroupsMessage(rev, design):
+                desk.check_files(design, {})
+                for name in GROUP_NAMES:
+                    asked = {"task": "group", "rev": rev, "design": design, "group": name}
+                    desk.jobs.put((self, name), asked, self._deliver(asked), urgent=False)
+            case SaveMessage(rev, design, over):
+                desk.check_files(design, {})
+                saved = await desk.keeper(desk.document.save, design, over)
+                desk.know(saved.get("design"))
+                await self.send({**saved, "rev": rev})
+            case ReloadMessage():
+                await self.send(await desk.opened(recover=False))
+            case ByeMessage():
+                await desk.note_now()
+
+    def _deliver(self, table: Table) -> Deliver:
+        """What sends the answer to a message."""
+
+        async def deliver(answer: Answer) -> None:
+            if answer.error is None:
+                await self._send_text(answer.body.decode())
+            else:
+                await self.send(refusal(table, answer.error))
+
+        return deliver
