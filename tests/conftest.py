@@ -1,17 +1,20 @@
-"""Hand-made outlines that need no engine, OpenGL where there is any, and the command line's real entry point."""
+"""Hand-made outlines that need no engine, OpenGL and a browser where there are any, the command line's entry point."""
 
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import sys
 from collections.abc import Iterator, Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 import pytest
 from helpers.forking import ForkServer
 from helpers.outlines import ABOVE, RIGHT, CommandLine, polygon
+from helpers.page_server import PageServer
 from hypothesis import settings
 
 from voronoi_tiles.base import kernels
@@ -123,6 +126,37 @@ def compiled() -> None:
         if os.environ.get("VORONOI_TILES_REQUIRE_KERNELS") == "1":
             pytest.fail(reason)
         pytest.skip(reason)
+
+
+SOFTWARE_GL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox")
+"""Chromium's options: WebGL by the processor, which it refuses by itself; as root there is no sandbox."""
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Any]:
+    """Chromium through playwright, WebGL by software; or the reason why a test is left out.
+
+    VORONOI_TILES_REQUIRE_STUDIO=1 makes that reason an error.
+    """
+    path = shutil.which("chromium")
+    if path is None or find_spec("playwright") is None:
+        reason = f"{'chromium' if path is None else 'playwright'} is not installed"
+        if os.environ.get("VORONOI_TILES_REQUIRE_STUDIO") == "1":
+            pytest.fail(reason)
+        pytest.skip(reason)
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=path, args=SOFTWARE_GL)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="session")
+def page_server() -> Iterator[PageServer]:
+    """A server of the page's files alone, without the studio's own."""
+    with PageServer() as server:
+        yield server
 
 
 @pytest.fixture(scope="session")
