@@ -1,5 +1,6 @@
 # Everything sets itself up: python3, python3-venv and make are all it needs.
 #   make demo    export and draw the examples        make test    run the tests, but for the slow ones
+#   make studio  draw in the browser: the studio, on a new design, or DESIGN=examples/p4-key.toml
 #   make test-slow  run those                        make test-pythons  the tests on every other Python that is here
 #   make lint    lint and format check               make types   mypy --strict, tests and scripts too
 #   make bench   speed and accuracy, beside peers    make fuzz N=10000
@@ -7,10 +8,11 @@
 #   make docs    the documentation, in docs/_build   make paper   docs/paper.md: the paper, reproduced and measured
 #   make wheels  what a release is made of: the source and a wheel for each platform, in dist
 #   make gallery the pictures of docs/gallery.md     make diagrams  the drawings of the other pages
+#   make screenshots  those of docs/studio.md, by the tests' browser
 #   make page-tools  what the tests of the studio's page use, by npm: without it they are left out
 
 .DEFAULT_GOAL := help
-.PHONY: help demo test test-slow test-pythons lint format types bench fuzz docs paper gallery diagrams wheels page-tools clean
+.PHONY: help demo studio test test-slow test-pythons lint format types bench fuzz docs paper gallery diagrams screenshots wheels page-tools clean
 .DELETE_ON_ERROR:
 
 PYTHON ?= python3
@@ -66,6 +68,9 @@ demo: $(INSTALLED)
 	@echo "    voronoi-tiles export bird.toml -o bird.svg"
 	@echo "Change bird.toml while this runs, and look at bird.png:  voronoi-tiles watch bird.toml"
 	@echo "In a new shell begin with the first of these lines, or call $(abspath $(VENV))/bin/voronoi-tiles."
+
+studio: $(INSTALLED)
+	$(VENV)/bin/voronoi-tiles studio $(DESIGN)
 
 test: $(INSTALLED_DEV)
 	$(VENV)/bin/python -m pytest -n auto --dist loadfile $(PYTEST)
@@ -126,6 +131,10 @@ docs: $(INSTALLED_DOCS)
 # The pages and pictures that the project makes of itself; they are committed.
 paper: $(INSTALLED_DOCS)
 	$(VENV)/bin/python docs/generate/paper.py
+
+# The studio's pages, photographed by the tests' browser.
+screenshots: $(INSTALLED_DEV)
+	$(VENV)/bin/python docs/generate/screenshots.py
 
 gallery: $(INSTALLED_DOCS)
 	$(VENV)/bin/python docs/generate/gallery.py

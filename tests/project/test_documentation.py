@@ -48,6 +48,7 @@ NOT_RUN = {
     ". .venv/bin/activate": "the tests run in an environment already",
     ".ci/run": "runs these tests",
     "voronoi-tiles watch bird.toml": "runs until it is interrupted; test_watch.py does",
+    "voronoi-tiles studio bird.toml": "serves until it is interrupted; the tests of the studio do",
 }
 """Commands of the pages that no test runs, each with the reason. Those of make are checked by their targets."""
 

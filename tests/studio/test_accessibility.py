@@ -1,0 +1,54 @@
+"""The page by WCAG 2.2 AA, as far as axe-core finds what is against it, in both looks and all panels and dialogs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from helpers.page import tool
+from helpers.studio import Window, opened, running
+
+RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"]
+
+
+@pytest.fixture(params=["light", "dark"])
+def window(chromium: Any, request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Window]:
+    """The page of a new design."""
+    with running(tmp_path) as studio, opened(chromium, studio, color_scheme=request.param, bypass_csp=True) as found:
+        found.wait()
+        found.page.add_script_tag(path=tool("axe-core/axe.min.js"))
+        yield found
+
+
+def violations(window: Window) -> list[str]:
+    """What axe-core finds: the rule, and where."""
+    found = window.page.evaluate("rules => axe.run(document, { runOnly: { type: 'tag', values: rules } })", RULES)
+    return [
+        f"{one['id']}: {node['target']} {node['failureSummary']}"
+        for one in found["violations"]
+        for node in one["nodes"]
+    ]
+
+
+def test_panels_and_dialogs_are_accessible(window: Window) -> None:
+    """No violation, whatever is open."""
+    page = window.page
+    page.locator(".stroke").first.click()
+    assert violations(window) == []
+    for tab in ("Symmetry", "Job", "Report"):
+        page.get_by_role("tab", name=tab).click()
+        page.wait_for_timeout(300)
+        assert violations(window) == [], tab
+    for command in ("help", "gallery", "export", "open", "share"):
+        page.locator(f"[data-command={command}]").first.click()
+        page.locator("dialog[open]").wait_for()
+        assert violations(window) == [], command
+        page.keyboard.press("Escape")
+
+
+def test_axe_sees_what_is_wrong(window: Window) -> None:
+    """A button without a name is found."""
+    window.page.evaluate("document.querySelector('.bar').append(document.createElement('button'))")
+    assert any(violation.startswith("button-name") for violation in violations(window))

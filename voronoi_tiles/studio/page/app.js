@@ -1,0 +1,355 @@
+// @ts-check
+// The page's wiring: the store, the connection, the stage, the tools and the panels know of each other here alone.
+
+import { Link } from "./link.js";
+import { addStroke, moveStrokes } from "./model/design.js";
+import { shown } from "./model/lengths.js";
+import { NOTHING, Store } from "./store.js";
+import { BREAKS, TOOLS, Toolbox } from "./tools/toolbox.js";
+import { listen } from "./tools/keys.js";
+import { SheetView } from "./view/sheet.js";
+import { Stage } from "./view/stage.js";
+import { clipboard } from "./clipboard.js";
+import { dialogs } from "./panels/dialogs.js";
+import { connectPanels } from "./panels/panels.js";
+
+/** @param {string} id */
+const element = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
+
+/** @type {any} */
+const EMPTY = { schema: 1, group: "p4", cell: { a: 60 }, site: [{ strokes: [] }] };
+
+/** What the page keeps from one time to the next: how it looks, and nothing of the design. */
+const HABITS = ["unit", "theme", "shown"];
+
+/** @returns {any} */
+function habits() {
+  try {
+    return JSON.parse(localStorage.getItem("voronoi_tiles studio") ?? "{}");
+  } catch {
+    return {};
+  }
+}
+
+const store = new Store({
+  design: EMPTY,
+  revision: 0,
+  file: "",
+  saved: true,
+  selection: NOTHING,
+  tool: "select",
+  site: 0,
+  tables: null,
+  exact: null,
+  refusal: null,
+  product: null,
+  jobRefusal: null,
+  job: {},
+  unit: "mm",
+  shown: { elements: true, cell: true, grid: false, copies: true, region: false, colours: true, edges: true },
+  theme: "",
+  connected: true,
+  dragging: false,
+  trouble: null,
+  ...habits(),
+});
+
+const stage = new Stage(
+  /** @type {HTMLCanvasElement} */ (element("picture")),
+  /** @type {HTMLCanvasElement} */ (element("overlay")),
+  store,
+);
+const sheet = new SheetView(/** @type {HTMLCanvasElement} */ (element("sheet")), store);
+const link = new Link(store);
+
+/** @type {import("./tools/tool.js").Hands} */
+const hands = {
+  store,
+  entries: () => stage.entries(),
+  symmetry: () => stage.symmetry(),
+  camera: stage.camera,
+  redraw: () => stage.redraw(),
+  hint(text) {
+    element("hint").textContent = text;
+    element("hint").hidden = !text;
+  },
+};
+const toolbox = new Toolbox(/** @type {HTMLCanvasElement} */ (element("overlay")), hands);
+Object.assign(stage, { hands, toolbox });
+store.subscribe(["dragging"], () => {
+  link.scale = stage.camera.scale;
+});
+
+// --- commands -----------------------------------------------------------------------------------------------------
+
+/** @param {keyof import("./store.js").State["shown"]} name */
+const toggle = (name) => store.set({ shown: { ...store.state.shown, [name]: !store.state.shown[name] } });
+
+const middle = () => /** @type {[number, number]} */ ([stage.camera.size[0] / 2, stage.camera.size[1] / 2]);
+
+/** @param {number} factor */
+const zoomBy = (factor) => {
+  if (sheet.visible) {
+    sheet.zoom(factor);
+    return;
+  }
+  stage.camera.zoomAt(middle(), factor);
+  stage.redraw();
+};
+
+const ask = dialogs(element("dialogs"), { store, link, stage });
+
+/** @type {Record<string, () => void>} */
+const COMMANDS = {
+  undo() {
+    if (!toolbox.tool.undo?.(hands)) {
+      store.undo();
+    }
+  },
+  redo: () => store.redo(),
+  save: () => void link.send({ type: "save", rev: store.state.revision, design: store.settled, over: false }),
+  "save-as": () => void ask.saveAs(),
+  export: () => ask.export(),
+  open: () => ask.open(),
+  gallery: () => void ask.gallery(),
+  coupon: () => ask.coupon(),
+  share: () => ask.share(),
+  help: () => ask.help(),
+  theme: () => store.set({ theme: stage.dark ? "light" : "dark" }),
+  "zoom-in": () => zoomBy(1.4),
+  "zoom-out": () => zoomBy(1 / 1.4),
+  fit: () => (sheet.visible ? sheet.fit() : stage.fit("cell")),
+  "fit-all": () => stage.fit("all"),
+  "fit-selection": () => stage.fit("selection"),
+  "toggle-elements": () => toggle("elements"),
+  "toggle-grid": () => toggle("grid"),
+  "toggle-copies": () => toggle("copies"),
+  "select-all": () => store.set({ selection: { strokes: stage.entries().map((entry) => entry.ref), nodes: [] } }),
+  double() {
+    const { selection } = store.state;
+    const strokes = selection.strokes.map((ref) => ({ site: ref.site, stroke: store.settled.site[ref.site].strokes[ref.stroke] }));
+    if (strokes.length) {
+      const by = 12 / stage.camera.scale;
+      store.edit("double", (design) => {
+        const before = design.site.map((site) => site.strokes.length);
+        design = strokes.reduce((made, { site, stroke }) => addStroke(made, site, stroke), design);
+        const refs = design.site.flatMap((site, i) => site.strokes.map((_, k) => ({ site: i, stroke: k })).slice(before[i]));
+        return moveStrokes(design, refs, [by, -by]);
+      });
+    }
+  },
+};
+
+/** @param {string} command */
+function run(command) {
+  COMMANDS[command]?.();
+}
+
+document.addEventListener("click", (event) => {
+  const button = event.target instanceof Element && event.target.closest("[data-command]");
+  if (button instanceof HTMLElement && button.dataset.command) {
+    run(button.dataset.command);
+  }
+});
+listen(hands, toolbox, /** @type {HTMLCanvasElement} */ (element("overlay")), run);
+clipboard(hands);
+
+// --- tools and tabs -----------------------------------------------------------------------------------------------
+
+for (const tool of TOOLS) {
+  if (BREAKS.has(tool.name)) {
+    element("tools").append(document.createElement("hr"));
+  }
+  const button = document.createElement("button");
+  button.type = "button";
+  button.dataset.tool = tool.name;
+  button.title = `${tool.title} (${tool.key.toUpperCase()})`;
+  button.setAttribute("aria-label", tool.title);
+  button.setAttribute("aria-keyshortcuts", tool.key);
+  const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+  const use = document.createElementNS("http://www.w3.org/2000/svg", "use");
+  use.setAttribute("href", `#i-${tool.icon}`);
+  svg.append(use);
+  const letter = document.createElement("kbd");
+  letter.textContent = tool.key.toUpperCase();
+  letter.setAttribute("aria-hidden", "true");
+  button.append(svg, letter);
+  button.addEventListener("click", () => store.set({ tool: tool.name }));
+  element("tools").append(button);
+}
+
+const tabs = /** @type {HTMLButtonElement[]} */ ([...document.querySelectorAll("[role=tab]")]);
+
+/** @param {HTMLButtonElement} chosen */
+function openTab(chosen) {
+  for (const tab of tabs) {
+    const on = tab === chosen;
+    tab.setAttribute("aria-selected", String(on));
+    tab.tabIndex = on ? 0 : -1;
+    element(tab.getAttribute("aria-controls") ?? "").hidden = !on;
+  }
+  const jobs = chosen.id === "tab-job" || chosen.id === "tab-report";
+  link.askJobs(jobs);
+  sheet.show(jobs);
+  element("hint").hidden = jobs;
+}
+
+for (const [k, tab] of tabs.entries()) {
+  tab.addEventListener("click", () => openTab(tab));
+  tab.addEventListener("keydown", (event) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (step) {
+      const next = tabs[(k + step + tabs.length) % tabs.length];
+      openTab(next);
+      next.focus();
+    }
+  });
+}
+
+// --- what the page says -------------------------------------------------------------------------------------------
+
+store.subscribe(["tool"], ({ tool }) => {
+  for (const button of document.querySelectorAll("[data-tool]")) {
+    button.setAttribute("aria-pressed", String(/** @type {HTMLElement} */ (button).dataset.tool === tool));
+  }
+});
+
+store.subscribe(["file", "saved"], ({ file, saved }) => {
+  element("file").textContent = file || "no design";
+  element("saved").dataset.state = saved ? "saved" : "unsaved";
+  element("saved").textContent = saved ? "saved" : "not saved";
+  document.title = `${saved ? "" : "* "}${file || "studio"} - voronoi_tiles`;
+});
+
+store.subscribe(["revision", "dragging"], () => {
+  for (const [command, can] of /** @type {const} */ ([["undo", store.canUndo], ["redo", store.canRedo]])) {
+    /** @type {HTMLButtonElement} */ (document.querySelector(`[data-command=${command}]`)).disabled = !can;
+  }
+});
+
+store.subscribe(["exact", "refusal", "revision", "connected"], ({ exact, refusal, revision, connected }) => {
+  const behind = !exact || (exact.rev < revision && !refusal);
+  const [state, text] = !connected
+    ? ["behind", "no connection"]
+    : refusal
+      ? ["refused", "no tile"]
+      : behind
+        ? ["behind", "exact tile follows"]
+        : exact.proved
+          ? ["proved", "proved"]
+          : ["proving", "exact, proof follows"];
+  element("exact").dataset.state = state;
+  element("exact").textContent = text;
+  document.documentElement.dataset.exact = `${state} ${exact?.rev ?? -1} ${revision}`;
+});
+
+store.subscribe(["exact", "refusal", "unit", "tables", "design"], ({ exact, unit, tables, design }) => {
+  if (!exact || !tables) {
+    element("measure").textContent = "";
+    return;
+  }
+  const mm = tables.units[design.units ?? "mm"];
+  const parts = exact.tiles.slice(0, 3).map((tile) => {
+    const [width, height] = [tile.width, tile.height].map((side) => shown((side * mm) / tables.units[unit], unit));
+    return `${exact.tiles.length > 1 ? `${tile.site}: ` : ""}${width} x ${height} ${unit}, ${tile.edges} edges, ${tile.copies} in a cell`;
+  });
+  element("measure").textContent = parts.join("; ") + (exact.tiles.length > 3 ? "; ..." : "");
+});
+
+toolbox.pointed = (at) => {
+  const { unit, tables, design } = store.state;
+  const factor = tables ? ((tables.units[design.units ?? "mm"] * (design.scale ?? 1)) / tables.units[unit]) : 1;
+  element("pointer").textContent = at ? `${shown(at[0] * factor, unit)}, ${shown(at[1] * factor, unit)} ${unit}` : "";
+};
+
+store.subscribe(["refusal", "trouble", "connected"], ({ refusal, trouble, connected }) => {
+  const what = !connected
+    ? { message: "The connection to the studio's server is lost.", remedy: "The page tries again; what is drawn stays here. If the server was stopped, start it again: voronoi-tiles studio." }
+    : trouble ?? refusal?.error ?? null;
+  const banner = element("banner");
+  banner.hidden = !what;
+  banner.replaceChildren();
+  if (what) {
+    const strong = document.createElement("strong");
+    strong.textContent = what.message.replace(/\.?$/, ".");
+    banner.append(strong, ` ${what.remedy}`);
+  }
+});
+
+store.subscribe(["theme"], ({ theme }) => {
+  document.documentElement.dataset.theme = theme;
+});
+
+store.subscribe(["unit"], ({ unit }) => {
+  /** @type {HTMLSelectElement} */ (element("unit")).value = unit;
+});
+element("unit").addEventListener("change", (event) => {
+  store.set({ unit: /** @type {any} */ (event.target).value });
+});
+
+store.subscribe(["unit", "theme", "shown"], (state) => {
+  localStorage.setItem("voronoi_tiles studio", JSON.stringify(Object.fromEntries(HABITS.map((key) => [key, /** @type {any} */ (state)[key]]))));
+});
+
+window.addEventListener("beforeunload", (event) => {
+  if (!store.state.saved && !store.state.connected) {
+    event.preventDefault();
+  }
+});
+
+// --- the beginning ------------------------------------------------------------------------------------------------
+
+link.on("opened", (message) => {
+  const shared = sharedDesign();
+  if (message.again) {
+    link.sendNow();
+    return;
+  }
+  store.open(shared ?? message.design, { file: message.file, saved: shared ? false : message.saved, trouble: null });
+  stage.fit();
+  if (message.recovery) {
+    ask.recover(message.recovery);
+  }
+});
+link.on("saved", (message) => {
+  store.set({ file: message.file, saved: message.rev === store.state.revision, trouble: null });
+});
+link.on("conflict", (message) => ask.conflict(message));
+link.on("changed", (message) => ask.changed(message));
+link.on("failed", (message) => store.set({ trouble: message.error }));
+
+/** The design in the address, where a link was opened: it was never sent to a server. */
+function sharedDesign() {
+  const text = new URLSearchParams(location.hash.slice(1)).get("design");
+  if (!text) {
+    return null;
+  }
+  history.replaceState(null, "", location.pathname);
+  try {
+    return JSON.parse(new TextDecoder().decode(Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0))));
+  } catch {
+    store.set({ trouble: { message: "The link holds no design that can be read.", remedy: "It may have been cut off: ask for it again." } });
+    return null;
+  }
+}
+
+/** What a script in the page may ask: where a point of the drawing is on it, and what is drawn. */
+const face = {
+  design: () => store.state.design,
+  toPage(/** @type {[number, number]} */ at) {
+    const box = element("overlay").getBoundingClientRect();
+    const [x, y] = stage.camera.toScreen(at);
+    return [box.left + x, box.top + y];
+  },
+};
+
+connectPanels({ store, link, stage, run, openTab: (name) => openTab(/** @type {HTMLButtonElement} */ (element(`tab-${name}`))) });
+const [tables, shader] = await Promise.all([
+  fetch("tables.json").then((answer) => answer.json()),
+  fetch("gl/exact.glsl").then((answer) => answer.text()),
+]);
+store.set({ tables });
+stage.usePreview(shader);
+link.connect();
+const measured = new URLSearchParams(location.search).has("bench") ? (await import("./bench.js")).bench({ store, stage }) : null;
+Object.assign(window, { studio: { ...face, bench: measured } });

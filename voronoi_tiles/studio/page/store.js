@@ -1,0 +1,176 @@
+// @ts-check
+// The one state of the page, and the way of every change: an edit gives a new design, which is kept in the history,
+// sent to the server and drawn. Panels and views subscribe to the keys that they show.
+
+import { History } from "./model/history.js";
+
+/**
+ * @typedef {import("./model/design.js").Design} Design
+ * @typedef {import("./model/design.js").Ref} Ref
+ * @typedef {import("./model/design.js").NodeRef} NodeRef
+ * @typedef {import("./link.js").Outline} Outline
+ * @typedef {import("./link.js").Refusal} Refusal
+ * @typedef {import("./link.js").Product} Product
+ * @typedef {{strokes: readonly Ref[], nodes: readonly NodeRef[]}} Selection
+ *
+ * @typedef {object} State
+ * @property {Design} design what is drawn, as it is seen: during a drag not yet in the history
+ * @property {number} revision counts the changes of `design`
+ * @property {string} file the name of the design's file
+ * @property {boolean} saved whether the file holds this design
+ * @property {Selection} selection
+ * @property {string} tool the name of the tool in hand
+ * @property {number} site the site that new strokes go to
+ * @property {any} tables what the server says of groups, options and formats
+ * @property {Outline | null} exact the last outlines that came
+ * @property {Refusal | null} refusal why the design has none, null where it has
+ * @property {Product | null} product the last job's result
+ * @property {Refusal | null} jobRefusal
+ * @property {Record<string, any>} job the options of the job that differ from their defaults
+ * @property {"mm" | "cm" | "in"} unit in which lengths are shown
+ * @property {{elements: boolean, cell: boolean, grid: boolean, copies: boolean, region: boolean, colours: boolean, edges: boolean}} shown
+ * @property {"" | "light" | "dark"} theme empty: as the system is
+ * @property {boolean} connected
+ * @property {boolean} dragging whether `design` is still in the hand
+ * @property {{message: string, remedy: string} | null} trouble
+ */
+
+/** @type {Readonly<Selection>} */
+export const NOTHING = Object.freeze({ strokes: [], nodes: [] });
+
+export class Store {
+  /** @type {State} */
+  #state;
+  /** @type {Set<{keys: readonly string[], tell: (state: State) => void}>} */
+  #listeners = new Set();
+  /** @type {Set<string>} */
+  #changed = new Set();
+  #history;
+
+  /** @param {State} state */
+  constructor(state) {
+    this.#state = Object.freeze({ ...state });
+    this.#history = new History(state.design);
+  }
+
+  get state() {
+    return this.#state;
+  }
+
+  /**
+   * Change some keys. Whoever listens to one of them is told once, when what runs now has ended.
+   * @param {Partial<State>} patch
+   */
+  set(patch) {
+    /** @type {Record<string, unknown>} */
+    const old = /** @type {any} */ (this.#state);
+    const keys = Object.entries(patch).filter(([key, value]) => old[key] !== value).map(([key]) => key);
+    if (!keys.length) {
+      return;
+    }
+    this.#state = Object.freeze({ ...this.#state, ...patch });
+    if (!this.#changed.size) {
+      queueMicrotask(() => this.#tell());
+    }
+    keys.forEach((key) => this.#changed.add(key));
+  }
+
+  #tell() {
+    const changed = this.#changed;
+    this.#changed = new Set();
+    for (const { keys, tell } of this.#listeners) {
+      if (keys.some((key) => changed.has(key))) {
+        tell(this.#state);
+      }
+    }
+  }
+
+  /**
+   * Call a function now and after every change of one of the keys.
+   * @param {readonly (keyof State)[]} keys
+   * @param {(state: State) => void} tell
+   * @returns {() => void} ends it
+   */
+  subscribe(keys, tell) {
+    const listener = { keys, tell };
+    this.#listeners.add(listener);
+    tell(this.#state);
+    return () => this.#listeners.delete(listener);
+  }
+
+  /**
+   * Change the design, a step of the history. Changes of one `merge` that follow each other are one step.
+   * @param {string} label what undo says it takes back
+   * @param {(design: Design) => Design} change
+   * @param {{merge?: string, selection?: Selection}} [more]
+   */
+  edit(label, change, more = {}) {
+    const design = change(this.#history.design);
+    if (design === this.#history.design && !this.#state.dragging) {
+      return;
+    }
+    this.#history.push(design, { label, merge: more.merge });
+    this.#show(design, { dragging: false, saved: false, ...(more.selection ? { selection: more.selection } : {}) });
+  }
+
+  /**
+   * Show a design that is still in the hand: made of the one before the drag, and not in the history.
+   * @param {(design: Design) => Design} change
+   */
+  preview(change) {
+    this.#show(change(this.#history.design), { dragging: true });
+  }
+
+  /** Take back what is in the hand. */
+  cancel() {
+    if (this.#state.dragging) {
+      this.#show(this.#history.design, { dragging: false });
+    }
+  }
+
+  /** The design before what is in the hand. */
+  get settled() {
+    return this.#history.design;
+  }
+
+  get canUndo() {
+    return this.#history.canUndo;
+  }
+
+  get canRedo() {
+    return this.#history.canRedo;
+  }
+
+  /** Take back the last step, or what is in the hand. */
+  undo() {
+    if (this.#state.dragging) {
+      this.cancel();
+    } else if (this.#history.canUndo) {
+      this.#show(this.#history.undo(), { saved: false, selection: NOTHING });
+    }
+  }
+
+  redo() {
+    if (!this.#state.dragging && this.#history.canRedo) {
+      this.#show(this.#history.redo(), { saved: false, selection: NOTHING });
+    }
+  }
+
+  /**
+   * Begin with another design: a new history.
+   * @param {Design} design
+   * @param {Partial<State>} patch
+   */
+  open(design, patch) {
+    this.#history = new History(design);
+    this.#show(design, { selection: NOTHING, site: 0, dragging: false, exact: null, refusal: null, ...patch });
+  }
+
+  /**
+   * @param {Design} design
+   * @param {Partial<State>} patch
+   */
+  #show(design, patch) {
+    this.set({ design, revision: this.#state.revision + 1, ...patch });
+  }
+}
