@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import base64
+import json
 import os
+import signal
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -45,6 +48,7 @@ def running(folder: Path, *arguments: str) -> Iterator[Studio]:
         try:
             assert url.startswith("http://127.0.0.1:"), url + (process.stderr.read() if process.stderr else "")
             yield Studio(process, url, folder)
+            assert process.poll() in (None, -signal.SIGKILL), f"it has ended by itself: {process.communicate()}"
         finally:
             process.terminate()
             process.communicate(timeout=20)
@@ -87,20 +91,70 @@ class Window:
         found: dict[str, Any] = self.page.evaluate("() => window.studio.design()")
         return found
 
+    @property
+    def text(self) -> str:
+        """The same as JSON text, to the byte."""
+        found: str = self.page.evaluate("() => JSON.stringify(window.studio.design())")
+        return found
+
+    @property
+    def strokes(self) -> list[dict[str, Any]]:
+        """The strokes of the first site."""
+        found: list[dict[str, Any]] = self.design["site"][0]["strokes"]
+        return found
+
+    def begin(self, design: Mapping[str, Any], state: str = "proved") -> None:
+        """Open another design as a link, with the select tool in hand and the whole cell in the window."""
+        self.page.evaluate("link => { location.hash = link; }", link_of(design))
+        self.page.wait_for_function(
+            "text => JSON.stringify(window.studio.design()) === JSON.stringify(JSON.parse(text))", arg=compact(design)
+        )
+        self.page.get_by_role("tab", name="Drawing").click()
+        self.page.locator("#overlay").focus()
+        self.page.keyboard.press("v")
+        self.wait(state)
+
+    def choose(self, name: str) -> None:
+        """Take a stroke in the list, as "Line 1"."""
+        self.page.locator("#panel-drawing").get_by_role("button", name=name, exact=True).click()
+
+    def save(self) -> None:
+        """Save, and wait until it is."""
+        self.page.keyboard.press("Control+s")
+        self.page.locator("#saved[data-state=saved]").wait_for()
+
+
+def compact(design: Mapping[str, Any]) -> str:
+    """A design as JSON text without blanks."""
+    return json.dumps(design, separators=(",", ":"), ensure_ascii=False)
+
+
+def link_of(design: Mapping[str, Any]) -> str:
+    """What stands behind the address of a studio in a link that holds a design."""
+    return "#design=" + base64.urlsafe_b64encode(compact(design).encode()).decode().rstrip("=")
+
 
 @contextmanager
-def opened(chromium: Any, studio: Studio, **options: Any) -> Iterator[Window]:
-    """The studio's page in a window of its own; what the page complains of is a failure."""
+def opened(
+    chromium: Any, studio: Studio, *, fragment: str = "", script: str = "", complaints: bool = True, **options: Any
+) -> Iterator[Window]:
+    """The studio's page in a window of its own, `fragment` behind its address, `script` run before it.
+
+    What the page complains of is a failure, unless `complaints` is false: of a server that is gone browsers complain.
+    """
     context = chromium.new_context(**{"viewport": {"width": 1200, "height": 800}, "accept_downloads": True, **options})
     page = context.new_page()
-    complaints: list[str] = []
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on("console", lambda message: complaints.append(message.text) if message.type == "error" else None)
+    found: list[str] = []
+    page.on("pageerror", lambda error: found.append(str(error)))
+    # What the server refuses, 422, the page tells its user; the browser notes it by itself.
+    page.on("console", lambda one: found.append(one.text) if one.type == "error" and " 422 " not in one.text else None)
     try:
-        page.goto(studio.url)
+        page.set_default_timeout(20_000)
+        page.add_init_script(script)
+        page.goto(studio.url + fragment)
         window = Window(page)
         page.wait_for_function("() => window.studio")
         yield window
-        assert complaints == [], complaints
+        assert not complaints or found == [], found
     finally:
         context.close()

@@ -27,20 +27,28 @@ strokes = [
 """
 
 
-@pytest.fixture
-def studio(tmp_path: Path) -> Iterator[Studio]:
+@pytest.fixture(scope="module")
+def studio(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
     """A studio on a small design."""
-    (tmp_path / "bird.toml").write_text(DESIGN, encoding="utf-8")
-    with running(tmp_path, "bird.toml") as found:
+    folder = tmp_path_factory.mktemp("bird")
+    (folder / "bird.toml").write_text(DESIGN, encoding="utf-8")
+    with running(folder, "bird.toml") as found:
         yield found
 
 
-@pytest.fixture
-def window(chromium: Any, studio: Studio) -> Iterator[Window]:
-    """Its page."""
+@pytest.fixture(scope="module")
+def page(chromium: Any, studio: Studio) -> Iterator[Window]:
+    """Its page, for all tests."""
     with opened(chromium, studio) as found:
         found.wait()
         yield found
+
+
+@pytest.fixture
+def window(page: Window) -> Window:
+    """The page with the design as it was."""
+    page.begin(tomllib.loads(DESIGN))
+    return page
 
 
 def test_from_a_stroke_to_a_file(window: Window, studio: Studio) -> None:

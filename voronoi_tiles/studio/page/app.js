@@ -11,6 +11,7 @@ import { SheetView } from "./view/sheet.js";
 import { Stage } from "./view/stage.js";
 import { clipboard } from "./clipboard.js";
 import { dialogs } from "./panels/dialogs.js";
+import { make } from "./panels/elements.js";
 import { connectPanels } from "./panels/panels.js";
 
 /** @param {string} id */
@@ -69,6 +70,12 @@ const hands = {
   symmetry: () => stage.symmetry(),
   camera: stage.camera,
   redraw: () => stage.redraw(),
+  take(tool) {
+    store.set({ tool });
+    if (sheet.visible) {
+      openTab(/** @type {HTMLButtonElement} */ (element("tab-drawing")));
+    }
+  },
   hint(text) {
     element("hint").textContent = text;
     element("hint").hidden = !text;
@@ -97,7 +104,29 @@ const zoomBy = (factor) => {
   stage.redraw();
 };
 
-const ask = dialogs(element("dialogs"), { store, link, stage });
+/** @type {{rev: number, design: import("./model/design.js").Design | null}} what was sent to be saved */
+let saving = { rev: -1, design: null };
+
+/** Whether the user has said that what is drawn is to go over what others have made of the file. */
+let keepsMine = false;
+
+/** @param {boolean} [over] whether to write over that; a backup of it is kept */
+function save(over = keepsMine) {
+  const [rev, design] = [store.state.revision, store.settled];
+  if (link.send({ type: "save", rev, design, over })) {
+    saving = { rev, design };
+  }
+}
+
+const ask = dialogs(element("dialogs"), {
+  store,
+  link,
+  stage,
+  save,
+  keepMine() {
+    keepsMine = true;
+  },
+});
 
 /** @type {Record<string, () => void>} */
 const COMMANDS = {
@@ -107,7 +136,7 @@ const COMMANDS = {
     }
   },
   redo: () => store.redo(),
-  save: () => void link.send({ type: "save", rev: store.state.revision, design: store.settled, over: false }),
+  save: () => save(),
   "save-as": () => void ask.saveAs(),
   export: () => ask.export(),
   open: () => ask.open(),
@@ -124,7 +153,7 @@ const COMMANDS = {
   "toggle-elements": () => toggle("elements"),
   "toggle-grid": () => toggle("grid"),
   "toggle-copies": () => toggle("copies"),
-  "select-all": () => store.set({ selection: { strokes: stage.entries().map((entry) => entry.ref), nodes: [] } }),
+  "select-all": () => store.set({ tool: "select", selection: { strokes: stage.entries().map((entry) => entry.ref), nodes: [] } }),
   double() {
     const { selection } = store.state;
     const strokes = selection.strokes.map((ref) => ({ site: ref.site, stroke: store.settled.site[ref.site].strokes[ref.stroke] }));
@@ -174,7 +203,7 @@ for (const tool of TOOLS) {
   letter.textContent = tool.key.toUpperCase();
   letter.setAttribute("aria-hidden", "true");
   button.append(svg, letter);
-  button.addEventListener("click", () => store.set({ tool: tool.name }));
+  button.addEventListener("click", () => hands.take(tool.name));
   element("tools").append(button);
 }
 
@@ -262,18 +291,38 @@ toolbox.pointed = (at) => {
   element("pointer").textContent = at ? `${shown(at[0] * factor, unit)}, ${shown(at[1] * factor, unit)} ${unit}` : "";
 };
 
-store.subscribe(["refusal", "trouble", "connected"], ({ refusal, trouble, connected }) => {
-  const what = !connected
-    ? { message: "The connection to the studio's server is lost.", remedy: "The page tries again; what is drawn stays here. If the server was stopped, start it again: voronoi-tiles studio." }
-    : trouble ?? refusal?.error ?? null;
-  const banner = element("banner");
-  banner.hidden = !what;
-  banner.replaceChildren();
-  if (what) {
-    const strong = document.createElement("strong");
-    strong.textContent = what.message.replace(/\.?$/, ".");
-    banner.append(strong, ` ${what.remedy}`);
+const LOST = {
+  message: "The connection to the studio's server is lost.",
+  remedy: "The page tries again; what is drawn stays here. If the server was stopped, start it again: voronoi-tiles studio.",
+};
+
+/**
+ * Why there is no tile, in the page's words where it knows what to do here.
+ * @param {import("./store.js").State} state
+ * @returns {import("./store.js").Trouble | null}
+ */
+function whyNoTile({ design, refusal }) {
+  const bare = design.site.findIndex((site) => !site.strokes.length);
+  if (!refusal || bare < 0) {
+    return refusal?.error ?? null;
   }
+  const what = design.site.length > 1 ? `${design.site[bare].name ?? `site${bare + 1}`} has no stroke yet` : "Nothing is drawn yet";
+  return { message: what, remedy: "Take the pen (P) or another tool and draw.", quiet: true };
+}
+
+store.subscribe(["refusal", "trouble", "connected"], (state) => {
+  const { trouble, connected } = state;
+  const said = [connected ? null : LOST, trouble, connected ? whyNoTile(state) : null].filter((one) => one !== null);
+  const banner = element("banner");
+  banner.hidden = !said.length;
+  banner.classList.toggle("quiet", said.every((one) => "quiet" in one && one.quiet));
+  banner.replaceChildren(
+    ...said.map((one) => {
+      const strong = make("strong", {}, one.message.replace(/[.?!]?$/, (end) => end || ".").replace(/^[a-z]+ /, (word) => word[0].toUpperCase() + word.slice(1)));
+      const close = one === trouble && make("button", { type: "button", class: "quiet", onclick: () => store.set({ trouble: null }) }, "Close");
+      return make("div", {}, make("p", {}, strong, ` ${one.remedy}`), close);
+    }),
+  );
 });
 
 store.subscribe(["theme"], ({ theme }) => {
@@ -299,39 +348,53 @@ window.addEventListener("beforeunload", (event) => {
 
 // --- the beginning ------------------------------------------------------------------------------------------------
 
+/** @param {string | undefined} text what there is to know, and nothing is wrong @returns {import("./store.js").Trouble | null} */
+const note = (text) => (text ? { message: text, remedy: "", quiet: true } : null);
+
 link.on("opened", (message) => {
-  const shared = sharedDesign();
+  keepsMine = false;
   if (message.again) {
     link.sendNow();
     return;
   }
-  store.open(shared ?? message.design, { file: message.file, saved: shared ? false : message.saved, trouble: null });
-  stage.fit();
+  const trouble = note(message.note);
+  if (store.state.file) {
+    // What others have made of the file was asked for: undo leads back.
+    store.edit("take theirs", () => message.design, { selection: NOTHING });
+    store.set({ file: message.file, trouble });
+  } else {
+    store.open(message.design, { file: message.file, trouble });
+    stage.fit();
+  }
+  store.keep(message.saved ? message.design : null);
+  openShared();
   if (message.recovery) {
     ask.recover(message.recovery);
   }
 });
 link.on("saved", (message) => {
-  store.set({ file: message.file, saved: message.rev === store.state.revision, trouble: null });
+  keepsMine = false;
+  store.set({ file: message.file, trouble: note(message.note) });
+  if (message.rev === saving.rev) {
+    store.keep(saving.design);
+  }
 });
 link.on("conflict", (message) => ask.conflict(message));
-link.on("changed", (message) => ask.changed(message));
+link.on("changed", (message) => {
+  keepsMine = false;
+  ask.changed(message);
+});
 link.on("failed", (message) => store.set({ trouble: message.error }));
 
-/** The design in the address, where a link was opened: it was never sent to a server. */
-function sharedDesign() {
-  const text = new URLSearchParams(location.hash.slice(1)).get("design");
-  if (!text) {
-    return null;
-  }
-  history.replaceState(null, "", location.pathname);
-  try {
-    return JSON.parse(new TextDecoder().decode(Uint8Array.from(atob(text.replaceAll("-", "+").replaceAll("_", "/")), (c) => c.charCodeAt(0))));
-  } catch {
-    store.set({ trouble: { message: "The link holds no design that can be read.", remedy: "It may have been cut off: ask for it again." } });
-    return null;
+/** Take the design in the address, where a link was opened: it was never sent to a server. */
+function openShared() {
+  const { hash } = location;
+  if (store.state.file && hash.startsWith("#design=")) {
+    history.replaceState(null, "", location.pathname + location.search);
+    ask.openLink(hash);
   }
 }
+window.addEventListener("hashchange", openShared);
 
 /** What a script in the page may ask: where a point of the drawing is on it, and what is drawn. */
 const face = {

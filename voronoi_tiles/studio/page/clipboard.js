@@ -76,7 +76,15 @@ export function clipboard({ store, entries, camera }) {
   document.addEventListener("paste", (event) => {
     const data = event.clipboardData;
     const text = data?.getData("image/svg+xml") || data?.getData("text/plain") || "";
-    if (typing() || !text.includes("<svg")) {
+    if (typing()) {
+      return;
+    }
+    if (text.includes("#design=")) {
+      event.preventDefault();
+      document.dispatchEvent(new CustomEvent("studio-link", { detail: text }));
+      return;
+    }
+    if (!text.includes("<svg")) {
       return;
     }
     event.preventDefault();

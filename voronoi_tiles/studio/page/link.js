@@ -45,6 +45,7 @@
  */
 
 const MESSAGE_MAX = 1 << 20;
+const TOO_LARGE = { message: "This design is larger than the studio sends.", remedy: "Take strokes out, or cut it by the command line." };
 const REST_MS = 60;
 const JOB_MS = 150;
 const TAKEN_OVER = 4001;
@@ -113,9 +114,8 @@ export class Link {
     }
     const text = JSON.stringify(message);
     if (text.length > MESSAGE_MAX) {
-      this.#store.set({
-        trouble: { message: "This design is larger than the studio sends.", remedy: "Take strokes out, or cut it by the command line." },
-      });
+      const { revision: rev } = this.#store.state;
+      this.#store.set(message.type === "design" ? { refusal: { rev, lane: "outline", error: TOO_LARGE } } : { trouble: TOO_LARGE });
       return false;
     }
     this.#socket.send(text);
@@ -179,11 +179,11 @@ export class Link {
 
   /** @param {any} message */
   #receive(message) {
-    const { exact, revision, product } = this.#store.state;
+    const { exact, refusal, revision, product } = this.#store.state;
     switch (message.type) {
       case "outline":
         if (!exact || message.rev >= exact.rev) {
-          this.#store.set({ exact: { ...message, design: this.#designs.get(message.rev) ?? this.#store.state.design }, refusal: null });
+          this.#store.set({ exact: { ...message, design: this.#designs.get(message.rev) ?? this.#store.state.design }, refusal: refusal && refusal.rev > message.rev ? refusal : null });
           this.#forget(message.rev);
         }
         break;

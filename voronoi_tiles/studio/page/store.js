@@ -12,6 +12,7 @@ import { History } from "./model/history.js";
  * @typedef {import("./link.js").Refusal} Refusal
  * @typedef {import("./link.js").Product} Product
  * @typedef {{strokes: readonly Ref[], nodes: readonly NodeRef[]}} Selection
+ * @typedef {{message: string, remedy: string, quiet?: boolean}} Trouble quiet: nothing is wrong
  *
  * @typedef {object} State
  * @property {Design} design what is drawn, as it is seen: during a drag not yet in the history
@@ -32,7 +33,7 @@ import { History } from "./model/history.js";
  * @property {"" | "light" | "dark"} theme empty: as the system is
  * @property {boolean} connected
  * @property {boolean} dragging whether `design` is still in the hand
- * @property {{message: string, remedy: string} | null} trouble
+ * @property {Trouble | null} trouble what else there is to say, until it is closed
  */
 
 /** @type {Readonly<Selection>} */
@@ -46,6 +47,8 @@ export class Store {
   /** @type {Set<string>} */
   #changed = new Set();
   #history;
+  /** @type {Design | null} what the file holds, as far as it is known */
+  #kept = null;
 
   /** @param {State} state */
   constructor(state) {
@@ -110,7 +113,7 @@ export class Store {
       return;
     }
     this.#history.push(design, { label, merge: more.merge });
-    this.#show(design, { dragging: false, saved: false, ...(more.selection ? { selection: more.selection } : {}) });
+    this.#show(design, { dragging: false, ...(more.selection ? { selection: more.selection } : {}) });
   }
 
   /**
@@ -146,14 +149,23 @@ export class Store {
     if (this.#state.dragging) {
       this.cancel();
     } else if (this.#history.canUndo) {
-      this.#show(this.#history.undo(), { saved: false, selection: NOTHING });
+      this.#show(this.#history.undo(), { selection: NOTHING });
     }
   }
 
   redo() {
     if (!this.#state.dragging && this.#history.canRedo) {
-      this.#show(this.#history.redo(), { saved: false, selection: NOTHING });
+      this.#show(this.#history.redo(), { selection: NOTHING });
     }
+  }
+
+  /**
+   * Know what the file holds; undo and redo lead back to it.
+   * @param {Design | null} design null: nothing of ours
+   */
+  keep(design) {
+    this.#kept = design;
+    this.set({ saved: this.#history.design === design });
   }
 
   /**
@@ -163,6 +175,7 @@ export class Store {
    */
   open(design, patch) {
     this.#history = new History(design);
+    this.#kept = null;
     this.#show(design, { selection: NOTHING, site: 0, dragging: false, exact: null, refusal: null, ...patch });
   }
 
@@ -171,6 +184,8 @@ export class Store {
    * @param {Partial<State>} patch
    */
   #show(design, patch) {
-    this.set({ design, revision: this.#state.revision + 1, ...patch });
+    const site = Math.min(this.#state.site, design.site.length - 1);
+    const saved = this.#history.design === this.#kept;
+    this.set({ design, revision: this.#state.revision + 1, site, saved, ...patch });
   }
 }

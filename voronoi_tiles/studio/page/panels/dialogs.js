@@ -3,6 +3,8 @@
 
 import { HELP } from "../tools/keys.js";
 import { paste } from "../clipboard.js";
+import { linkOf, sharedDesign } from "../sharing.js";
+import { NOTHING } from "../store.js";
 import { field, make } from "./elements.js";
 
 /**
@@ -10,6 +12,8 @@ import { field, make } from "./elements.js";
  * @property {import("../store.js").Store} store
  * @property {import("../link.js").Link} link
  * @property {import("../view/stage.js").Stage} stage
+ * @property {(over: boolean) => void} save
+ * @property {() => void} keepMine the next save goes over what others have made of the file
  */
 
 /** @param {Blob} blob @param {string} name */
@@ -36,7 +40,8 @@ async function post(path, body, type = "application/json") {
 
 /** @param {Response} answer @param {string} other */
 function nameOf(answer, other) {
-  return answer.headers.get("Content-Disposition")?.match(/filename="([^"]+)"/)?.[1] ?? other;
+  const name = answer.headers.get("Content-Disposition")?.match(/filename\*=utf-8''([^;]+)/)?.[1];
+  return name ? decodeURIComponent(name) : other;
 }
 
 /**
@@ -44,7 +49,7 @@ function nameOf(answer, other) {
  * @param {HTMLElement} home
  * @param {Context} context
  */
-export function dialogs(home, { store, link, stage }) {
+export function dialogs(home, { store, link, stage, save, keepMine }) {
   /**
    * @param {string} title
    * @param {Node[]} content
@@ -80,15 +85,18 @@ export function dialogs(home, { store, link, stage }) {
   const close = { label: "Close" };
   const cancel = { label: "Cancel" };
 
-  /** @param {any} design @param {string} [note] */
-  const begin = (design, note) => {
-    store.edit("open", () => design, { selection: { strokes: [], nodes: [] } });
+  /** @param {string} message @param {boolean} [quiet] */
+  const say = (message, quiet = false) => store.set({ trouble: { message, remedy: "", quiet } });
+
+  /** @param {any} design that takes the place of what is drawn; undo leads back */
+  const begin = (design) => {
+    store.edit("open", () => design, { selection: NOTHING });
     store.set({ site: 0 });
     stage.fit();
-    if (note) {
-      store.set({ trouble: { message: note, remedy: "" } });
-    }
   };
+
+  /** Take what another program has made of the file. */
+  const reload = () => link.send({ type: "reload" });
 
   /** @param {File} file */
   const take = async (file) => {
@@ -102,14 +110,14 @@ export function dialogs(home, { store, link, stage }) {
       paste(store, answer.strokes, 0);
     }
     if (answer.notes?.length) {
-      store.set({ trouble: { message: answer.notes.join(" "), remedy: "" } });
+      say(answer.notes.join(" "), true);
     }
   };
 
   /** @param {File | undefined} file */
   const tryTake = (file) => {
     if (file) {
-      take(file).catch((error) => store.set({ trouble: { message: error.message, remedy: "" } }));
+      take(file).catch((error) => say(error.message));
     }
   };
   document.addEventListener("dragover", (event) => event.preventDefault());
@@ -119,7 +127,22 @@ export function dialogs(home, { store, link, stage }) {
   });
   document.addEventListener("studio-drop", (event) => tryTake(/** @type {CustomEvent} */ (event).detail));
 
+  /**
+   * Open a link that holds a design.
+   * @param {string} text
+   */
+  const openLink = (text) => {
+    try {
+      begin(sharedDesign(text, store.state.tables.limits));
+    } catch (error) {
+      say(error instanceof Error ? error.message : String(error));
+    }
+  };
+  document.addEventListener("studio-link", (event) => openLink(/** @type {CustomEvent} */ (event).detail));
+
   return {
+    openLink,
+
     export() {
       const { tables, job, file } = store.state;
       const stem = file.replace(/\.[^.]*$/, "") || "tiles";
@@ -192,24 +215,37 @@ export function dialogs(home, { store, link, stage }) {
     },
 
     open() {
-      const input = make("input", { type: "file", accept: ".svg,.svgz,.dxf,.pdf,.lbrn2,.toml,.json" });
+      const input = make("input", { type: "file", accept: ".svg,.svgz,.dxf,.pdf,.lbrn2" });
+      const address = make("input", { type: "text", autocomplete: "off", spellcheck: "false" });
       open(
         "Open",
         [
           make("p", {}, "An SVG or DXF drawing becomes strokes of the site in hand. A file that was exported from here opens as the design and the job that it was made of."),
           field("File", input),
+          field("Or a link from Share", address),
         ],
-        [{ label: "Open", first: true, run: () => input.files?.[0] && take(input.files[0]) }, cancel],
+        [
+          {
+            label: "Open",
+            first: true,
+            run: async () => {
+              const file = input.files?.[0];
+              if (!file && !address.value) {
+                throw new Error("Choose a file, or paste a link.");
+              }
+              await (file ? take(file) : begin(sharedDesign(address.value, store.state.tables.limits)));
+            },
+          },
+          cancel,
+        ],
       );
     },
 
     share() {
-      const text = JSON.stringify(store.settled);
-      const code = btoa(String.fromCharCode(...new TextEncoder().encode(text))).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "");
-      const address = make("textarea", { readonly: true, rows: 4, "aria-label": "Link", ".value": `${location.origin}/#design=${code}` });
+      const address = make("textarea", { readonly: true, rows: 4, "aria-label": "Link", ".value": linkOf(store.settled) });
       open(
         "Share",
-        [make("p", {}, "The link holds the whole design after its #, which browsers do not send. Who opens it needs a studio that runs at this address; the file suits everybody."), address],
+        [make("p", {}, "The link holds the whole design after its #, which browsers do not send. In another studio it opens under Open, or pasted onto the drawing; the file suits everybody."), address],
         [
           { label: "Copy the link", first: true, run: () => navigator.clipboard.writeText(address.value) },
           { label: "Download the file", run: () => this.saveAs() },
@@ -243,18 +279,18 @@ export function dialogs(home, { store, link, stage }) {
       );
     },
 
-    /** @param {{design: any}} message */
-    conflict({ design }) {
+    /** @param {{design: any, note?: string}} message */
+    conflict({ design, note }) {
       open(
         "The file has changed",
-        [make("p", {}, "Somebody else has written the file since it was opened. What is there now, or what is drawn here?")],
+        [make("p", {}, note ?? "Another program has written the design's file."), make("p", {}, "What is drawn here takes its place if you keep it; what was there stays beside it as a backup.")],
         [
           {
             label: "Keep mine",
             first: true,
-            run: () => link.send({ type: "save", rev: store.state.revision, design: store.settled, over: true }),
+            run: () => save(true),
           },
-          ...(design ? [{ label: "Take theirs", run: () => begin(design) }] : []),
+          ...(design ? [{ label: "Take theirs", run: reload }] : []),
           cancel,
         ],
       );
@@ -263,14 +299,14 @@ export function dialogs(home, { store, link, stage }) {
     /** @param {{design: any, note?: string}} message */
     changed({ design, note }) {
       if (design && store.state.saved) {
-        begin(design);
-        store.set({ saved: true });
+        reload();
         return;
       }
+      store.keep(null);
       open(
         "The file has changed outside",
-        [make("p", {}, note ?? "Another program has written the design's file.")],
-        [...(design ? [{ label: "Take theirs", first: true, run: () => begin(design) }] : []), { label: "Keep mine" }],
+        [make("p", {}, note ?? "Another program has written the design's file."), make("p", { class: "note" }, "If you keep yours, the next save writes it there, and what is there now stays beside it as a backup.")],
+        [...(design ? [{ label: "Take theirs", first: true, run: reload }] : []), { label: "Keep mine", run: keepMine }],
       );
     },
   };

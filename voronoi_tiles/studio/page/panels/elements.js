@@ -17,6 +17,8 @@ export function make(tag, attributes = {}, ...children) {
       element.addEventListener(name.slice(2), value);
     } else if (name.startsWith(".")) {
       /** @type {any} */ (element)[name.slice(1)] = value;
+    } else if (name.startsWith("aria-") && typeof value === "boolean") {
+      element.setAttribute(name, String(value));
     } else if (value !== false && value !== null && value !== undefined) {
       element.setAttribute(name, value === true ? "" : String(value));
     }

@@ -1,7 +1,7 @@
 // @ts-check
 // The list of sites, strokes and points, as numbers: all that can be done by dragging can be done here.
 
-import { addSite, addStroke, moveStrokes, removeSite, removeStrokes, renameSite, replaceStroke } from "../model/design.js";
+import { addSite, addStroke, moveStrokes, nameProblem, removeSite, removeStrokes, renameSite, replaceStroke } from "../model/design.js";
 import { moveNodes } from "../model/nodes.js";
 import { NOTHING } from "../store.js";
 import { lengthField, make, refill } from "./elements.js";
@@ -86,7 +86,16 @@ export class StrokePanel extends HTMLElement {
       "aria-label": `Name of site ${i + 1}`,
       "data-key": `name ${i}`,
       ".value": site.name ?? `site${i + 1}`,
-      onchange: (/** @type {Event} */ event) => store.edit("rename", (design) => renameSite(design, i, /** @type {HTMLInputElement} */ (event.target).value)),
+      oninput: () => name.setCustomValidity(""),
+      onchange: () => {
+        const problem = nameProblem(state.design, i, name.value);
+        if (problem) {
+          name.setCustomValidity(problem);
+          name.reportValidity();
+        } else {
+          store.edit("rename", (design) => renameSite(design, i, name.value));
+        }
+      },
     });
     const draw = make("input", {
       type: "radio",

@@ -20,7 +20,8 @@ export const HELP = [
       { keys: "Enter, Esc, double click", does: "end the stroke" },
       { keys: "Click on its first point", does: "close it" },
       { keys: "Backspace, Ctrl+Z", does: "take back the last point" },
-      { keys: "Drag with the pen", does: "a tangent; Shift keeps to 15 degrees, Alt breaks it" },
+      { keys: "Drag with the pen", does: "a tangent; Shift keeps to 15 degrees, Alt breaks it, Space moves its point" },
+      { keys: "Shift+click", does: "a point at a multiple of 15 degrees from the last" },
       { keys: "Arrows, Enter", does: "move the cross hair, place a point" },
       { keys: "Ctrl", does: "do not snap to symmetry elements, points or the grid" },
     ],
@@ -51,7 +52,7 @@ export const HELP = [
   {
     title: "File",
     rows: [
-      { keys: "Ctrl+S", does: "save" },
+      { keys: "Ctrl+S, Ctrl+Shift+S", does: "save, download the design's file" },
       { keys: "Ctrl+E", does: "export" },
       { keys: "Ctrl+Z, Ctrl+Shift+Z, Ctrl+Y", does: "undo, redo" },
       { keys: "?", does: "this list" },
@@ -158,9 +159,9 @@ export function listen(hands, toolbox, canvas, run) {
       run(command);
       return true;
     }
-    const tool = TOOLS.find((one) => one.key === event.key.toLowerCase());
+    const tool = TOOLS.find((one) => one.key === event.key.toLowerCase() || one.other === event.key);
     if (tool && !event.shiftKey) {
-      store.set({ tool: tool.name });
+      hands.take(tool.name);
       return true;
     }
     return false;

@@ -4,6 +4,7 @@
 
 import { addStroke, replaceStroke } from "../model/design.js";
 import { penStroke } from "../model/nodes.js";
+import { rounded } from "../model/snapping.js";
 import { placementOf, unplace } from "../model/strokes.js";
 import { NOTHING } from "../store.js";
 
@@ -17,6 +18,18 @@ import { NOTHING } from "../store.js";
  */
 
 const NONE = /** @type {Point} */ ([0, 0]);
+
+const STEP = Math.PI / 12;
+
+/**
+ * A vector turned to the nearest multiple of 15 degrees.
+ * @param {Point} vector
+ * @returns {Point}
+ */
+function onAngle([x, y]) {
+  const [size, turn] = [Math.hypot(x, y), Math.round(Math.atan2(y, x) / STEP) * STEP];
+  return [size * Math.cos(turn), size * Math.sin(turn)];
+}
 
 /**
  * A maker of strokes that are a list of points under a key.
@@ -65,7 +78,22 @@ function pointTool({ make, handles = false, ...what }) {
   let pointer = null;
   let broken = false;
   let pulling = false;
+  let grabbed = NONE;
   let reach = 0;
+
+  /**
+   * Where a pointer places the next point: with Shift at a multiple of 15 degrees from the last.
+   * @param {Touch} touch
+   * @returns {Point}
+   */
+  const placeOf = (touch) => {
+    const last = points.at(-1);
+    if (!touch.shift || !last) {
+      return touch.at;
+    }
+    const [dx, dy] = onAngle([touch.raw[0] - last.at[0], touch.raw[1] - last.at[1]]);
+    return rounded([last.at[0] + dx, last.at[1] + dy], touch.reach / 1000);
+  };
 
   /** @param {Hands} hands */
   const forget = (hands) => {
@@ -131,22 +159,25 @@ function pointTool({ make, handles = false, ...what }) {
       check(hands);
       reach = touch.reach;
       const first = points[0];
-      if (points.length > 1 && Math.hypot(touch.raw[0] - first.at[0], touch.raw[1] - first.at[1]) <= touch.reach) {
+      const closes = points.length > 1 && Math.hypot(touch.raw[0] - first.at[0], touch.raw[1] - first.at[1]) <= touch.reach;
+      if (closes && make(points, true, placementOf(hands.store.settled.site[hands.store.state.site], {}))) {
         closed = true;
         commit(hands);
         finish(hands);
         return;
       }
       const last = points.at(-1);
-      if (last && last.at[0] === touch.at[0] && last.at[1] === touch.at[1]) {
+      if (closes || (last && Math.hypot(touch.raw[0] - last.at[0], touch.raw[1] - last.at[1]) <= touch.reach / 3)) {
         return;
       }
+      const at = placeOf(touch);
+      grabbed = touch.raw;
       hands.store.cancel();
       if (!points.length) {
         hands.store.set({ selection: NOTHING });
         expected = hands.store.settled;
       }
-      points = [...points, { at: touch.at, in: NONE, out: NONE }];
+      points = [...points, { at, in: NONE, out: NONE }];
       pulling = true;
       broken = false;
       if (!handles) {
@@ -155,31 +186,45 @@ function pointTool({ make, handles = false, ...what }) {
     },
     move(touch, hands, held) {
       check(hands);
-      pointer = touch.at;
+      pointer = placeOf(touch);
       if (held && pulling && handles) {
-        const last = points[points.length - 1];
+        let last = points[points.length - 1];
+        if (touch.space) {
+          const at = rounded([last.at[0] + touch.raw[0] - grabbed[0], last.at[1] + touch.raw[1] - grabbed[1]], 1 / hands.camera.scale);
+          last = { ...last, at };
+          points = [...points.slice(0, -1), last];
+          grabbed = touch.raw;
+          hands.store.preview((design) => withStroke(design, points, hands));
+          hands.redraw();
+          return;
+        }
+        grabbed = touch.raw;
         let pull = /** @type {Point} */ ([touch.raw[0] - last.at[0], touch.raw[1] - last.at[1]]);
         if (Math.hypot(...pull) < touch.reach / 3) {
           return;
         }
         if (touch.shift) {
-          const [size, turn] = [Math.hypot(...pull), Math.round(Math.atan2(pull[1], pull[0]) / (Math.PI / 12)) * (Math.PI / 12)];
-          pull = [size * Math.cos(turn), size * Math.sin(turn)];
+          pull = onAngle(pull);
         }
         broken ||= touch.alt;
         const placed = { at: last.at, in: broken ? last.in : /** @type {Point} */ ([-pull[0], -pull[1]]), out: pull };
         points = [...points.slice(0, -1), placed];
         hands.store.preview((design) => withStroke(design, points, hands));
-      } else if (points.length && !held) {
-        const last = points[points.length - 1];
-        if (Math.hypot(touch.at[0] - last.at[0], touch.at[1] - last.at[1]) > touch.reach / 4) {
-          hands.store.preview((design) => withStroke(design, [...points, { at: touch.at, in: NONE, out: NONE }], hands));
+      } else if (points.length) {
+        const [last, at] = [points[points.length - 1], pointer];
+        if (Math.hypot(at[0] - last.at[0], at[1] - last.at[1]) > touch.reach / 4) {
+          hands.store.preview((design) => withStroke(design, [...points, { at, in: NONE, out: NONE }], hands));
         }
       }
       hands.redraw();
     },
-    up(_touch, hands) {
-      if (pulling && handles && points.length) {
+    up(touch, hands) {
+      const last = points.at(-1);
+      if (pulling && handles && last) {
+        commit(hands);
+      } else if (pulling && last && Math.hypot(touch.raw[0] - last.at[0], touch.raw[1] - last.at[1]) > touch.reach) {
+        // Who drags has drawn from one point to the next.
+        points = [...points, { at: placeOf(touch), in: NONE, out: NONE }];
         commit(hands);
       }
       pulling = false;
@@ -209,7 +254,9 @@ function pointTool({ make, handles = false, ...what }) {
       hands.store.cancel();
       const through = points.slice(0, -1);
       const site = hands.store.settled.site[ref ? ref.site : hands.store.state.site];
-      const had = ref !== null;
+      // The point that the pen still pulls at is no step yet.
+      const had = ref !== null && !(pulling && handles);
+      pulling = false;
       const has = make(through, false, placementOf(site, {})) !== null;
       points = through;
       if (had) {

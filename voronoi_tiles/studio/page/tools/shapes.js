@@ -39,19 +39,19 @@ function add(hands, label, make, how = "edit") {
 export const point = {
   name: "point",
   key: "d",
+  other: ".",
   title: "Point",
   icon: "point",
   cursor: "crosshair",
   draws: true,
   help: "Click where an isolated point shall be.",
-  down(touch, hands) {
+  up(touch, hands) {
     add(hands, "point", (unplaced) => ({ point: unplaced(touch.at) }));
   },
 };
 
 /** @type {Point | null} */
 let middle = null;
-let radius = 0;
 
 /** @type {Tool} */
 export const circle = {
@@ -69,22 +69,22 @@ export const circle = {
       return;
     }
     middle = touch.at;
-    radius = 0;
   },
   move(touch, hands) {
     if (!middle) {
       return;
     }
     const centre = middle;
-    radius = Math.hypot(touch.at[0] - centre[0], touch.at[1] - centre[1]);
+    const radius = Math.hypot(touch.at[0] - centre[0], touch.at[1] - centre[1]);
     if (radius > touch.reach / 4) {
       add(hands, "circle", (unplaced, factor) => ({ circle: unplaced(centre), radius: radius * factor }), "preview");
     }
   },
   up(touch, hands) {
     // A click without a drag: the rim is clicked next.
-    if (middle && Math.hypot(touch.at[0] - middle[0], touch.at[1] - middle[1]) > touch.reach / 2) {
-      const centre = middle;
+    const centre = middle;
+    const radius = centre ? Math.hypot(touch.at[0] - centre[0], touch.at[1] - centre[1]) : 0;
+    if (centre && radius > touch.reach / 2) {
       middle = null;
       add(hands, "circle", (unplaced, factor) => ({ circle: unplaced(centre), radius: radius * factor }));
     }

@@ -13,6 +13,7 @@
  * @property {boolean} shift
  * @property {boolean} alt
  * @property {boolean} ctrl
+ * @property {boolean} space whether Space is held, which moves what is being placed
  * @property {boolean} touch whether a finger, which hits less exactly
  * @property {number} reach how far away something is still hit; units
  * @property {Point[]} trail where the pointer has been since the last event, raw, the newest last
@@ -23,11 +24,13 @@
  * @property {import("../view/camera.js").Camera} camera
  * @property {() => {motions: import("../model/symmetry.js").Motion[], lattice: import("../model/symmetry.js").Lattice}} symmetry
  * @property {() => void} redraw
+ * @property {(tool: string) => void} take take a tool, and see the drawing
  * @property {(text: string) => void} hint say what the tool waits for
  *
  * @typedef {object} Tool
  * @property {string} name
  * @property {string} key the letter that takes it, fixed
+ * @property {string} [other] another key that does
  * @property {string} title
  * @property {string} icon
  * @property {string} cursor

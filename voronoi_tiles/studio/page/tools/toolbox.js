@@ -33,6 +33,7 @@ export class Toolbox {
   /** @type {Tool | null} the tool that Space or the middle button has put aside */
   #aside = null;
   #held = false;
+  #space = false;
   #current = "select";
   /** @type {Map<number, Point>} fingers */
   #fingers = new Map();
@@ -81,6 +82,7 @@ export class Toolbox {
    * @param {boolean} on
    */
   borrow(on) {
+    this.#space = on;
     if (on !== (this.#aside !== null) && !this.#held) {
       this.#aside = on ? byName[this.#current] : null;
       this.#canvas.style.cursor = this.tool.cursor;
@@ -109,7 +111,7 @@ export class Toolbox {
 
   /**
    * @param {Point} screen
-   * @param {{shift: boolean, alt: boolean, ctrl: boolean, touch: boolean, trail: Point[]}} how
+   * @param {Pick<Touch, "shift" | "alt" | "ctrl" | "touch" | "trail">} how
    * @returns {Touch}
    */
   #touchAt(screen, how) {
@@ -117,7 +119,7 @@ export class Toolbox {
     const raw = camera.toDrawing(screen);
     const reach = (how.touch ? TOUCH_REACH : MOUSE_REACH) / camera.scale;
     this.snapped = how.ctrl ? null : this.#snap(raw, reach);
-    return { at: this.snapped?.at ?? rounded(raw, 1 / camera.scale), raw, screen, reach, ...how };
+    return { at: this.snapped?.at ?? rounded(raw, 1 / camera.scale), raw, screen, reach, space: this.#space, ...how };
   }
 
   /**
@@ -146,7 +148,12 @@ export class Toolbox {
     if (event.pointerType === "touch") {
       this.#fingers.set(event.pointerId, this.#screen(event));
       if (this.#fingers.size === 2) {
-        this.tool.cancel?.(this.#hands);
+        // What the first finger has begun was no drawing.
+        if (this.#held && this.tool.undo) {
+          this.tool.undo(this.#hands);
+        } else {
+          this.tool.cancel?.(this.#hands);
+        }
         this.#held = false;
         return;
       }

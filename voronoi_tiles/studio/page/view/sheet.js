@@ -124,6 +124,9 @@ export class SheetView {
     if (this.#fitted !== key) {
       this.#fitted = key;
       camera.fit([0, -page.height, page.width, 0], 0.8);
+      // Beside it the dimensions have room.
+      const [across, up] = [(camera.size[0] - 4 * RULER) / page.width, (camera.size[1] - 4 * RULER) / page.height];
+      camera.scale = Math.max(Math.min(camera.scale, across, up), camera.scale / 4);
     }
     if (this.#paths?.product !== product) {
       this.#paths = { product, paths: product.layers.map((layer) => ({ ...layer, path: new Path2D(layer.path) })) };

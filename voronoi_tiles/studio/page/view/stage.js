@@ -36,6 +36,8 @@ export class Stage {
   #sites = null;
   /** @type {any} what the preview has drawn last */
   #drawn = null;
+  /** @type {any} the sites that the preview could not draw */
+  #tooMuch = null;
   /** @type {any} the last colouring that came */
   #colouring = null;
   /** @type {{image: ImageBitmap | null, opacity: number, size: number}} a picture that is traced, in the middle of the cell */
@@ -170,22 +172,42 @@ export class Stage {
     const { lattice, motions } = this.symmetry();
     this.#colouring = state.exact?.colouring ?? this.#colouring;
     const sites = this.#scene();
-    if (this.#preview && state.shown.colours && sites.length) {
-      this.#drawn = { lattice, motions, sites, camera, colouring: this.#colouring, style: { dark: this.dark, border: 0, strokes: 0 } };
-      this.#preview.draw(this.#drawn);
-    }
-    this.#picture.hidden = !this.#preview || !state.shown.colours || !sites.length;
+    const hasPicture = state.shown.colours && sites.length > 0 && this.#drawPicture(lattice, motions, sites);
+    this.#picture.hidden = !hasPicture;
     this.#drawTrace(context, lattice);
-    this.#outlines(context, state);
+    this.#outlines(context, state, state.shown.colours && !hasPicture);
     drawOverlay(context, this.hands, this.toolbox, motions, lattice);
+  }
+
+  /**
+   * Draw the live picture; false where there is no WebGL, or more than it can draw: the outlines are the picture then.
+   * @param {import("../model/symmetry.js").Lattice} lattice
+   * @param {import("../model/symmetry.js").Motion[]} motions
+   * @param {any[]} sites
+   */
+  #drawPicture(lattice, motions, sites) {
+    if (!this.#preview || this.#tooMuch === sites) {
+      return false;
+    }
+    const style = { dark: this.dark, border: 0, strokes: 0 };
+    this.#drawn = { lattice, motions, sites, camera: this.camera, colouring: this.#colouring, style };
+    try {
+      this.#preview.draw(this.#drawn);
+    } catch (error) {
+      console.warn(error);
+      this.#tooMuch = sites;
+      return false;
+    }
+    return true;
   }
 
   /**
    * The exact outlines: whole lines where they are of what is drawn, grey and dashed where that has none.
    * @param {CanvasRenderingContext2D} context
    * @param {State} state
+   * @param {boolean} filled whether they are the picture
    */
-  #outlines(context, { exact, refusal, shown }) {
+  #outlines(context, { exact, refusal, shown }, filled) {
     if (!exact || !shown.edges) {
       return;
     }
@@ -197,7 +219,7 @@ export class Stage {
       line: refusal ? 1 : 1.6,
       colour: style.getPropertyValue(refusal ? "--quiet" : "--text").trim(),
       ...(refusal ? { dash: [5, 4], opacity: 0.7 } : {}),
-      ...(this.#preview || !shown.colours ? {} : { fill: exact.colouring ?? true }),
+      ...(filled ? { fill: exact.colouring ?? true } : {}),
     });
   }
 

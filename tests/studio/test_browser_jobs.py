@@ -1,0 +1,140 @@
+"""A job in a real browser: from the sheet to the files, which are the command line's to the byte, and back again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from helpers.studio import Studio, Window, opened, running
+
+import voronoi_tiles as vt
+
+TEXT = """\
+schema = 1
+group = "p4"
+cell = { a = 60 }
+
+[[site]]
+name = "bird"
+strokes = [{ polyline = [[6.0, 9.0], [20.0, 4.0], [25.0, 18.0]] }]
+"""
+JOB = {"sheet": "300x200mm", "kerf": 0.15, "preset": "lightburn", "edges": "pieces"}
+
+
+@pytest.fixture(scope="module")
+def studio(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
+    """A studio on a design."""
+    folder = tmp_path_factory.mktemp("jobs")
+    (folder / "bird.toml").write_text(TEXT, encoding="utf-8")
+    with running(folder, "bird.toml") as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def window(chromium: Any, studio: Studio) -> Iterator[Window]:
+    """Its page with the job set up."""
+    with opened(chromium, studio, viewport={"width": 1000, "height": 700}) as found:
+        found.wait()
+        page = found.page
+        page.get_by_role("tab", name="Job").click()
+        panel = page.locator("#panel-job")
+        for label, value in (("Sheet", "300x200mm"), ("Kerf, mm", "0.1mm + 0.05")):
+            panel.get_by_label(label, exact=True).fill(value)
+            page.keyboard.press("Enter")
+        for label, value in (("Preset", JOB["preset"]), ("Edges", JOB["edges"])):
+            panel.get_by_label(label, exact=True).select_option(value)
+        yield found
+
+
+def download(window: Window, form: str) -> Any:
+    """The file of a format, by the dialog."""
+    page = window.page
+    page.keyboard.press("Control+e")
+    page.get_by_label("Format").select_option(form)
+    with page.expect_download() as found:
+        page.get_by_role("button", name="Download").click()
+    page.locator("dialog").wait_for(state="detached")
+    return found.value
+
+
+def test_report_and_findings(window: Window) -> None:
+    """The report says the sheet's size and the pieces; each finding shows its place; an option out of range is said."""
+    page = window.page
+    page.get_by_role("tab", name="Report").click()
+    page.get_by_text("300 mm x 200 mm").wait_for()
+    report = vt.Design.loads(TEXT).tessellate().report(vt.Job(**JOB))
+    assert page.locator(".figures:not(.old)").get_by_text(str(report["pieces"]["count"])).count()
+    page.get_by_role("tab", name="Job").click()
+    fit = page.get_by_label("Fit", exact=True)
+    fit.select_option("clip")
+    page.get_by_role("tab", name="Report").click()
+    finding = page.locator(".finding").first
+    finding.wait_for()
+    before = page.locator("#sheet").screenshot()
+    finding.get_by_role("button", name="Show").click()
+    page.wait_for_function("() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    assert page.locator("#sheet").screenshot() != before
+    page.get_by_role("tab", name="Job").click()
+    fit.select_option("whole")
+    margin = page.get_by_label("Margin, mm")
+    margin.fill("400")
+    margin.press("Enter")
+    page.locator("#panel-job").get_by_role("alert").wait_for()
+    margin.fill("0")
+    margin.press("Enter")
+    page.locator("#panel-job").get_by_role("alert").wait_for(state="detached")
+
+
+def test_files_are_those_of_the_command_line(window: Window, studio: Studio, tmp_path: Path) -> None:
+    """SVG and DXF with the job are the same bytes; an SVG that is opened again gives the design and the job."""
+    page = window.page
+    window.save()
+    tiling = vt.Design.load(studio.folder / "bird.toml").tessellate()
+    for form in ("svg", "dxf", "pdf", "lbrn2"):
+        found = download(window, form)
+        assert found.suggested_filename == f"bird.{form}"
+        tiling.export(tmp_path / f"ours.{form}", job=vt.Job(**JOB))
+        assert Path(found.path()).read_bytes() == (tmp_path / f"ours.{form}").read_bytes(), form
+        if form == "svg":
+            found.save_as(tmp_path / "bird.svg")
+
+    before = window.design
+    page.get_by_role("tab", name="Drawing").click()
+    window.choose("Line 1")
+    page.locator("#overlay").focus()
+    page.keyboard.press("Delete")
+    page.get_by_role("tab", name="Job").click()
+    page.get_by_role("button", name="Reset").click()
+    assert page.locator("#panel-job").get_by_label("Sheet", exact=True).input_value() == ""
+    page.get_by_role("button", name="Open").click()
+    page.get_by_label("File", exact=True).set_input_files(tmp_path / "bird.svg")
+    page.get_by_role("dialog").get_by_role("button", name="Open").click()
+    page.locator("dialog").wait_for(state="detached")
+    assert window.design == before
+    again = download(window, "svg")
+    assert Path(again.path()).read_bytes() == (tmp_path / "bird.svg").read_bytes()
+
+
+def test_coupon_picture_and_parts(window: Window) -> None:
+    """A test piece, a picture, and a zip of one file a colour under its own name."""
+    page = window.page
+    picture = Path(download(window, "png").path()).read_bytes()
+    assert picture.startswith(b"\x89PNG")
+    page.get_by_role("tab", name="Job").click()
+    page.get_by_role("button", name="Test piece for the kerf").click()
+    page.get_by_label("Thickness of the material").fill("a lot")
+    page.get_by_role("button", name="Download").click()
+    page.get_by_role("dialog").get_by_role("alert").get_by_text("a lot").wait_for()
+    page.get_by_label("Thickness of the material").fill("4mm")
+    with page.expect_download() as found:
+        page.get_by_role("button", name="Download").click()
+    assert found.value.suggested_filename.endswith(".svg")
+    assert b"<svg" in Path(found.value.path()).read_bytes()
+    page.locator("dialog").wait_for(state="detached")
+    page.locator("#panel-job summary", has_text="Colours").click()
+    page.get_by_label("Into", exact=True).select_option("files")
+    page.get_by_label("Colours", exact=True).fill("3")
+    page.keyboard.press("Enter")
+    assert download(window, "svg").suggested_filename.endswith(".zip")
