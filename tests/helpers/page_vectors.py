@@ -16,9 +16,10 @@ import voronoi_tiles as vt
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.maps import Isometry
 from voronoi_tiles.designs import schema, strokes
-from voronoi_tiles.groups.symmetry_elements import Line, placed, symmetry_elements
+from voronoi_tiles.groups.symmetry_elements import placed, symmetry_elements
 from voronoi_tiles.groups.wallpaper import GROUPS, Lattice, WallpaperGroup
 from voronoi_tiles.paths.ellipses import EllipticalArc
+from voronoi_tiles.studio.tables import group_document
 from voronoi_tiles.vector.copies import place
 from voronoi_tiles.vector.motions import Action, to_motion
 
@@ -53,31 +54,11 @@ PATHS: Final = (
 """Path data: all commands, absolute and relative, repeated, smooth ones after others, radii too small or none."""
 
 
-_HALF: Final = [[0, 0], [0.5, 0], [0.5, 1], [0, 1]]
-_QUARTER: Final = [[0, 0], [0.5, 0], [0.5, 0.5], [0, 0.5]]
-_KITE: Final = [[0, 0], [0.5, 0], [2 / 3, 1 / 3], [0.5, 0.5]]
-
-REGIONS: Final = {
-    "p1": [[0, 0], [1, 0], [1, 1], [0, 1]],
-    **dict.fromkeys(("p2", "pm", "pg"), _HALF),
-    **dict.fromkeys(("cm", "pmm", "pgg", "p4"), _QUARTER),
-    "pmg": [[-0.25, 0], [0.25, 0], [0.25, 0.5], [-0.25, 0.5]],
-    "cmm": [[0, 0], [0.25, 0], [0.25, 0.5], [0, 0.5]],
-    "p4m": [[0, 0], [0.5, 0], [0.5, 0.5]],
-    "p4g": [[0, 0], [0.5, 0], [0, 0.5]],
-    "p3": [[0, 0], [0.5, 0], [2 / 3, 1 / 3], [1 / 3, 2 / 3], [0, 0.5]],
-    "p3m1": [[0, 0], [2 / 3, 1 / 3], [1 / 3, 2 / 3]],
-    **dict.fromkeys(("p31m", "p6"), _KITE),
-    "p6m": [[0, 0], [0.5, 0], [2 / 3, 1 / 3]],
-}
-"""An asymmetric unit of every group, its corners in fractional coordinates. Source: International Tables, vol. A."""
-
-
 def vectors(seed: int = 14) -> dict[str, Any]:
     """All that is compared."""
     chance = np.random.default_rng(seed)
     return {
-        "tables": {"groups": [group_table(group) for group in GROUPS.values()]},
+        "tables": {"groups": [group_document(group) for group in GROUPS.values()]},
         "strokes": list(_strokes(chance)),
         "flattened": list(_flattened(chance)),
         "groups": [_group(group, chance) for group in GROUPS.values()],
@@ -159,31 +140,6 @@ def _flattened(chance: np.random.Generator) -> Iterator[dict[str, Any]]:
 
 
 # --- groups ---------------------------------------------------------------------------------------------------
-
-
-def group_table(group: WallpaperGroup) -> dict[str, Any]:
-    """A group as the server describes it."""
-    elements = symmetry_elements(group)
-    free = ["a", *([] if group.fixes_b else ["b"]), *(["angle"] if group.fixed_angle is None else [])]
-    return {
-        "name": group.name,
-        "order": group.order,
-        "system": group.system,
-        "free": free,
-        "angle": group.fixed_angle,
-        "operations": [
-            {"name": str(operation), "w": list(operation.linear), "t": [float(part) for part in operation.translation]}
-            for operation in group.operations
-        ],
-        "centres": [{"at": [float(c.x), float(c.y)], "order": c.order} for c in elements.centres],
-        "mirrors": [_line_table(line) for line in elements.mirrors],
-        "glides": [_line_table(line) for line in elements.glides],
-        "region": REGIONS[group.name],
-    }
-
-
-def _line_table(line: Line) -> dict[str, Any]:
-    return {"through": [float(part) for part in line.point], "along": list(line.direction)}
 
 
 def cell_of(group: WallpaperGroup) -> dict[str, float]:

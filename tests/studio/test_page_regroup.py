@@ -9,11 +9,11 @@ from typing import Any
 
 import pytest
 from helpers.page import TESTS, node
-from helpers.page_vectors import group_table
 
 import voronoi_tiles as vt
 from voronoi_tiles.designs.starters import GROUP_NAMES
 from voronoi_tiles.groups.wallpaper import GROUPS
+from voronoi_tiles.studio.tables import group_document
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 
@@ -21,7 +21,7 @@ EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 @pytest.fixture(scope="module")
 def tables() -> dict[str, Any]:
     """The groups as the page knows them."""
-    return {"groups": [group_table(group) for group in GROUPS.values()]}
+    return {"groups": [group_document(group) for group in GROUPS.values()]}
 
 
 def call(module: str, name: str, calls: list[list[Any]]) -> list[Any]:
