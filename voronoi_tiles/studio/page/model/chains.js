@@ -9,8 +9,19 @@ import { cubicsOf, kindOf } from "./strokes.js";
 
 /** @typedef {Point[]} Chain 3 n + 1 control points; it is closed where the last is the first */
 
-/** Whether a chain ends where it begins. @type {(chain: Chain) => boolean} */
-export const isClosed = (chain) => same(chain[0], chain[chain.length - 1]);
+/** Whether points, two at least, end where they begin. @type {(points: readonly Point[]) => boolean} */
+export const isClosed = (points) => points.length > 1 && same(points[0], points[points.length - 1]);
+
+/**
+ * Chains with the numbers of their first control points among those of all.
+ *
+ * @param {Chain[]} chains
+ * @returns {{chain: Chain, offset: number}[]}
+ */
+export function numbered(chains) {
+    let end = 0;
+    return chains.map((chain) => ({ chain, offset: (end += chain.length) - chain.length }));
+}
 
 /**
  * The chains of a stroke: one, but for path data with several moves.
@@ -78,7 +89,7 @@ export function asBezier(stroke, resolved) {
  * @param {Chain[]} chains
  * @returns {string}
  */
-export function pathData(chains) {
+function pathData(chains) {
     return chains.map((chain) => `M ${chain[0].join(" ")}${pieces(chain).map(command).join("")}`).join(" ");
 }
 

@@ -45,7 +45,7 @@ export function cosets(motions, lattice, segments) {
  * @param {ArrayLike<number>} segments the site's, 4 numbers each
  * @returns {Motion[]}
  */
-export function stabilizerOf(motions, lattice, segments) {
+function stabilizerOf(motions, lattice, segments) {
     const [identity, ...others] = motions;
     if (!segments.length) return [identity];
     const [left, bottom, right, top] = boxOf(segments);

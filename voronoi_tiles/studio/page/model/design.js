@@ -8,7 +8,7 @@
 
 import { MILLIMETRES } from "./lengths.js";
 import { placementIn, kindOf, pointsOf } from "./strokes.js";
-import { inverse, tidyProduct, tidySum, turned } from "./plane.js";
+import { inverse, tidyPlus, tidyProduct, turned } from "./plane.js";
 
 /** @typedef {import("./plane.js").Point} Point */
 /**
@@ -96,9 +96,6 @@ export const isSameStroke = (one, other) => one.site === other.site && one.strok
 export function allStrokes(design) {
     return design.site.flatMap((site, k) => site.strokes.map((_, stroke) => ({ site: k, stroke })));
 }
-
-/** How many strokes a design has. @type {(design: Design) => number} */
-export const strokeCount = (design) => design.site.reduce((count, site) => count + site.strokes.length, 0);
 
 /**
  * The design with another list of strokes in one site.
@@ -191,17 +188,9 @@ export function moveStrokes(design, refs, vector) {
 export function movedStroke(site, stroke, vector) {
     const by = turned(inverse(placementIn(site)), vector);
     const isPlaced = ["mirror", "scale", "rotate", "translate"].some((key) => key in stroke);
-    if (isPlaced || !pointsOf(stroke).length)
-        return { ...stroke, translate: movedPoint(stroke.translate ?? [0, 0], by) };
-    return mapPoints(stroke, (point) => movedPoint(point, by));
+    if (isPlaced || !pointsOf(stroke).length) return { ...stroke, translate: tidyPlus(stroke.translate ?? [0, 0], by) };
+    return mapPoints(stroke, (point) => tidyPlus(point, by));
 }
-
-/**
- * A point moved by a vector, its coordinates without what binary fractions leave.
- *
- * @type {(p: Point, by: Point) => Point}
- */
-const movedPoint = (point, by) => [tidySum(point[0], by[0]), tidySum(point[1], by[1])];
 
 /**
  * A stroke with other points: those of its own key, not the tangents.

@@ -6,7 +6,7 @@
  * squares, their parameters improved by Newton's method, divided where the curve is farthest away.
  */
 
-import { between, distance, dot, length, minus, plus, same, scaled } from "./plane.js";
+import { between, distance, dot, minus, plus, same, scaled, unit } from "./plane.js";
 import { pointOn } from "./nearest.js";
 import { rounded } from "./snapping.js";
 
@@ -131,9 +131,6 @@ function endTangent(points, from, step, accuracy) {
     const [x, y] = minus(towards, points[from]);
     return x || y ? [x, y] : minus(points[from + step], points[from]);
 }
-
-/** A vector of length 1. @type {(v: Point) => Point} */
-const unit = (v) => scaled(v, 1 / (length(v) || 1));
 
 /**
  * Cubics through a run of points that leave it in two directions, which point into the run.

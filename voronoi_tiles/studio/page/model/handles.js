@@ -1,8 +1,8 @@
 // @ts-check
 /** The handles of anchors: pulled out, taken back, made even, and as the pen draws them. */
 
-import { anchorOf, asBezier, chainsOf, handlesOf, isSmooth, strokesOf } from "./chains.js";
-import { inverse, length, minus, plus, same, scaled, turned } from "./plane.js";
+import { anchorOf, asBezier, chainsOf, handlesOf, isClosed, isSmooth, numbered, strokesOf } from "./chains.js";
+import { inverse, length, minus, plus, same, scaled, turned, unit } from "./plane.js";
 import { kindOf, pointsOf, tangentsOf, unplace } from "./strokes.js";
 
 /** @typedef {import("./plane.js").Point} Point */
@@ -66,12 +66,12 @@ function smoothHandles(chain, anchor) {
     const along = minus(next, previous);
     // A chain that turns back: across.
     const direction = same(along, [0, 0]) ? /** @type {Point} */ ([at[1] - next[1], next[0] - at[0]]) : along;
-    const unit = scaled(direction, 1 / (length(direction) || 1));
+    const forward = unit(direction);
     const size = (/** @type {number} */ handle, /** @type {Point} */ neighbour) =>
         length(minus(chain[handle], at)) || length(minus(neighbour, at)) / 3;
     return [
-        before < 0 ? null : plus(at, scaled(unit, -size(before, previous))),
-        after < 0 ? null : plus(at, scaled(unit, size(after, next))),
+        before < 0 ? null : plus(at, scaled(forward, -size(before, previous))),
+        after < 0 ? null : plus(at, scaled(forward, size(after, next))),
     ];
 }
 
@@ -88,16 +88,11 @@ function withAnchor(stroke, node, handles) {
     const straight = kind === "segment" || kind === "polyline";
     const found = straight ? asBezier(stroke)[0] : stroke;
     if (!found || !(straight || kind === "bezier" || kind === "hermite" || kind === "path")) return stroke;
-    let offset = 0;
     const wanted = straight ? 3 * node : node;
     const chains = chainsOf(found);
-    const index = chains.findIndex((chain) => {
-        if (wanted < offset + chain.length) return true;
-        offset += chain.length;
-        return false;
-    });
-    if (index < 0) return stroke;
-    const chain = chains[index];
+    const held = numbered(chains).find(({ chain, offset }) => wanted < offset + chain.length);
+    if (!held) return stroke;
+    const { chain, offset } = held;
     const anchor = anchorOf(chain, wanted - offset);
     const numbers = handlesOf(chain, anchor);
     const places = handles(chain, anchor);
@@ -124,7 +119,7 @@ function withAnchor(stroke, node, handles) {
  */
 function withTangent(stroke, index, at, [before, after]) {
     const points = pointsOf(stroke);
-    const isTwin = (/** @type {number} */ k) => index === 0 && k === points.length - 1 && same(points[k], points[0]);
+    const isTwin = (/** @type {number} */ k) => index === 0 && k === points.length - 1 && isClosed(points);
     const tangent = after ? scaled(minus(after, at), 3) : scaled(minus(at, before ?? at), 3);
     return { ...stroke, tangents: tangentsOf(stroke).map((old, k) => (k === index || isTwin(k) ? tangent : old)) };
 }

@@ -7,9 +7,22 @@
  * lies on its anchor is no node. Nodes are in the drawing's coordinates, strokes before their placement.
  */
 
-import { anchorOf, asBezier, chainsOf, handlesOf, isSmooth, strokesOf } from "./chains.js";
+import { anchorOf, asBezier, chainsOf, handlesOf, isClosed, isSmooth, numbered, strokesOf } from "./chains.js";
 import { mapPoints } from "./design.js";
-import { IDENTITY, apply, inverse, length, minus, plus, same, scaled, tidySum, turned } from "./plane.js";
+import {
+    IDENTITY,
+    apply,
+    inverse,
+    length,
+    minus,
+    plus,
+    same,
+    scaled,
+    tidyPlus,
+    tidySum,
+    turned,
+    unit,
+} from "./plane.js";
 import { kindOf, pointsOf, radiusOf, tangentsOf } from "./strokes.js";
 
 export { asBezier } from "./chains.js";
@@ -88,18 +101,15 @@ function circleNodes(stroke, placement) {
  * @returns {Node[]}
  */
 function chainNodes(chains, placement) {
-    let first = 0;
-    return chains.flatMap((chain) => {
-        const offset = first;
-        first += chain.length;
-        return chain.flatMap((own, k) => {
+    return numbered(chains).flatMap(({ chain, offset }) =>
+        chain.flatMap((own, k) => {
             const anchor = anchorOf(chain, k);
             if (k % 3 === 0 ? k !== anchor : same(own, chain[anchor])) return [];
             const role = /** @type {const} */ (["anchor", "out", "in"])[k % 3];
             const at = apply(placement, own);
             return [{ node: offset + k, role, at, of: offset + anchor, smooth: isSmooth(chain, anchor) }];
-        });
-    });
+        }),
+    );
 }
 
 /**
@@ -139,7 +149,7 @@ export function moveNodes(stroke, placement, moves, { alone = false } = {}) {
 }
 
 /** A point moved by a vector, if there is one. @type {(point: Point, shift: Point | undefined) => Point} */
-const shifted = (point, shift) => (shift ? [tidySum(point[0], shift[0]), tidySum(point[1], shift[1])] : point);
+const shifted = (point, shift) => (shift ? tidyPlus(point, shift) : point);
 
 /**
  * A circle with its centre moved, or its rim moved to a point.
@@ -172,7 +182,7 @@ function movedHermite(stroke, shifts) {
     const points = pointsOf(stroke);
     const tangents = tangentsOf(stroke);
     const last = points.length - 1;
-    const closed = last > 0 && same(points[0], points[last]);
+    const closed = isClosed(points);
     const anchor = (/** @type {number} */ k) => shifts.get(closed && k === last ? 0 : 3 * k);
     /** @type {Point[]} */
     const newTangents = tangents.map((tangent, k) => {
@@ -189,8 +199,7 @@ function movedHermite(stroke, shifts) {
 /** Whether a closed `hermite` stroke has a corner where its ends meet. @type {(stroke: Stroke) => boolean} */
 function hasSeam(stroke) {
     const [points, tangents] = [pointsOf(stroke), tangentsOf(stroke)];
-    const last = points.length - 1;
-    return last > 0 && same(points[0], points[last]) && !same(tangents[0], tangents[last]);
+    return isClosed(points) && !isClosed(tangents);
 }
 
 /**
@@ -202,13 +211,9 @@ function hasSeam(stroke) {
  * @returns {Stroke}
  */
 function movedChains(stroke, shifts, alone) {
-    let first = 0;
-    const chains = chainsOf(stroke).map((chain) => {
-        const offset = first;
-        first += chain.length;
-        const shiftOf = (/** @type {number} */ k) => shifts.get(offset + k);
-        return movedChain(chain, shiftOf, alone);
-    });
+    const chains = numbered(chainsOf(stroke)).map(({ chain, offset }) =>
+        movedChain(chain, (k) => shifts.get(offset + k), alone),
+    );
     return strokesOf(stroke, chains)[0] ?? stroke;
 }
 
@@ -242,7 +247,5 @@ function movedChain(chain, shiftOf, alone) {
  * @returns {Point}
  */
 function opposite(anchor, handle, size) {
-    const direction = minus(anchor, handle);
-    const own = length(direction);
-    return own ? plus(anchor, scaled(direction, size / own)) : anchor;
+    return plus(anchor, scaled(unit(minus(anchor, handle)), size));
 }

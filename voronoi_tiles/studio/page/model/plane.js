@@ -146,6 +146,12 @@ export function inverse(map) {
     return { ...linear, b: scaled(turned(linear, map.b), -1) };
 }
 
+/** A vector of length 1 in the direction of another; none of the zero vector. @type {(v: Point) => Point} */
+export const unit = (v) => scaled(v, 1 / (length(v) || 1));
+
+/** A point with so many digits behind the point. @type {(p: Point, digits: number) => Point} */
+export const fixed = (p, digits) => [Number(p[0].toFixed(digits)) + 0, Number(p[1].toFixed(digits)) + 0];
+
 /** The factor by which a similarity enlarges. @type {(map: Readonly<Similarity>) => number} */
 export const factorOf = (map) => length(map.a);
 
@@ -164,6 +170,9 @@ export function tidySum(x, y) {
     const digits = largest ? 14 - Math.floor(Math.log10(largest)) : 0;
     return digits >= 0 && digits <= 100 ? Number((x + y).toFixed(digits)) + 0 : x + y;
 }
+
+/** A point moved by a vector, each coordinate a tidy sum. @type {(p: Point, by: Point) => Point} */
+export const tidyPlus = (p, by) => [tidySum(p[0], by[0]), tidySum(p[1], by[1])];
 
 /** The product of two numbers with at most 15 significant digits. @type {(x: number, y: number) => number} */
 export const tidyProduct = (x, y) => Number((x * y).toPrecision(15));

@@ -1,7 +1,7 @@
 // @ts-check
 /** Another group for the same drawing: its cell, and the drawing laid into that where its copies would touch. */
 
-import { between, cross, dot, length, minus, plus, scaled, tidyProduct, tidySum } from "./plane.js";
+import { between, cross, dot, fixed, length, minus, plus, scaled, tidyPlus, tidyProduct, unit } from "./plane.js";
 import { groupOf, latticeOf, regionOf } from "./symmetry.js";
 import { copiesTouch, segmentsOf } from "./touching.js";
 
@@ -82,7 +82,7 @@ function laidIn(design, region, resolved) {
     if (!points.length) return null;
     const sides = region.map((corner, k) => {
         const along = minus(region[(k + 1) % region.length], corner);
-        const outward = scaled(/** @type {Point} */ ([along[1], -along[0]]), 1 / length(along));
+        const outward = unit([along[1], -along[0]]);
         const reach = Math.max(...points.map((point) => dot(outward, point)));
         const width = Math.max(...region.map((point) => dot(outward, minus(corner, point))));
         return { outward, reach, limit: dot(outward, corner) - BORDER * width };
@@ -112,9 +112,8 @@ function largest(fits) {
 
 /** A site made larger about the origin, and then moved. @type {(site: Site, size: number, shift: Point) => Site} */
 function laid(site, size, shift) {
-    const [x, y] = site.translate ?? [0, 0];
     const larger = size === 1 ? {} : { scale: tidyProduct(site.scale ?? 1, size) };
-    return { ...site, ...larger, translate: [tidySum(x * size, shift[0]), tidySum(y * size, shift[1])] };
+    return { ...site, ...larger, translate: tidyPlus(scaled(site.translate ?? [0, 0], size), shift) };
 }
 
 /** The ends of segments. @type {(segments: Float64Array) => Point[]} */
@@ -123,9 +122,8 @@ function pointsIn(segments) {
 }
 
 /** A point to about a thousandth of a length. @type {(point: Point, size: number) => Point} */
-function shortened([x, y], size) {
-    const digits = Math.max(0, 3 - Math.floor(Math.log10(size)));
-    return [Number(x.toFixed(digits)) + 0, Number(y.toFixed(digits)) + 0];
+function shortened(point, size) {
+    return fixed(point, Math.max(0, 3 - Math.floor(Math.log10(size))));
 }
 
 /** The mean of a polygon's corners. @type {(polygon: Point[]) => Point} */

@@ -1,10 +1,10 @@
 // @ts-check
 /** Nodes put into strokes and taken out of them. */
 
-import { asBezier, chainsOf, isClosed, pieces, strokesOf, withKind } from "./chains.js";
+import { asBezier, chainsOf, isClosed, numbered, pieces, strokesOf, withKind } from "./chains.js";
 import { between, length, minus, plus, same, scaled } from "./plane.js";
 import { pointOn } from "./nearest.js";
-import { cubicsOf, kindOf, pointsOf } from "./strokes.js";
+import { cubicsOf, kindOf, pointsOf, tangentsOf } from "./strokes.js";
 
 /** @typedef {import("./plane.js").Point} Point */
 /** @typedef {import("./chains.js").Chain} Chain */
@@ -157,15 +157,13 @@ function cutPoints(stroke, gone) {
  * @returns {Stroke[]}
  */
 function healedHermite(stroke, gone) {
-    const points = pointsOf(stroke);
+    const [points, tangents] = [pointsOf(stroke), tangentsOf(stroke)];
     const last = points.length - 1;
-    const closed = last > 0 && same(points[0], points[last]);
+    const closed = isClosed(points);
     const stays = points.flatMap((_, k) => (gone.has(3 * k) || (closed && k === last) ? [] : [k]));
     if (stays.length < 2) return [];
     const ring = closed && stays.length > 2 ? [...stays, stays[0]] : stays;
-    return [
-        { ...stroke, hermite: ring.map((k) => points[k]), tangents: ring.map((k) => stroke.tangents?.[k] ?? [0, 0]) },
-    ];
+    return [{ ...stroke, hermite: ring.map((k) => points[k]), tangents: ring.map((k) => tangents[k]) }];
 }
 
 /**
@@ -177,10 +175,7 @@ function healedHermite(stroke, gone) {
  * @returns {Chain[]}
  */
 function withoutNodes(chains, gone, cut) {
-    let first = 0;
-    return chains.flatMap((chain) => {
-        const offset = first;
-        first += chain.length;
+    return numbered(chains).flatMap(({ chain, offset }) => {
         const has = (/** @type {number} */ k) => gone.has(offset + k);
         const whole = chain.map((point, k) => (k % 3 && has(k) ? chain[3 * Math.round(k / 3)] : point));
         const anchors = new Set(chain.flatMap((_, k) => (k % 3 === 0 && has(k) ? [k / 3] : [])));

@@ -8,16 +8,16 @@ import { apply, cross, minus } from "./plane.js";
 /** @typedef {import("./plane.js").Similarity} Similarity */
 
 /**
- * The images of segments, 4 numbers each.
+ * The images of points, two numbers each: of segments, or of the control points of pieces.
  *
- * @param {Similarity} motion
- * @param {ArrayLike<number>} segments
+ * @param {Readonly<Similarity>} map
+ * @param {ArrayLike<number>} numbers
  * @returns {Float64Array}
  */
-export function mapped(motion, segments) {
-    const image = new Float64Array(segments.length);
-    for (let k = 0; k < segments.length; k += 2) {
-        const z = apply(motion, [segments[k], segments[k + 1]]);
+export function mapped(map, numbers) {
+    const image = new Float64Array(numbers.length);
+    for (let k = 0; k < numbers.length; k += 2) {
+        const z = apply(map, [numbers[k], numbers[k + 1]]);
         image[k] = z[0];
         image[k + 1] = z[1];
     }

@@ -1,7 +1,7 @@
 // @ts-check
 /** Points that the pointer is drawn to: symmetry elements, nodes, the grid. */
 
-import { cross, distance, dot, length, minus, plus, scaled } from "./plane.js";
+import { cross, distance, dot, fixed, length, minus, plus, scaled } from "./plane.js";
 
 /** @typedef {import("./plane.js").Point} Point */
 /** @typedef {import("./symmetry.js").Elements} Elements */
@@ -68,9 +68,9 @@ export function snap(at, { elements = { centres: [], mirrors: [], glides: [] }, 
 }
 
 /** A point without what rounding leaves beyond 14 digits of its larger coordinate. @type {(at: Point) => Point} */
-function tidy([x, y]) {
-    const digits = 13 - Math.floor(Math.log10(Math.max(Math.abs(x), Math.abs(y), 1e-9)));
-    return [Number(x.toFixed(Math.max(0, digits))) + 0, Number(y.toFixed(Math.max(0, digits))) + 0];
+function tidy(at) {
+    const digits = 13 - Math.floor(Math.log10(Math.max(Math.abs(at[0]), Math.abs(at[1]), 1e-9)));
+    return fixed(at, Math.max(0, digits));
 }
 
 /**

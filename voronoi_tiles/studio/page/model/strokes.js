@@ -8,6 +8,7 @@
 
 import { pathCubics } from "./pathdata.js";
 import { IDENTITY, apply, compose, factorOf, inverse, minus, plus, same, scaled, unitAt } from "./plane.js";
+import { mapped } from "./segments.js";
 
 /** @typedef {import("./plane.js").Point} Point */
 /** @typedef {Readonly<import("./plane.js").Similarity>} Placement where a stroke is laid */
@@ -98,13 +99,7 @@ export const unplace = (placement, at) => (placement === IDENTITY ? at : apply(i
  * @returns {Float64Array}
  */
 export function cubicsOf(stroke, placement = IDENTITY, resolved = "") {
-    const own = ownCubics(stroke, resolved);
-    const placed = new Float64Array(own.length);
-    for (let k = 0; k < own.length; k += 2) {
-        const image = apply(placement, [own[k], own[k + 1]]);
-        placed[k] = image[0];
-        placed[k + 1] = image[1];
-    }
+    const placed = mapped(placement, ownCubics(stroke, resolved));
     if (!placed.every(Number.isFinite)) return new Float64Array(0);
     if (kindOf(stroke) !== "circle" || !placed.length) return placed;
     // A circle is not turned with its centre: its joints have to fit the mirrors of the group.

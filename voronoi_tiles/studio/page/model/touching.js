@@ -2,14 +2,13 @@
 /** Whether copies of sites touch: a quick look at coarse segments; the engine has the last word. */
 
 import { cosets } from "./copies.js";
-import { cellArea, reduced } from "./lattice.js";
-import { cross, length, plus, scaled } from "./plane.js";
+import { imagesIn } from "./lattice.js";
+import { length } from "./plane.js";
 import { boxOf, mapped, segmentsTouch } from "./segments.js";
 import { cubicsOf, flatten, placementOf } from "./strokes.js";
 import { latticeOf, motionsOf } from "./symmetry.js";
 
 /** @typedef {import("./plane.js").Box} Box */
-/** @typedef {import("./plane.js").Point} Point */
 /** @typedef {import("./design.js").Design} Design */
 /** @typedef {import("./lattice.js").Lattice} Lattice */
 /** @typedef {import("./symmetry.js").Tables} Tables */
@@ -70,33 +69,10 @@ function imageTouches(segments, image, lattice, apart, isItself) {
     const [left, bottom, right, top] = boxOf(segments);
     const box = boxOf(image);
     // Translations t with which the image's box, moved by t, meets that of the segments.
-    const window = /** @type {const} */ ([
-        left - box[2] - apart,
-        bottom - box[3] - apart,
-        right - box[0] + apart,
-        top - box[1] + apart,
-    ]);
-    return translationsIn(lattice, [...window]).some((t) => {
+    /** @type {Box} */
+    const window = [left - box[2] - apart, bottom - box[3] - apart, right - box[0] + apart, top - box[1] + apart];
+    return imagesIn(lattice, [0, 0], window).some((t) => {
         if (isItself && t[0] === 0 && t[1] === 0) return false;
         return segmentsTouch(segments, mapped({ a: [1, 0], b: t, conj: false }, image), apart);
     });
-}
-
-/** The vectors of a lattice in a box. @type {(lattice: Lattice, box: Box) => Point[]} */
-function translationsIn(lattice, [x0, y0, x1, y1]) {
-    const { a, b } = reduced(lattice);
-    const middle = /** @type {Point} */ ([(x0 + x1) / 2, (y0 + y1) / 2]);
-    const reach = Math.hypot(x1 - x0, y1 - y0) / 2;
-    const height = cellArea({ a, b }) / length(a);
-    const width = cellArea({ a, b }) / length(b);
-    const [s, t] = [cross(middle, b) / cross(a, b), cross(a, middle) / cross(a, b)];
-    /** @type {Point[]} */
-    const found = [];
-    for (let j = Math.ceil(t - reach / height); j <= t + reach / height; j++) {
-        for (let i = Math.ceil(s - reach / width); i <= s + reach / width; i++) {
-            const [x, y] = plus(scaled(a, i), scaled(b, j));
-            if (x0 <= x && x <= x1 && y0 <= y && y <= y1) found.push([x, y]);
-        }
-    }
-    return found;
 }
