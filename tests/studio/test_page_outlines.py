@@ -19,7 +19,9 @@ from voronoi_tiles.raster.image_colouring import colour
 from voronoi_tiles.raster.scene import Pattern
 
 DRAW = """async ([{ camera, lattice, motions, sites, colouring }, paths, style]) => {
-    const { drawOutlines, boxOf } = await import("/view/outlines.js");
+    const { drawOutlines } = await import("/view/outlines.js");
+    const { pathCubics } = await import("/model/pathdata.js");
+    const { boxOf } = await import("/model/segments.js");
     const { tileColour } = await import("/gl/colours.js");
     const [width, height] = camera.size.map((side) => side * camera.ratio);
     const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
@@ -31,7 +33,7 @@ DRAW = """async ([{ camera, lattice, motions, sites, colouring }, paths, style])
         count,
         pixels: [...context.getImageData(0, 0, width, height).data],
         palette: [...Array(40).keys()].map((k) => tileColour(k, false)),
-        boxes: paths.map(boxOf),
+        boxes: paths.map((path) => boxOf(pathCubics(path))),
         left: [a, e, context.globalAlpha, context.lineWidth],
     });
 }"""

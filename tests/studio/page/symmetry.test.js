@@ -82,10 +82,10 @@ test("skew and turned-over lattices: images, cells and folding agree with counti
         for (const at of all.filter(isIn)) assert.ok(cells.has(String(fractional(lattice, at).map(Math.floor))));
         for (const at of all) assertNear(fold(lattice, at), fold(lattice, point), 1e-7);
         const short = reduced(lattice);
-        assertNear([cellArea(short)], [cellArea(lattice)], 1e-9);
+        assertNear([cellArea({ a: short.p, b: short.q })], [cellArea(lattice)], 1e-9);
         const square = ([x, y]) => x * x + y * y;
-        const [one, other] = [1, -1].map((sign) => short.b.map((value, k) => value + sign * short.a[k]));
-        assert.ok(square(short.a) <= square(short.b) && square(short.b) <= Math.min(square(one), square(other)));
+        const [one, other] = [1, -1].map((sign) => short.q.map((value, k) => value + sign * short.p[k]));
+        assert.ok(square(short.p) <= square(short.q) && square(short.q) <= Math.min(square(one), square(other)));
     }
 });
 

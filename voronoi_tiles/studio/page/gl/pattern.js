@@ -1,33 +1,25 @@
 // @ts-check
 /** The drawing as a periodic set of elements, segments and points, in float64 and the units of the drawing. */
 
-/** @typedef {[number, number]} Point */
-/** @typedef {{a: Point, b: Point}} Lattice Two vectors, b to the left of a. */
-/** @typedef {{a: Point, b: Point, conj: boolean}} Motion z -> a z + b, or a (conjugate of z) + b; complex numbers. */
+import { cellArea, reduced } from "../model/lattice.js";
+
+/** @typedef {import("../model/plane.js").Point} Point */
+/** @typedef {import("../model/plane.js").Similarity} Motion */
+/** @typedef {import("../model/lattice.js").Basis} Basis */
+/** @typedef {import("../model/lattice.js").Lattice} Lattice */
 /** @typedef {{segments: Float64Array, cosets: number[]}} Site Segments x0, y0, x1, y1; motions that differ on it. */
-/** @typedef {{p: Point, q: Point, rows: [Point, Point]}} Basis The shortest basis, and its integers over a and b. */
 
 /** Most elements about a cell. Beyond, a picture takes seconds: there is none. */
 const MOST = 2_000_000;
 
 /**
- * The shortest basis of a lattice (Lagrange, Gauss), |p| <= |q|, q to the left of p; null where it has no area.
+ * The shortest basis of a lattice; null where it has no area.
  * @param {Lattice} lattice
  * @returns {Basis | null}
  */
-export function reducedBasis({ a, b }) {
-    if (!(a[0] * b[1] - a[1] * b[0] > 0) || ![...a, ...b].every(Number.isFinite)) return null;
-    /** @type {[number, number, number, number]} */
-    let u = [a[0], a[1], 1, 0];
-    /** @type {[number, number, number, number]} */
-    let v = [b[0], b[1], 0, 1];
-    for (let step = 0; step < 2000; step++) {
-        if (Math.hypot(u[0], u[1]) > Math.hypot(v[0], v[1])) [u, v] = [v, [-u[0], -u[1], -u[2], -u[3]]];
-        const n = Math.round((u[0] * v[0] + u[1] * v[1]) / (u[0] * u[0] + u[1] * u[1]));
-        v = [v[0] - n * u[0], v[1] - n * u[1], v[2] - n * u[2], v[3] - n * u[3]];
-        if (Math.hypot(u[0], u[1]) <= Math.hypot(v[0], v[1])) break;
-    }
-    return { p: [u[0], u[1]], q: [v[0], v[1]], rows: [[u[2], u[3]], [v[2], v[3]]] };
+export function reducedBasis(lattice) {
+    const isOne = cellArea(lattice) > 0 && [...lattice.a, ...lattice.b].every(Number.isFinite);
+    return isOne ? reduced(lattice) : null;
 }
 
 /** The copies of sites: those that are no translates of each other, and the lattice. */

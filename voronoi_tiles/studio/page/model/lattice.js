@@ -10,6 +10,8 @@ import { boxOf } from "./segments.js";
 
 /** @typedef {{a: Point, b: Point}} Lattice all i a + j b with integers i, j; b to the left of a, which lies along x */
 
+/** @typedef {{p: Point, q: Point, rows: [Point, Point]}} Basis another basis, and its integers over a and b */
+
 /** How far outside a box counts as on its border, in ulps of its largest coordinate. */
 const BORDER = 64 * 2 ** -52;
 
@@ -56,20 +58,29 @@ export function cellsIn(lattice, [x0, y0, x1, y1]) {
 }
 
 /**
- * The shortest basis of a lattice, |a| <= |b|. Source: Lagrange, Gauss.
+ * The shortest basis of a lattice, |p| <= |q|, q to the left of p. Source: Lagrange, Gauss.
  *
  * @param {Lattice} lattice
- * @returns {Lattice}
+ * @returns {Basis}
  */
 export function reduced({ a, b }) {
-    let [u, v] = length(a) > length(b) ? [b, scaled(a, -1)] : [a, b];
-    // Each step shortens v by a factor, or is the last.
+    let [p, q] = [a, b];
+    /** @type {[Point, Point]} */
+    let [one, other] = [[1, 0], [0, 1]];
+    const turn = () => {
+        [p, q] = [q, scaled(p, -1)];
+        [one, other] = [other, scaled(one, -1)];
+    };
+    if (length(p) > length(q)) turn();
+    // Each step shortens q by a factor, or is the last.
     for (let step = 0; step < 2000; step++) {
-        v = minus(v, scaled(u, Math.round(dot(u, v) / dot(u, u))));
-        if (length(u) <= length(v)) break;
-        [u, v] = [v, scaled(u, -1)];
+        const times = Math.round(dot(p, q) / dot(p, p));
+        q = minus(q, scaled(p, times));
+        other = minus(other, scaled(one, times));
+        if (length(p) <= length(q)) break;
+        turn();
     }
-    return { a: u, b: v };
+    return { p, q, rows: [one, other] };
 }
 
 /**
@@ -83,7 +94,7 @@ export function reduced({ a, b }) {
  * @returns {Point[]}
  */
 export function imagesIn(lattice, point, box) {
-    const { a: u, b: v } = reduced(lattice);
+    const { p: u, q: v } = reduced(lattice);
     const margin = marginOf(box);
     const [low, high] = across(box, u, margin);
     const own = cross(u, point);

@@ -3,6 +3,10 @@
 
 import { colourAt, coloursOf, inks, tileColour } from "../gl/colours.js";
 import { reducedBasis } from "../gl/pattern.js";
+import { cartesian, cellArea, fractional } from "../model/lattice.js";
+import { pathCubics } from "../model/pathdata.js";
+import { apply, minus, plus } from "../model/plane.js";
+import { boxOf } from "../model/segments.js";
 
 /** @typedef {import("../gl/colours.js").Colouring} Colouring */
 /** @typedef {import("../gl/pattern.js").Lattice} Lattice */
@@ -54,11 +58,10 @@ export function drawOutlines(context, camera, lattice, motions, tiles, style = {
         const { path: shape, centre, radius } = /** @type {Shape} */ (shapes.get(path));
         const { a, b, conj } = motion;
         const sign = conj ? -1 : 1;
-        const [x, y] = [centre[0] / scale, (sign * centre[1]) / scale];
-        const middle = [a[0] * x - a[1] * y + b[0], a[0] * y + a[1] * x + b[1]];
-        for (const [i, j] of near(basis, camera, [middle[0], middle[1]], radius / scale + line / camera.scale)) {
+        const middle = apply(motion, [centre[0] / scale, centre[1] / scale]);
+        for (const [i, j] of near(basis, camera, middle, radius / scale + line / camera.scale)) {
             if (copies.length === MOST) return 0;
-            const shift = [b[0] + i * basis.p[0] + j * basis.q[0], b[1] + i * basis.p[1] + j * basis.q[1]];
+            const shift = plus(b, cartesian({ a: basis.p, b: basis.q }, [i, j]));
             const k = camera.scale / scale;
             copies.push({
                 shape,
@@ -110,14 +113,15 @@ export function drawOutlines(context, camera, lattice, motions, tiles, style = {
  */
 function* near({ p, q }, { centre, scale, size }, middle, radius) {
     const [across, up] = [size[0] / scale / 2 + radius, size[1] / scale / 2 + radius];
-    const [x, y] = [centre[0] - middle[0], centre[1] - middle[1]];
-    const det = p[0] * q[1] - p[1] * q[0];
-    const [s, t] = [(x * q[1] - y * q[0]) / det, (p[0] * y - p[1] * x) / det];
+    const lattice = { a: p, b: q };
+    const away = minus(centre, middle);
+    const [s, t] = fractional(lattice, away);
+    const det = cellArea(lattice);
     const wide = (across * Math.abs(q[1]) + up * Math.abs(q[0])) / det;
     const high = (across * Math.abs(p[1]) + up * Math.abs(p[0])) / det;
     for (let i = Math.ceil(s - wide); i <= s + wide; i++) {
         for (let j = Math.ceil(t - high); j <= t + high; j++) {
-            const [dx, dy] = [i * p[0] + j * q[0] - x, i * p[1] + j * q[1] - y];
+            const [dx, dy] = minus(cartesian(lattice, [i, j]), away);
             if (Math.abs(dx) <= across && Math.abs(dy) <= up) yield [i, j];
         }
     }
@@ -128,39 +132,10 @@ function* near({ p, q }, { centre, scale, size }, middle, radius) {
  * @returns {Shape}
  */
 function shapeOf(data) {
-    const [x0, y0, x1, y1] = boxOf(data);
+    const [x0, y0, x1, y1] = boxOf(pathCubics(data));
     /** @type {Point} */
     const centre = [(x0 + x1) / 2, (y0 + y1) / 2];
     return { path: new Path2D(data), centre, radius: Math.hypot(x1 - x0, y1 - y0) / 2 };
-}
-
-/** How many numbers follow each command of path data, those in capitals, that count from the origin. */
-const NUMBERS = /** @type {Record<string, number>} */ ({ M: 2, L: 2, H: 1, V: 1, C: 6, S: 4, Q: 4, T: 2, A: 7, Z: 0 });
-
-/**
- * A box about path data of absolute commands: that of all their points, larger by the radii of arcs.
- * @param {string} data Throws a SyntaxError for commands in small letters.
- * @returns {[number, number, number, number]}
- */
-export function boxOf(data) {
-    let [x0, y0, x1, y1] = [Infinity, Infinity, -Infinity, -Infinity];
-    let room = 0;
-    for (const [, command, rest] of data.matchAll(/([A-DF-Za-df-z])([^A-DF-Za-df-z]*)/g)) {
-        const size = NUMBERS[command];
-        if (size === undefined) throw new SyntaxError(`path data with "${command}": only absolute commands are drawn`);
-        const numbers = (rest.match(/[-+]?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?/gi) ?? []).map(Number);
-        for (let k = 0; k + size <= numbers.length && size > 0; k += size) {
-            const part = numbers.slice(k, k + size);
-            if (command === "A") room = Math.max(room, 2 * part[0], 2 * part[1]);
-            const points = command === "A" ? part.slice(5) : part;
-            points.forEach((value, n) => {
-                const upward = command === "V" || (command !== "H" && n % 2);
-                if (upward) [y0, y1] = [Math.min(y0, value), Math.max(y1, value)];
-                else [x0, x1] = [Math.min(x0, value), Math.max(x1, value)];
-            });
-        }
-    }
-    return [x0 - room, y0 - room, x1 + room, y1 + room];
 }
 
 /**
