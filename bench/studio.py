@@ -4,8 +4,8 @@
     python bench/studio.py --write       the table into bench/README.md
 
 WebGL is drawn by the processor (SwiftShader); a real GPU is measured by opening the studio with ?bench. Ages are
-wall clock, so the machine has to be idle; what can be is processor time of the processes in question. Points are dragged
-by the browser's own mouse events, and the page takes the times itself.
+wall clock, so the machine has to be idle; what can be is processor time of the processes in question. Points are
+dragged by the browser's own mouse events, and the page takes the times itself.
 """
 
 from __future__ import annotations
@@ -27,11 +27,10 @@ from typing import Any
 from report import machine, published, table
 
 sys.path.append(str(Path(__file__).parents[1] / "tests"))
+from helpers.page import PAGE, SOFTWARE_GL
 from helpers.studio import Studio, Window, opened, running
 
 TICK = os.sysconf("SC_CLK_TCK")
-SOFTWARE_GL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox")
-PAGE = Path(__file__).parents[1] / "voronoi_tiles" / "studio" / "page"
 
 
 def zigzag(segments: int, group: str) -> dict[str, Any]:

@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 from helpers.forking import ForkServer
 from helpers.outlines import ABOVE, RIGHT, CommandLine, polygon
+from helpers.page import SOFTWARE_GL, missing
 from helpers.page_server import PageServer
 from hypothesis import settings
 
@@ -128,10 +129,6 @@ def compiled() -> None:
         pytest.skip(reason)
 
 
-SOFTWARE_GL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox")
-"""Chromium's options: WebGL by the processor, which it refuses by itself; as root there is no sandbox."""
-
-
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Any]:
     """Chromium through playwright, WebGL by software; or the reason why a test is left out.
@@ -140,10 +137,7 @@ def chromium() -> Iterator[Any]:
     """
     path = shutil.which("chromium")
     if path is None or find_spec("playwright") is None:
-        reason = f"{'chromium' if path is None else 'playwright'} is not installed"
-        if os.environ.get("VORONOI_TILES_REQUIRE_STUDIO") == "1":
-            pytest.fail(reason)
-        pytest.skip(reason)
+        missing(f"{'chromium' if path is None else 'playwright'} is not installed")
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright:

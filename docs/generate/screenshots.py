@@ -10,9 +10,9 @@ from pathlib import Path
 DOCS = Path(__file__).parents[1]
 sys.path.append(str(DOCS.parent / "tests"))
 
+from helpers.page import SOFTWARE_GL  # noqa: E402 - from the tests
 from helpers.studio import Window, opened, running  # noqa: E402 - from the tests
 
-SOFTWARE_GL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox")
 DESIGN = DOCS.parent / "examples" / "p4-hook.toml"
 
 

@@ -1,4 +1,4 @@
-"""Node, and what npm installs beside the tests of the studio's page."""
+"""Where the studio's page and its tests are, node with what npm installs beside them, and how Chromium is started."""
 
 from __future__ import annotations
 
@@ -12,6 +12,9 @@ import pytest
 TESTS: Final = Path(__file__).parents[1] / "studio"
 PAGE: Final = Path(__file__).parents[2] / "voronoi_tiles" / "studio" / "page"
 TOOLS: Final = TESTS / "node_modules"
+
+SOFTWARE_GL: Final = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox")
+"""Chromium's options: WebGL by the processor, which it refuses by itself; as root there is no sandbox."""
 
 
 def node() -> str:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from helpers import strategies
+from helpers.page_vectors import motion_table, xy
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.groups.periodic_colouring import PeriodicColouring
 from voronoi_tiles.raster.frame import Frame
@@ -18,18 +19,13 @@ WIDTH, HEIGHT = 120, 80
 """The window, in pixels."""
 
 
-def pair(z: complex) -> list[float]:
-    """A complex number as the page has it."""
-    return [z.real, z.imag]
-
-
 def scene_of(pattern: Pattern, centre: complex, scale: float, colouring: PeriodicColouring) -> dict[str, Any]:
     """What the page is told of a pattern and a window of WIDTH x HEIGHT pixels, `scale` of them a unit."""
     isometries = [pattern.lattice.isometry(operation) for operation in pattern.group.operations]
     numbers = {operation: number for number, operation in enumerate(pattern.group.operations)}
     return {
-        "lattice": {"a": pair(pattern.lattice.a), "b": pair(pattern.lattice.b)},
-        "motions": [{"a": pair(m.a), "b": pair(m.b), "conj": m.conj} for m in isometries],
+        "lattice": {"a": xy(pattern.lattice.a), "b": xy(pattern.lattice.b)},
+        "motions": list(map(motion_table, isometries)),
         "sites": [
             {
                 "segments": site.elements.ravel().tolist(),
@@ -37,7 +33,7 @@ def scene_of(pattern: Pattern, centre: complex, scale: float, colouring: Periodi
             }
             for number, site in enumerate(pattern.sites)
         ],
-        "camera": {"centre": pair(centre), "scale": scale, "size": [WIDTH, HEIGHT], "ratio": 1},
+        "camera": {"centre": xy(centre), "scale": scale, "size": [WIDTH, HEIGHT], "ratio": 1},
         "colouring": {
             "rows": colouring.repeat.rows,
             "m": colouring.repeat.m,

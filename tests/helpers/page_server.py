@@ -9,9 +9,8 @@ from types import TracebackType
 from typing import ClassVar, Self
 
 import voronoi_tiles.raster
-import voronoi_tiles.studio
+from helpers.page import PAGE
 
-PAGE = Path(voronoi_tiles.studio.__path__[0]) / "page"
 SHADER = Path(voronoi_tiles.raster.__path__[0]) / "exact.glsl"
 BLANK = b"<!doctype html><html lang=en><title>Test</title><body></body></html>"
 

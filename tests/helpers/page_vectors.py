@@ -155,7 +155,7 @@ def _group(group: WallpaperGroup, chance: np.random.Generator) -> dict[str, Any]
         "group": group.name,
         "cell": cell,
         "lattice": {"a": xy(lattice.a), "b": xy(lattice.b)},
-        "motions": [_motion(lattice.isometry(operation)) for operation in group.operations],
+        "motions": [motion_table(lattice.isometry(operation)) for operation in group.operations],
         "elements": [_elements(group, lattice, box) for box in BOXES],
         "sites": list(_sites(group, lattice, chance)),
     }
@@ -172,7 +172,8 @@ def _elements(group: WallpaperGroup, lattice: Lattice, box: tuple[float, float, 
     }
 
 
-def _motion(motion: Isometry) -> dict[str, Any]:
+def motion_table(motion: Isometry) -> dict[str, Any]:
+    """A motion as the page has it."""
     return {"a": xy(motion.a), "b": xy(motion.b), "conj": motion.conj}
 
 
