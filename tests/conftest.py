@@ -129,11 +129,12 @@ def compiled() -> None:
         pytest.skip(reason)
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def chromium() -> Iterator[Any]:
     """Chromium through playwright, WebGL by software; or the reason why a test is left out.
 
-    VORONOI_TILES_REQUIRE_STUDIO=1 makes that reason an error.
+    VORONOI_TILES_REQUIRE_STUDIO=1 makes that reason an error. Each module has one of its own: while there is one, an
+    event loop runs in this thread, and tests of other modules that run theirs could not.
     """
     path = shutil.which("chromium")
     if path is None or find_spec("playwright") is None:
