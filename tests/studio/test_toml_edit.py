@@ -167,10 +167,7 @@ def test_a_moved_point_is_one_line(name: str) -> None:
 )
 def test_spelling(old: str, new: object, spelled: str) -> None:
     """A value that is the same keeps its spelling; a new one is spelled like the old where it can be."""
-    if old == spelled or new == -0.0:
-        assert edited(f"x = {old} # c\n", {"x": new}).text in (f"x = {old} # c\n", f"x = {spelled} # c\n")
-    else:
-        assert edited(f"x = {old} # c\n", {"x": new}).text == f"x = {spelled} # c\n"
+    assert edited(f"x = {old} # c\n", {"x": new}).text == f"x = {spelled} # c\n"
 
 
 def test_comments_keep_their_column() -> None:
@@ -536,4 +533,4 @@ def test_items_are_found_again() -> None:
     assert matched([a, b], [a, {"r": 5}]) == [0, 1]
     assert matched([a, c], [a, c, {"r": 5}]) == [0, 1, None]
     assert matched([1, 2, 3], [1, 5, 3]) == [0, 1, 2]
-    assert matched([True, [1]], [[1], 1]) == [1, None] or matched([True, [1]], [[1], 1])[0] == 1
+    assert matched([True, [1]], [[1], 1]) == [1, None]
