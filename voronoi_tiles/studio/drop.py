@@ -11,9 +11,7 @@ from voronoi_tiles.base.text import printable
 from voronoi_tiles.formats.recipe import json_object, recipe_of
 from voronoi_tiles.formats.shapes import DrawingError, ReadDrawing
 from voronoi_tiles.studio.design_parts import require_parts
-
-BYTES_MAX: Final = 16 * 2**20
-"""Largest file; bytes. Some five seconds' work, of which the page waits for the end."""
+from voronoi_tiles.studio.messages import DROP_MAX
 
 STROKES_MAX: Final = 500
 """Most strokes that a drawing becomes; a count. The paths of one with more objects are one stroke."""
@@ -39,9 +37,9 @@ def dropped(data: bytes, name: str, unit_mm: float) -> dict[str, Any]:
         except DesignError as error:
             raise error.with_file(name) from None
         return {"design": design, "job": _job(json_object(recipe.get("job", ""))), "notes": []}
-    if len(data) > BYTES_MAX:
+    if len(data) > DROP_MAX:
         raise DrawingError(
-            f"larger than {BYTES_MAX >> 20} MiB", file=name, remedy="Take a part of it, or simplify its curves."
+            f"larger than {DROP_MAX >> 20} MiB", file=name, remedy="Take a part of it, or simplify its curves."
         )
     from voronoi_tiles.formats.reading import drawing_of
 

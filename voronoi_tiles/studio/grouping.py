@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Final
+from typing import Any
 
 from voronoi_tiles.base.errors import ProofError, TouchingCopiesError
 from voronoi_tiles.designs.checking import read_group
@@ -12,9 +12,6 @@ from voronoi_tiles.designs.proposals import placed
 from voronoi_tiles.groups.wallpaper import WallpaperGroup
 from voronoi_tiles.studio.outlining import cosets, path_of
 from voronoi_tiles.vector.tessellation import TileRecord, tessellate
-
-_ANGLES: Final = {"rectangular": 90.0, "square": 90.0, "hexagonal": 120.0}
-"""The angles from a to b that systems fix; degrees."""
 
 
 def group_message(rev: int, design: Mapping[str, Any], group: str) -> dict[str, Any]:
@@ -53,7 +50,7 @@ def cell_in(group: WallpaperGroup, design: Design) -> dict[str, float]:
     """The cell of a design as another group takes it, before the design's scale: what it leaves free, as it was."""
     cell = design.cell
     side = cell["a"]
-    angle = cell.get("angle", _ANGLES.get(design.group.system, 90.0))
+    angle = cell.get("angle", design.group.fixed_angle or 90.0)
     free = {"a": side, "b": cell.get("b", side), "angle": angle}
     if group.fixes_b:
         del free["b"]

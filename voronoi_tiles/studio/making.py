@@ -10,7 +10,7 @@ from io import BytesIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
-from typing import Any, Final, Literal
+from typing import Any, Final
 from zipfile import ZipFile, ZipInfo
 
 from voronoi_tiles.base.errors import ArgumentError
@@ -32,12 +32,8 @@ from voronoi_tiles.paths.conversion import to_cubics
 from voronoi_tiles.preflight import Finding, Limits, judge
 from voronoi_tiles.preflight.findings import grouped
 from voronoi_tiles.studio.messages import named_files
-from voronoi_tiles.studio.tables import HIDDEN
-from voronoi_tiles.tiling import FORMATS, FileFormat, Tiling
-
-Form = FileFormat | Literal["png"]
-FORMS: Final[tuple[Form, ...]] = (*FORMATS, "png")
-"""What a job can be downloaded as."""
+from voronoi_tiles.studio.tables import FORMS, HIDDEN, Form
+from voronoi_tiles.tiling import Tiling
 
 SHOWN_MAX: Final = 16 << 20
 """Most path data that is sent to be shown; bytes. A browser draws no more."""

@@ -23,7 +23,7 @@ MESSAGE_MAX: Final = 1 << 20
 """Largest message and largest body of a request; bytes. A design of a thousand strokes has a tenth of it."""
 
 DROP_MAX: Final = 16 << 20
-"""Largest drawing that is dropped onto the page; bytes."""
+"""Largest file that is dropped onto the page; bytes. Some five seconds' work, of which the page waits for the end."""
 
 STROKES_MAX: Final = 2_000
 """Most strokes of a design in the studio; a count."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
-from typing import Any, Final, get_args
+from typing import Any, Final, Literal, get_args
 
 from voronoi_tiles.base.units import UNIT_MM
 from voronoi_tiles.base.version import __version__
@@ -15,7 +15,7 @@ from voronoi_tiles.formats.presets import load_preset, preset_names
 from voronoi_tiles.groups.symmetry_elements import Line, symmetry_elements
 from voronoi_tiles.groups.wallpaper import GROUPS, WallpaperGroup
 from voronoi_tiles.studio.messages import LIMITS
-from voronoi_tiles.tiling import FORMATS
+from voronoi_tiles.tiling import FORMATS, FileFormat
 
 _SQUARE: Final = "0,0 1/2,0 1/2,1/2 0,1/2"
 _KITE: Final = "0,0 1/2,0 2/3,1/3 1/2,1/2"
@@ -41,6 +41,10 @@ REGIONS: Final[Mapping[str, str]] = {
 }
 """The corners of an asymmetric unit of each group, fractional coordinates (International Tables, vol. A)."""
 
+Form = FileFormat | Literal["png"]
+FORMS: Final[tuple[Form, ...]] = (*FORMATS, "png")
+"""What a job can be downloaded as."""
+
 HIDDEN: Final = ("only_colour",)
 """Options of a job that are for the program's own use."""
 
@@ -53,7 +57,7 @@ def page_tables() -> dict[str, Any]:
         "kinds": list(get_args(StrokeKind)),
         "job": job_options(),
         "presets": [{"name": name, "title": load_preset(name).title} for name in preset_names()],
-        "formats": [*FORMATS, "png"],
+        "formats": list(FORMS),
         "units": dict(UNIT_MM),
         "limits": LIMITS,
     }
