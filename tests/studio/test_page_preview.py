@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import pytest
@@ -37,16 +38,37 @@ OPEN = """async (scene) => {
 }"""
 
 
-@pytest.fixture
-def page(chromium: Any, page_server: PageServer) -> Iterator[Any]:
+@contextmanager
+def opened(chromium: Any, url: str) -> Iterator[Any]:
     """A page with a preview of a p4 design, and what the script needs, as window.test."""
     context = chromium.new_context(device_scale_factor=1.5)
     page = context.new_page()
-    page.goto(page_server.url)
+    page.goto(url)
     pattern = pattern_of("p4", [[{"bezier": [[5, 9], [25, 2], [30, 22], [13, 27]]}]], {"a": 60.0})
     page.evaluate(OPEN, scene_of(pattern, 20 + 9j, 1.5, colour(pattern)))
     yield page
     context.close()
+
+
+@pytest.fixture(scope="module")
+def kept(chromium: Any, page_server: PageServer) -> Iterator[Any]:
+    """A page for tests that leave its preview as it was: to compile the shaders takes a second."""
+    with opened(chromium, page_server.url) as page:
+        yield page
+
+
+@pytest.fixture
+def page(kept: Any) -> Any:
+    """That page, at rest, with nothing told yet."""
+    kept.evaluate("() => { window.test.preview.settle(); window.test.states.length = 0; }")
+    return kept
+
+
+@pytest.fixture
+def fresh(chromium: Any, page_server: PageServer) -> Iterator[Any]:
+    """A page of the test's own."""
+    with opened(chromium, page_server.url) as page:
+        yield page
 
 
 def test_the_exact_picture_follows_when_nothing_changes(page: Any) -> None:
@@ -203,9 +225,9 @@ def test_the_bench_reports_who_draws_and_how_long(page: Any) -> None:
         assert figures[name]["card"] is None or figures[name]["card"] > 0
 
 
-def test_sizes_are_in_pixels_of_the_screen(page: Any) -> None:
+def test_sizes_are_in_pixels_of_the_screen(fresh: Any) -> None:
     """At 1.5 pixels of the screen for one of the page: whole ones, those that the element covers."""
-    sizes = page.evaluate(
+    sizes = fresh.evaluate(
         """async () => {
             const { canvas, watchSize } = window.test;
             canvas.style.cssText = "position: absolute; left: 0.5px; width: 101px; height: 51px";
@@ -228,9 +250,9 @@ def test_sizes_are_in_pixels_of_the_screen(page: Any) -> None:
         assert all(float(pixels).is_integer() for pixels in size["pixels"])
 
 
-def test_without_webgl2_it_says_so(page: Any) -> None:
+def test_without_webgl2_it_says_so(fresh: Any) -> None:
     """Where a browser gives no context, or its context refuses the shaders, there are words for it."""
-    found = page.evaluate(
+    found = fresh.evaluate(
         """() => {
             const { Preview, text } = window.test;
             const refused = (exact) => {
@@ -257,10 +279,10 @@ def test_without_webgl2_it_says_so(page: Any) -> None:
     assert none == [False, "this browser has no WebGL2"]
 
 
-def test_pictures_are_drawn_again_only_where_they_changed(page: Any) -> None:
+def test_pictures_are_drawn_again_only_where_they_changed(fresh: Any) -> None:
     """A window that is moved is tiled from the image of the cell that there is; new strokes, new scales make one."""
     counts = json.loads(
-        page.evaluate(
+        fresh.evaluate(
             """() => {
                 const { preview, scene, gl } = window.test;
                 const draws = [];
