@@ -56,6 +56,14 @@ def test_ten_thousand_stories() -> None:
     assert "10000 random stories" in done.stdout
 
 
+@pytest.mark.slow
+def test_lists_at_many_samples() -> None:
+    """The candidate lists hold all that matters at 12 samples of each frame, where the quick test looks at 2."""
+    done = run(TESTS / "page" / "lists.test.js", VORONOI_TILES_SAMPLES="12")
+    assert done.returncode == 0, done.stdout
+    assert "at 12 samples" in done.stdout
+
+
 def test_model_is_pythons(tmp_path: Path, expected: dict[str, Any]) -> None:
     """Curves, lattices, motions, symmetry elements and copies are the same numbers to 1e-12 of their size."""
     done = run_vectors(tmp_path, expected)
