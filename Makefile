@@ -10,9 +10,10 @@
 #   make gallery the pictures of docs/gallery.md     make diagrams  the drawings of the other pages
 #   make screenshots  those of docs/studio.md, by the tests' browser
 #   make page-tools  what the tests of the studio's page use, by npm: without it they are left out
+#   make page-format rewrite the layout of the page's modules and their tests
 
 .DEFAULT_GOAL := help
-.PHONY: help demo studio test test-slow test-pythons lint format types bench fuzz docs paper gallery diagrams screenshots wheels page-tools clean
+.PHONY: help demo studio test test-slow test-pythons lint format types bench fuzz docs paper gallery diagrams screenshots wheels page-tools page-format clean
 .DELETE_ON_ERROR:
 
 PYTHON ?= python3
@@ -158,6 +159,10 @@ page-tools: tests/studio/node_modules/.package-lock.json
 tests/studio/node_modules/.package-lock.json: tests/studio/package-lock.json
 	cd tests/studio && npm ci --silent
 	touch $@
+
+page-format: page-tools
+	node tests/studio/node_modules/prettier/bin/prettier.cjs --config tests/studio/package.json --log-level warn --write \
+	    "voronoi_tiles/studio/page/**/*.js" "tests/studio/page/*.js"
 
 clean:
 	rm -rf $(VENV) $(VENV)-3.* $(TYPES_VENV) tests/studio/node_modules $(DEMO) docs/_build build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

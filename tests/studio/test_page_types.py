@@ -1,4 +1,4 @@
-"""The types of the page's modules, which their comments declare, hold: TypeScript checks them, and builds nothing."""
+"""The page's modules have the types that their comments declare, by TypeScript, and the layout of Prettier."""
 
 from __future__ import annotations
 
@@ -35,6 +35,24 @@ def test_every_module_is_checked() -> None:
     assert modules
     assert modules <= set(listed)
     assert [path for path in modules if not Path(path).read_text(encoding="utf-8").startswith("// @ts-check\n")] == []
+
+
+def laid_out(*files: Path) -> subprocess.CompletedProcess[str]:
+    """Check the layout of files."""
+    prettier = tool("prettier/bin/prettier.cjs")
+    command = [node(), prettier, "--config", str(TESTS / "package.json"), "--check", *map(str, files)]
+    return subprocess.run(command, capture_output=True, encoding="utf-8", timeout=300, check=False)
+
+
+def test_layout_of_the_page(tmp_path: Path) -> None:
+    """All modules, and their tests, are as `make page-format` writes them; what is not is found."""
+    done = laid_out(*sorted(PAGE.rglob("*.js")), *sorted((TESTS / "page").glob("*.js")))
+    assert done.returncode == 0, done.stderr
+    spoilt = tmp_path / "spoilt.js"
+    spoilt.write_text("export const two = [ 1,2 ]\n", encoding="utf-8")
+    done = laid_out(spoilt)
+    assert done.returncode == 1
+    assert "spoilt.js" in done.stderr
 
 
 @pytest.mark.parametrize(
