@@ -39,7 +39,7 @@
  * @property {{width: number, height: number}} page millimetres
  * @property {number} found how many findings there are; at most a thousand are sent
  * @property {{name: string, kind: string, colour: string, path: string}[]} layers millimetres, y down
- * @property {{severity: string, message: string, at: [number, number] | null, layer?: string}[]} findings
+ * @property {{severity: string, kind: string, message: string, at: [number, number] | null, layer?: string}[]} findings
  * @property {string[]} notes
  * @property {number} ms
  */

@@ -81,6 +81,21 @@ export function lengthField(value, unit, change, attributes = {}) {
 }
 
 /**
+ * A function that runs another one soon, once for all calls until then: the browser has moved the focus by that time,
+ * which controls that are made anew would lose.
+ * @param {() => void} run
+ */
+export function deferred(run) {
+  let timer = 0;
+  return () => {
+    timer ||= window.setTimeout(() => {
+      timer = 0;
+      run();
+    });
+  };
+}
+
+/**
  * Replace what an element holds and keep the focus on the control of the same data-key.
  * @param {HTMLElement} parent
  * @param {Node[]} children

@@ -1,7 +1,7 @@
 // @ts-check
 // The job: all that `voronoi-tiles export` offers, made from the server's table of options, common ones first.
 
-import { field, lengthField, make, refill } from "./elements.js";
+import { deferred, field, lengthField, make, refill } from "./elements.js";
 
 /**
  * @typedef {import("./panels.js").Context} Context
@@ -20,7 +20,6 @@ const HEADINGS = [
   ["More", []],
 ];
 
-/** Lengths that are millimetres whatever unit is shown. */
 const KEY = "job-";
 
 export class JobPanel extends HTMLElement {
@@ -33,7 +32,7 @@ export class JobPanel extends HTMLElement {
   /** @param {Context} context */
   connect(context) {
     this.#context = context;
-    context.store.subscribe(["tables", "job", "jobRefusal", "unit"], (state) => this.#fill(state));
+    context.store.subscribe(["tables", "job", "jobRefusal", "unit"], deferred(() => this.#fill(context.store.state)));
   }
 
   /** @param {State} state */
@@ -47,6 +46,7 @@ export class JobPanel extends HTMLElement {
     const bad = jobRefusal?.error;
     refill(this, [
       make("p", { class: "note" }, "What is made of the tiles. Without a sheet one of each tile is cut, as a closed contour."),
+      bad && make("p", { class: "error", role: "alert" }, `${bad.message} ${bad.remedy}`),
       ...HEADINGS.map(([title, names]) => {
         const own = names.length ? names.map((name) => options.find((option) => option.name === name)) : options.filter((option) => !named.has(option.name));
         const fields = own.filter((option) => option !== undefined).map((option) => this.#field(option, job[option.name], state));
@@ -64,7 +64,6 @@ export class JobPanel extends HTMLElement {
             )
           : null;
       }).filter((node) => node !== null),
-      bad && make("p", { class: "error", role: "alert" }, `${bad.message}. ${bad.remedy}`),
       make(
         "p",
         { class: "group" },

@@ -7,6 +7,7 @@ import { make, refill } from "./elements.js";
 /**
  * @typedef {import("./panels.js").Context} Context
  * @typedef {import("../store.js").State} State
+ * @typedef {import("../link.js").Product["findings"][number]} Finding
  */
 
 /** @param {number} seconds */
@@ -33,7 +34,7 @@ export class ReportPanel extends HTMLElement {
     }
     const bad = refusal?.error ?? jobRefusal?.error;
     if (bad || !product) {
-      refill(this, [bad ? make("p", { class: "error", role: "alert" }, `${bad.message}. ${bad.remedy}`) : make("p", { class: "note" }, "The report comes in a moment.")]);
+      refill(this, [bad ? make("p", { class: "error", role: "alert" }, `${bad.message} ${bad.remedy}`) : make("p", { class: "note" }, "The report comes in a moment.")]);
       return;
     }
     const { report, findings, notes } = product;
@@ -44,7 +45,7 @@ export class ReportPanel extends HTMLElement {
       ["Size", `${length(report.page.width)} x ${length(report.page.height)}`],
       ["Pieces", `${report.pieces.count}${report.pieces.whole === report.pieces.count ? "" : `, ${report.pieces.whole} whole`}`],
       ["Used", `${(100 * report.use.share).toFixed(1)} %`],
-      ["Cut", `${metres(report.cut.length)}, ${report.cut.pierces} pierces`],
+      ["Cut", `${metres(report.cut.length)}, ${report.cut.pierces} ${report.cut.pierces === 1 ? "pierce" : "pierces"}`],
       ["Travel", metres(report.cut.travel)],
       ["Time", duration(report.time)],
     ];
@@ -52,23 +53,46 @@ export class ReportPanel extends HTMLElement {
       make("h2", {}, "Report"),
       make("dl", { class: product.rev < revision ? "figures old" : "figures" }, ...rows.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])),
       make("p", { class: "note" }, `At ${report.speeds.cut} mm/s to cut, ${report.speeds.travel} to travel, ${report.speeds.pierce} s a pierce.`),
-      make("h2", {}, findings.length ? `Preflight: ${findings.length} ${findings.length === 1 ? "finding" : "findings"}` : "Preflight"),
-      findings.length ? make("ol", {}, ...findings.map((finding, k) => this.#finding(finding, k))) : make("p", {}, "Nothing would spoil the cut."),
+      make("h2", {}, product.found ? `Preflight: ${product.found} ${product.found === 1 ? "finding" : "findings"}` : "Preflight"),
+      product.found ? make("ol", {}, ...alike(findings).map((same, k) => this.#finding(same, k))) : make("p", {}, "Nothing would spoil the cut."),
       ...notes.map((note) => make("p", { class: "note" }, note)),
     ]);
   }
 
   /**
-   * @param {import("../link.js").Product["findings"][number]} finding
+   * One line for findings of a kind, whose places are shown one after the other.
+   * @param {Finding[]} same
    * @param {number} k
    */
-  #finding({ severity, message, at }, k) {
+  #finding(same, k) {
+    const { severity, message } = same[0];
+    const places = same.map(({ at }) => at).filter((at) => at !== null);
+    let next = 0;
+    const show = () => {
+      document.dispatchEvent(new CustomEvent("studio-finding", { detail: places[next] }));
+      next = (next + 1) % places.length;
+    };
     return make(
       "li",
       { class: `finding ${severity}` },
       make("strong", {}, severity),
-      make("span", {}, message),
-      at && make("button", { type: "button", class: "quiet", "data-key": `finding ${k}`, onclick: () => document.dispatchEvent(new CustomEvent("studio-finding", { detail: at })) }, "Show"),
+      make("span", {}, same.length > 1 ? `${message} And ${same.length - 1} more of this kind.` : message),
+      places.length > 0 && make("button", { type: "button", class: "quiet", "data-key": `finding ${k}`, onclick: show }, places.length > 1 ? "Show next" : "Show"),
     );
   }
+}
+
+/**
+ * Findings by their severity and kind, in the order in which they come.
+ * @param {Finding[]} findings
+ * @returns {Finding[][]}
+ */
+function alike(findings) {
+  /** @type {Map<string, Finding[]>} */
+  const groups = new Map();
+  for (const finding of findings) {
+    const key = `${finding.severity} ${finding.kind}`;
+    groups.set(key, [...(groups.get(key) ?? []), finding]);
+  }
+  return [...groups.values()];
 }

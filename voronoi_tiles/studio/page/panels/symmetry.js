@@ -6,7 +6,7 @@ import { setGroup } from "../model/regroup.js";
 import { groupOf, latticeOf, motionsOf } from "../model/symmetry.js";
 import { drawOutlines } from "../view/outlines.js";
 import { Camera } from "../view/camera.js";
-import { field, lengthField, make, refill } from "./elements.js";
+import { deferred, field, lengthField, make, refill } from "./elements.js";
 
 /**
  * @typedef {import("./panels.js").Context} Context
@@ -38,6 +38,8 @@ export class SymmetryPanel extends HTMLElement {
   #timer = 0;
   /** @type {any} the design that the thumbnails are of */
   #asked = null;
+  /** @type {{from: any, made: any} | null} the design before groups were tried, and what the last one made of it */
+  #tried = null;
 
   /** @param {Context} context */
   connect(context) {
@@ -54,7 +56,7 @@ export class SymmetryPanel extends HTMLElement {
       make("h2", {}, "Picture to trace"),
       this.#trace(),
     );
-    store.subscribe(["tables", "design", "unit", "dragging"], (state) => this.#fill(state));
+    store.subscribe(["tables", "design", "unit", "dragging", "exact", "site"], deferred(() => this.#fill(store.state)));
     store.subscribe(["shown"], (state) => this.#fillShown(state));
     link.on("group", (message) => this.#draw(message));
     new IntersectionObserver(() => this.#ask()).observe(this);
@@ -101,7 +103,9 @@ export class SymmetryPanel extends HTMLElement {
     if (step) {
       const all = [...this.#groups.children];
       const next = all[(all.indexOf(event.currentTarget) + step + all.length) % all.length];
-      this.#choose(next.dataset.group);
+      all.forEach((one) => {
+        one.tabIndex = one === next ? 0 : -1;
+      });
       next.focus();
       event.preventDefault();
       event.stopPropagation();
@@ -111,13 +115,12 @@ export class SymmetryPanel extends HTMLElement {
   /** @param {string} name */
   #choose(name) {
     const { store } = this.#context;
-    /** @type {string} */
-    let note = "";
-    store.edit("group", (design) => {
-      const made = setGroup(design, name, store.state.tables, store.state.exact?.resolved);
-      note = made.note;
-      return made.design;
-    });
+    // Who looks at several groups sees each made of the design before the first: what one had to move is not kept.
+    const from = this.#tried && this.#tried.made === store.settled ? this.#tried.from : store.settled;
+    const { design, note } =
+      name === from.group ? { design: from, note: "" } : setGroup(from, name, store.state.tables, store.state.exact?.resolved);
+    store.edit("group", () => design);
+    this.#tried = { from, made: store.settled };
     this.#note.textContent = note;
   }
 
@@ -182,6 +185,7 @@ export class SymmetryPanel extends HTMLElement {
       });
       fields.push(field("Angle, degrees", input));
     }
+    fields.push(...this.#sizeFields(factor));
     const units = make("select", {
       "data-key": "units",
       onchange: (/** @type {Event} */ event) => store.edit("units", (old) => setUnits(old, /** @type {any} */ (event.target).value, true)),
@@ -189,6 +193,38 @@ export class SymmetryPanel extends HTMLElement {
     units.append(...Object.keys(tables.units).map((name) => make("option", { ".selected": name === (design.units ?? "mm") }, name)));
     fields.push(field("Units of the file", units, "The design's numbers are converted: its size stays."));
     return fields;
+  }
+
+  /**
+   * The tile's width and height: what is given scales the whole design.
+   * @param {number} factor from the drawing's units to those that are shown
+   * @returns {Node[]}
+   */
+  #sizeFields(factor) {
+    const { store } = this.#context;
+    const { exact, design, unit, site } = store.state;
+    const tile = exact?.tiles[site];
+    if (!exact || !tile || exact.design !== design) {
+      return [];
+    }
+    const scale = factor / (design.scale ?? 1);
+    return /** @type {const} */ (["width", "height"]).map((name) =>
+      field(
+        `Tile ${name}, ${unit}`,
+        lengthField(
+          tile[name] * scale,
+          unit,
+          (wanted) => {
+            if (wanted > 0) {
+              const times = Number((((design.scale ?? 1) * wanted) / (tile[name] * scale)).toPrecision(12));
+              store.edit("size", (old) => ({ ...old, scale: times }));
+            }
+          },
+          { "data-key": name },
+        ),
+        "The whole design is scaled, cell and strokes.",
+      ),
+    );
   }
 
   /** A picture under the drawing: it stays in the page, and in no file. */

@@ -148,9 +148,10 @@ export class SheetView {
     context.strokeRect(x0, y0, page.width * camera.scale, page.height * camera.scale);
     this.#dimensions(context, page, of("--text"));
     for (const finding of product.findings) {
-      if (finding.at) {
+      const chosen = finding.at && this.#finding && finding.at[0] === this.#finding[0] && finding.at[1] === this.#finding[1];
+      // Remarks are many and harmless: a ring is drawn around the one that is looked at.
+      if (finding.at && (chosen || finding.severity !== "info")) {
         const [x, y] = camera.toScreen([finding.at[0], -finding.at[1]]);
-        const chosen = this.#finding && finding.at[0] === this.#finding[0] && finding.at[1] === this.#finding[1];
         context.strokeStyle = of(finding.severity === "error" ? "--bad" : "--warn");
         context.lineWidth = chosen ? 3 : 1.5;
         context.beginPath();
