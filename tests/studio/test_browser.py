@@ -145,7 +145,7 @@ def test_everything_by_the_keyboard(window: Window) -> None:
     page.keyboard.press("ArrowUp")
     page.keyboard.press("Enter")
     for _ in range(4):
-        page.keyboard.press("ArrowRight")
+        page.keyboard.press("Shift+ArrowRight")
     page.keyboard.press("Enter")
     page.keyboard.press("Control+Enter")
     assert len(window.design["site"][0]["strokes"]) == count + 1

@@ -13,10 +13,10 @@ from voronoi_tiles.cli.common import EXIT_SIGNAL, PATH, reporting, say
 @click.command()
 @click.argument("design", type=PATH, required=False)
 @click.option(
-    "--port", type=click.IntRange(0, 65535), default=0, metavar="N", help="The port to serve at [default: a free one]."
+    "--port", type=click.IntRange(0, 65535), metavar="N", help="The port to serve at [default: 8317, or a free one]."
 )
 @click.option("--no-browser", is_flag=True, help="Print the address to open, and open no browser.")
-def studio(design: str | None, port: int, no_browser: bool) -> None:
+def studio(design: str | None, port: int | None, no_browser: bool) -> None:
     """Draw strokes in the browser, see the exact tile follow, and download the files to cut.
 
     DESIGN is a TOML or JSON file, which is made when it is saved if there is none. Only this machine can reach the

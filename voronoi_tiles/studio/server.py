@@ -32,8 +32,19 @@ _LOGGERS: Final = ("uvicorn.error", "websockets", "asyncio")
 """What would print lines that are for programmers."""
 
 
-def bind(port: int) -> socket.socket:
-    """A socket of the loopback interface; port 0 takes a free one. Raises ArgumentError."""
+USUAL: Final = 8317
+"""The port where nobody names one, if it is free: what browsers keep for a page, they keep by its port."""
+
+
+def bind(port: int | None) -> socket.socket:
+    """A socket of the loopback interface; port 0 takes a free one, None the usual one or, if that is in use, a free one.
+
+    Raises ArgumentError.
+    """
+    if port is None:
+        with suppress(ArgumentError):
+            return bind(USUAL)
+        port = 0
     listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
     try:
         if os.name == "posix":  # elsewhere it would let two programs have the port

@@ -23,10 +23,17 @@ const EMPTY = { schema: 1, group: "p4", cell: { a: 60 }, site: [{ strokes: [] }]
 /** What the page keeps from one time to the next: how it looks, and nothing of the design. */
 const HABITS = ["unit", "theme", "shown"];
 
-/** @returns {any} */
-function habits() {
+/** Where the job of this file is kept, as files of designs hold none. */
+let jobKey = "";
+
+/**
+ * What the browser keeps for this page under a name.
+ * @param {string} name
+ * @returns {any}
+ */
+function kept(name) {
   try {
-    return JSON.parse(localStorage.getItem("voronoi_tiles studio") ?? "{}");
+    return JSON.parse(localStorage.getItem(name) ?? "{}");
   } catch {
     return {};
   }
@@ -45,6 +52,7 @@ const store = new Store({
   refusal: null,
   product: null,
   jobRefusal: null,
+  jobPending: false,
   job: {},
   unit: "mm",
   shown: { elements: true, cell: true, grid: false, copies: true, region: false, colours: true, edges: true },
@@ -52,7 +60,7 @@ const store = new Store({
   connected: true,
   dragging: false,
   trouble: null,
-  ...habits(),
+  ...kept("voronoi_tiles studio"),
 });
 
 const stage = new Stage(
@@ -279,8 +287,9 @@ store.subscribe(["exact", "refusal", "unit", "tables", "design"], ({ exact, unit
   }
   const mm = tables.units[design.units ?? "mm"];
   const parts = exact.tiles.slice(0, 3).map((tile) => {
-    const [width, height] = [tile.width, tile.height].map((side) => shown((side * mm) / tables.units[unit], unit));
-    return `${exact.tiles.length > 1 ? `${tile.site}: ` : ""}${width} x ${height} ${unit}, ${tile.edges} edges, ${tile.copies} in a cell`;
+    const [width, height] = [tile.width, tile.height].map((side) => ((side * mm) / tables.units[unit]).toFixed(unit === "mm" ? 2 : 3));
+    const neighbours = `${tile.neighbours} ${tile.neighbours === 1 ? "neighbour" : "neighbours"}`;
+    return `${exact.tiles.length > 1 ? `${tile.site}: ` : ""}${width} x ${height} ${unit}, ${neighbours}, ${tile.copies} in a cell`;
   });
   element("measure").textContent = parts.join("; ") + (exact.tiles.length > 3 ? "; ..." : "");
 });
@@ -336,6 +345,12 @@ element("unit").addEventListener("change", (event) => {
   store.set({ unit: /** @type {any} */ (event.target).value });
 });
 
+store.subscribe(["job"], ({ job }) => {
+  if (jobKey) {
+    localStorage.setItem(jobKey, JSON.stringify(job));
+  }
+});
+
 store.subscribe(["unit", "theme", "shown"], (state) => {
   localStorage.setItem("voronoi_tiles studio", JSON.stringify(Object.fromEntries(HABITS.map((key) => [key, /** @type {any} */ (state)[key]]))));
 });
@@ -365,6 +380,8 @@ link.on("opened", (message) => {
   } else {
     store.open(message.design, { file: message.file, trouble });
     stage.fit();
+    jobKey = `voronoi_tiles job ${message.folder}/${message.file}`;
+    store.set({ job: kept(jobKey) });
   }
   store.keep(message.saved ? message.design : null);
   openShared();

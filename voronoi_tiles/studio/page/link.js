@@ -169,6 +169,9 @@ export class Link {
 
   #scheduleJob() {
     clearTimeout(this.#jobTimer);
+    if (this.#asksJobs) {
+      this.#store.set({ jobPending: true });
+    }
     this.#jobTimer = window.setTimeout(() => {
       const { design, revision, job, dragging } = this.#store.state;
       if (this.#asksJobs && design && !dragging) {
@@ -191,12 +194,12 @@ export class Link {
         if (message.lane === "outline" && (!exact || message.rev >= exact.rev)) {
           this.#store.set({ refusal: message });
         } else if (message.lane === "job" && message.rev === revision) {
-          this.#store.set({ jobRefusal: message });
+          this.#store.set({ jobRefusal: message, jobPending: false });
         }
         break;
       case "product":
         if (!product || message.rev >= product.rev) {
-          this.#store.set({ product: message, jobRefusal: null });
+          this.#store.set({ product: message, jobRefusal: null, jobPending: message.rev !== revision });
         }
         break;
       case "trouble":

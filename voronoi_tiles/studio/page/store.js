@@ -27,6 +27,7 @@ import { History } from "./model/history.js";
  * @property {Refusal | null} refusal why the design has none, null where it has
  * @property {Product | null} product the last job's result
  * @property {Refusal | null} jobRefusal
+ * @property {boolean} jobPending whether a newer product is waited for
  * @property {Record<string, any>} job the options of the job that differ from their defaults
  * @property {"mm" | "cm" | "in"} unit in which lengths are shown
  * @property {{elements: boolean, cell: boolean, grid: boolean, copies: boolean, region: boolean, colours: boolean, edges: boolean}} shown

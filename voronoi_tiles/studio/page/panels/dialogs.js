@@ -5,6 +5,11 @@ import { HELP } from "../tools/keys.js";
 import { paste } from "../clipboard.js";
 import { linkOf, sharedDesign } from "../sharing.js";
 import { NOTHING } from "../store.js";
+import { moveStrokes } from "../model/design.js";
+import { rounded } from "../model/snapping.js";
+import { placementOf } from "../model/strokes.js";
+import { regionOf } from "../model/symmetry.js";
+import { boxOf, entriesOf } from "../scene.js";
 import { field, make } from "./elements.js";
 
 /**
@@ -79,6 +84,7 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
     const box = make("dialog", { "aria-labelledby": "dialog-title", onclose: () => box.remove() }, heading, ...content, said, make("footer", {}, ...buttons));
     home.replaceChildren(box);
     box.showModal();
+    box.scrollTop = 0;
     return { box, said };
   };
 
@@ -107,11 +113,32 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
       begin(answer.design);
       store.set({ job: answer.job ?? {} });
     } else {
-      paste(store, answer.strokes, 0);
+      paste(store, trueSize(answer.strokes), 0);
     }
     if (answer.notes?.length) {
       say(answer.notes.join(" "), true);
     }
+  };
+
+  /**
+   * Strokes of a drawing in its own size, in the middle of one asymmetric unit, where its copies are least in the way.
+   * @param {any[]} strokes in the design's units, before any placement
+   */
+  const trueSize = (strokes) => {
+    const { design, tables, site } = store.state;
+    const placement = placementOf(design.site[site], {});
+    const scale = Number((1 / ((design.scale ?? 1) * Math.hypot(...placement.a))).toPrecision(12));
+    const scaled = strokes.map((stroke) => (scale === 1 ? stroke : { ...stroke, scale: (stroke.scale ?? 1) * scale }));
+    const box = boxOf(entriesOf({ ...design, site: [{ ...design.site[site], strokes: scaled }] }));
+    if (!box) {
+      return scaled;
+    }
+    const region = regionOf(design, tables);
+    const middle = [0, 1].map((axis) => region.reduce((sum, at) => sum + at[axis], 0) / region.length);
+    const by = /** @type {[number, number]} */ (rounded([middle[0] - (box[0] + box[2]) / 2, middle[1] - (box[1] + box[3]) / 2], 1 / stage.camera.scale));
+    const refs = scaled.map((_, stroke) => ({ site, stroke }));
+    const alone = design.site.map((one, i) => (i === site ? { ...one, strokes: scaled } : one));
+    return [...moveStrokes({ ...design, site: alone }, refs, by).site[site].strokes];
   };
 
   /** @param {File | undefined} file */
@@ -215,7 +242,11 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
     },
 
     open() {
-      const input = make("input", { type: "file", accept: ".svg,.svgz,.dxf,.pdf,.lbrn2" });
+      const input = make("input", {
+        type: "file",
+        accept: ".svg,.svgz,.dxf,.pdf,.lbrn2",
+        onchange: () => input.closest("dialog").querySelector("button.first").click(),
+      });
       const address = make("input", { type: "text", autocomplete: "off", spellcheck: "false" });
       open(
         "Open",

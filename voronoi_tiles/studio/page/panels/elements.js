@@ -55,7 +55,8 @@ export function lengthField(value, unit, change, attributes = {}) {
     spellcheck: "false",
     autocomplete: "off",
     ...attributes,
-    ".value": value === null ? "" : shown(value, unit),
+    // What is typed differs from it: undo is the field's own until then, the drawing's else.
+    ".defaultValue": value === null ? "" : shown(value, unit),
   });
   const old = input.value;
   const read = () => {
@@ -106,7 +107,11 @@ export function refill(parent, children) {
   const scroll = parent.parentElement?.scrollTop ?? 0;
   parent.replaceChildren(...children);
   if (key) {
-    /** @type {HTMLElement | null} */ (parent.querySelector(`[data-key="${CSS.escape(key)}"]`))?.focus();
+    const again = /** @type {HTMLElement | null} */ (parent.querySelector(`[data-key="${CSS.escape(key)}"]`));
+    again?.focus();
+    if (again instanceof HTMLInputElement && again.type === "text") {
+      again.select();
+    }
   }
   if (parent.parentElement) {
     parent.parentElement.scrollTop = scroll;

@@ -24,11 +24,11 @@ export class ReportPanel extends HTMLElement {
   /** @param {Context} context */
   connect(context) {
     this.#context = context;
-    context.store.subscribe(["product", "jobRefusal", "refusal", "unit", "tables", "revision"], (state) => this.#fill(state));
+    context.store.subscribe(["product", "jobRefusal", "refusal", "unit", "tables", "revision", "jobPending"], (state) => this.#fill(state));
   }
 
   /** @param {State} state */
-  #fill({ product, jobRefusal, refusal, unit, tables, revision }) {
+  #fill({ product, jobRefusal, refusal, unit, tables, revision, jobPending }) {
     if (!tables) {
       return;
     }
@@ -51,7 +51,7 @@ export class ReportPanel extends HTMLElement {
     ];
     refill(this, [
       make("h2", {}, "Report"),
-      make("dl", { class: product.rev < revision ? "figures old" : "figures" }, ...rows.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])),
+      make("dl", { class: product.rev < revision || jobPending ? "figures old" : "figures" }, ...rows.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)])),
       make("p", { class: "note" }, `At ${report.speeds.cut} mm/s to cut, ${report.speeds.travel} to travel, ${report.speeds.pierce} s a pierce.`),
       make("h2", {}, product.found ? `Preflight: ${product.found} ${product.found === 1 ? "finding" : "findings"}` : "Preflight"),
       product.found ? make("ol", {}, ...alike(findings).map((same, k) => this.#finding(same, k))) : make("p", {}, "Nothing would spoil the cut."),

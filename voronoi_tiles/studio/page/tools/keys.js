@@ -22,7 +22,8 @@ export const HELP = [
       { keys: "Backspace, Ctrl+Z", does: "take back the last point" },
       { keys: "Drag with the pen", does: "a tangent; Shift keeps to 15 degrees, Alt breaks it, Space moves its point" },
       { keys: "Shift+click", does: "a point at a multiple of 15 degrees from the last" },
-      { keys: "Arrows, Enter", does: "move the cross hair, place a point" },
+      { keys: "Arrows, Enter", does: "move the cross hair by 0.1, with Shift by 1, with Ctrl+Shift by 10 units, place a point" },
+      { keys: "Ctrl+Enter, Esc", does: "end the stroke of such points" },
       { keys: "Ctrl", does: "do not snap to symmetry elements, points or the grid" },
     ],
   },
@@ -85,7 +86,8 @@ export function listen(hands, toolbox, canvas, run) {
   const withCtrl = (key, /** @type {KeyboardEvent} */ event) => {
     const commands = { z: event.shiftKey ? "redo" : "undo", y: "redo", s: event.shiftKey ? "save-as" : "save", e: "export", 0: "fit", a: "select-all", d: "double" };
     const command = /** @type {Record<string, string>} */ (commands)[key];
-    if (!command || (types(event.target) && !"se".includes(key))) {
+    const edited = event.target instanceof HTMLInputElement ? event.target.value !== event.target.defaultValue : types(event.target);
+    if (!command || (types(event.target) && !"se".includes(key) && !("zy".includes(key) && !edited))) {
       return false;
     }
     run(command);
@@ -103,8 +105,8 @@ export function listen(hands, toolbox, canvas, run) {
       return true;
     }
     if (arrow && toolbox.tool.draws) {
-      const by = event.shiftKey ? 50 : event.altKey ? 1 : 10;
-      toolbox.moveCross(arrow[0] * by, -arrow[1] * by);
+      const by = 0.1 * (event.shiftKey ? (event.ctrlKey ? 100 : 10) : 1);
+      toolbox.moveCross(arrow[0] * by, arrow[1] * by);
       return true;
     }
     if (arrow) {
@@ -162,6 +164,7 @@ export function listen(hands, toolbox, canvas, run) {
     const tool = TOOLS.find((one) => one.key === event.key.toLowerCase() || one.other === event.key);
     if (tool && !event.shiftKey) {
       hands.take(tool.name);
+      canvas.focus({ preventScroll: true });
       return true;
     }
     return false;

@@ -206,6 +206,7 @@ function pointTool({ make, handles = false, ...what }) {
         if (touch.shift) {
           pull = onAngle(pull);
         }
+        pull = rounded(pull, 1 / hands.camera.scale);
         broken ||= touch.alt;
         const placed = { at: last.at, in: broken ? last.in : /** @type {Point} */ ([-pull[0], -pull[1]]), out: pull };
         points = [...points.slice(0, -1), placed];

@@ -245,14 +245,17 @@ export class Toolbox {
   }
 
   /**
-   * Move the cross hair of a drawing tool by pixels of the page, or place a point there.
+   * Move the cross hair of a drawing tool by units of the drawing, to a multiple of the larger step.
    * @param {number} dx
    * @param {number} dy
    */
   moveCross(dx, dy) {
     const { camera } = this.#hands;
-    const from = this.cross ? camera.toScreen(this.cross) : /** @type {Point} */ ([camera.size[0] / 2, camera.size[1] / 2]);
-    const screen = /** @type {Point} */ ([Math.min(Math.max(from[0] + dx, 0), camera.size[0]), Math.min(Math.max(from[1] + dy, 0), camera.size[1])]);
+    const [left, bottom, right, top] = camera.box;
+    const [x, y] = this.cross ?? camera.centre;
+    const step = Math.max(Math.abs(dx), Math.abs(dy));
+    const to = (/** @type {number} */ value, /** @type {number} */ by) => (by ? Math.round((value + by) / step) * step : value);
+    const screen = camera.toScreen([Math.min(Math.max(to(x, dx), left), right), Math.min(Math.max(to(y, dy), bottom), top)]);
     const touch = this.#touchAt(screen, { shift: false, alt: false, ctrl: true, touch: false, trail: [] });
     this.cross = touch.raw;
     this.tool.move?.(touch, this.#hands, false);

@@ -28,7 +28,7 @@ export class SheetView {
   constructor(canvas, store) {
     this.#canvas = canvas;
     this.#store = store;
-    store.subscribe(["product", "unit", "theme", "jobRefusal"], () => this.redraw());
+    store.subscribe(["product", "unit", "theme", "jobRefusal", "jobPending"], () => this.redraw());
     new ResizeObserver(() => {
       this.#fitted = null;
       this.redraw();
@@ -99,7 +99,7 @@ export class SheetView {
   }
 
   #draw() {
-    const { product } = this.#store.state;
+    const { product, jobPending, jobRefusal } = this.#store.state;
     const canvas = this.#canvas;
     if (canvas.hidden) {
       return;
@@ -137,12 +137,15 @@ export class SheetView {
     context.setTransform(k, 0, 0, k, x0 * camera.ratio, y0 * camera.ratio);
     context.fillStyle = "#fff";
     context.fillRect(0, 0, page.width, page.height);
+    // What is not yet of the newest drawing and job, or is no more, is pale.
+    context.globalAlpha = jobPending || jobRefusal ? 0.35 : 1;
     context.lineWidth = 1.3 / camera.scale;
     context.lineJoin = "round";
     for (const { path, colour } of this.#paths?.paths ?? []) {
       context.strokeStyle = colour;
       context.stroke(path);
     }
+    context.globalAlpha = 1;
     context.setTransform(camera.ratio, 0, 0, camera.ratio, 0, 0);
     context.strokeStyle = of("--edge");
     context.strokeRect(x0, y0, page.width * camera.scale, page.height * camera.scale);
