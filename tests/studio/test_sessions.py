@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
@@ -52,6 +53,7 @@ class Page:
 
     def __init__(self) -> None:
         self.heard: list[dict[str, Any]] = []
+        self.frozen = False
         self.said: asyncio.Queue[dict[str, Any]] = asyncio.Queue()
         self.said.put_nowait({"type": "websocket.connect"})
         scope = {"type": "websocket", "headers": [], "query_string": b"", "path": "/ws"}
@@ -66,6 +68,8 @@ class Page:
         self.said.put_nowait({"type": "websocket.disconnect", "code": 1001})
 
     async def _hear(self, message: Any) -> None:
+        if self.frozen:
+            await asyncio.Event().wait()
         if message["type"] == "websocket.send":
             self.heard.append(json.loads(message["text"]))
 
@@ -159,5 +163,49 @@ def test_changes_wait_for_somebody_to_tell(monkeypatch: pytest.MonkeyPatch) -> N
         assert other.heard[-1]["design"] == {"number": 2}
         other.leave()
         await later
+
+    at_desk(story, monkeypatch)
+
+
+def test_a_page_that_takes_nothing_is_left(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One that its browser has frozen: lanes, notes and the next page do not wait for it."""
+    monkeypatch.setattr(sessions, "_STUCK_S", 0.05)
+
+    async def story(desk: Desk, keeper: Keeper, page: Page, serving: asyncio.Task[None]) -> None:
+        page.frozen = True
+        working = asyncio.create_task(desk.outlines.run())
+        page.say(type="design", rev=1, design={"number": 1}, rest=True)
+        await until(serving.done)
+        assert keeper.noted == [{"number": 1}]
+        other = Page()
+        later = asyncio.create_task(desk.serve(other.socket))
+        await until(lambda: bool(other.heard))
+        assert (await desk.outlines.ask({"task": "echo", "say": "here"})).head["said"] == "here"
+        other.frozen = True
+        third = Page()
+        last = asyncio.create_task(desk.serve(third.socket))
+        await until(lambda: bool(third.heard))
+        for task in (working, later, last):
+            task.cancel()
+        await asyncio.gather(working, later, last, return_exceptions=True)
+
+    at_desk(story, monkeypatch)
+
+
+def test_the_document_does_one_thing_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where who has asked for it is gone before it is done."""
+
+    async def story(desk: Desk, _keeper: Keeper, _page: Page, _serving: asyncio.Task[None]) -> None:
+        done: list[str] = []
+
+        def slow() -> None:
+            time.sleep(0.2)
+            done.append("first")
+
+        asked = asyncio.create_task(desk.keeper(slow))
+        await asyncio.sleep(0.05)
+        asked.cancel()
+        await desk.keeper(done.append, "second")
+        assert done == ["first", "second"]
 
     at_desk(story, monkeypatch)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Coroutine, Mapping
 from contextlib import suppress
 from typing import Any, Final
 
@@ -36,6 +36,9 @@ TAKEN_OVER: Final = 4001
 _NOTED_EVERY_S: Final = 0.8
 """How often the newest design is noted for recovery, and the file looked at; seconds."""
 
+_STUCK_S: Final = 5.0
+"""A page that takes nothing for so long is left: browsers freeze pages, and whoever tells them waits; seconds."""
+
 
 class Desk:
     """What all pages of a studio share: the document and the lanes. One page at a time is at it.
@@ -52,9 +55,13 @@ class Desk:
         self._opened: dict[str, Any] = {}
 
     async def keeper(self, call: Callable[..., Any], *arguments: Any) -> Any:
-        """Have the document do something, in a thread, and one thing at a time."""
-        async with self._keeper:
-            return await asyncio.to_thread(call, *arguments)
+        """Have the document do something, in a thread, and one thing at a time, also where nobody waits any more."""
+
+        async def kept() -> Any:
+            async with self._keeper:
+                return await asyncio.to_thread(call, *arguments)
+
+        return await asyncio.shield(kept())
 
     async def opened(self, *, again: bool = False, recover: bool = True) -> dict[str, Any]:
         """The message "opened": the file as it is now, with what can be recovered.
@@ -138,22 +145,41 @@ class Session:
 
     def __init__(self, desk: Desk, websocket: WebSocket) -> None:
         self._desk, self._websocket = desk, websocket
+        self._stay = asyncio.timeout(None)
+        self._stuck = False
 
     async def send(self, message: Mapping[str, Any]) -> None:
         """Send a message; that the page is gone is no error."""
         await self._send_text(json.dumps(message, separators=(",", ":"), allow_nan=False))
 
     async def _send_text(self, text: str) -> None:
-        with suppress(WebSocketDisconnect, RuntimeError, OSError):
-            await self._websocket.send_text(text)
+        await self._patiently(self._websocket.send_text(text))
 
     async def close(self) -> None:
         """Close the connection: another page is at the desk."""
-        with suppress(RuntimeError, OSError):
-            await self._websocket.close(TAKEN_OVER, "the studio was opened in another page")
+        await self._patiently(self._websocket.close(TAKEN_OVER, "the studio was opened in another page"))
+
+    async def _patiently(self, sending: Coroutine[Any, Any, None]) -> None:
+        """Send something, while the page takes it; one that takes nothing is served no longer."""
+        if self._stuck:
+            sending.close()
+            return
+        with suppress(WebSocketDisconnect, RuntimeError, OSError):
+            try:
+                async with asyncio.timeout(_STUCK_S):
+                    await sending
+            except TimeoutError:
+                self._stuck = True
+                self._stay.reschedule(0.0)
 
     async def run(self) -> None:
-        """Say what is open, and do what the page asks for until it is gone."""
+        """Say what is open, and do what the page asks for until it is gone, or takes nothing any more."""
+        with suppress(TimeoutError):
+            async with self._stay:
+                await self._serve()
+
+    async def _serve(self) -> None:
+        """Serve the page until it is gone."""
         await self._websocket.accept()
         try:
             await self.send(await self._desk.opened(again="again" in self._websocket.query_params))
