@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import os
+import sys
+import tempfile
 import time
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from voronoi_tiles.base.errors import ArgumentError
@@ -26,6 +29,20 @@ def spin(_request: Mapping[str, Any], _body: bytes) -> Done:
     """Never come to an end, and keep the interpreter busy."""
     while True:
         pass
+
+
+def listen(_request: Mapping[str, Any], _body: bytes) -> Done:
+    """Read the standard input to its end, as it is and as a file."""
+    return {"said": [sys.stdin.read(), os.read(0, 100).decode()]}, b""
+
+
+def leave(request: Mapping[str, Any], _body: bytes) -> Done:
+    """Begin a temporary file, and never come to an end; say in a file where it is."""
+    scratch = tempfile.mkdtemp()
+    Path(scratch, "half").write_text("done")
+    Path(request["say"]).write_text(scratch)
+    while True:
+        time.sleep(60)
 
 
 def die(_request: Mapping[str, Any], _body: bytes) -> Done:
@@ -53,4 +70,4 @@ def hoard(request: Mapping[str, Any], _body: bytes) -> Done:
 
 
 if __name__ == "__main__":
-    run({task.__name__: task for task in (echo, nap, spin, die, chatter, fail, hoard)})
+    run({task.__name__: task for task in (echo, nap, spin, listen, leave, die, chatter, fail, hoard)})

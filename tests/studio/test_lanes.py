@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 
+from voronoi_tiles.studio import lanes
 from voronoi_tiles.studio.lanes import DIED, TOO_LONG, Answer, Lane, Worker
 
 TESTS = Path(__file__).parents[1]
@@ -142,6 +143,54 @@ def test_a_worker_that_cannot_start_is_said() -> None:
     in_lane(story)
 
 
+def test_a_worker_that_is_slow_to_start_gives_no_wrong_answers(monkeypatch: pytest.MonkeyPatch) -> None:
+    """One that is not ready in time is ended: that it is ready would be taken for the first answer."""
+    monkeypatch.setattr(lanes, "_STARTING_S", 0.001)
+
+    async def story(served: Lane) -> None:
+        await asyncio.sleep(0.05)  # the first start is given up
+        monkeypatch.setattr(lanes, "_STARTING_S", 60.0)
+        for k in range(3):
+            assert (await served.ask({"task": "echo", "say": k})).head["said"] == k
+
+    in_lane(story, early=True)
+
+
+def test_a_worker_hears_requests_alone() -> None:
+    """Who names standard input in a design reads nothing, and takes no request from those that come."""
+
+    async def story(served: Lane) -> None:
+        assert (await served.ask({"task": "listen"})).head["said"] == ["", ""]
+        assert (await served.ask({"task": "echo", "say": 1})).head["said"] == 1
+
+    in_lane(story)
+
+
+def test_what_is_half_done_is_removed(tmp_path: Path) -> None:
+    """The temporary files of a worker that takes too long."""
+    where = tmp_path / "where.txt"
+
+    async def story(served: Lane) -> None:
+        assert (await served.ask({"task": "leave", "say": str(where)})).error == TOO_LONG
+
+    in_lane(story, limit_s=0.5)
+    assert not Path(where.read_text()).exists()
+
+
+def test_what_waits_is_bounded() -> None:
+    """Of a flood of files that are asked for all are answered, and most by a refusal; drags go on."""
+
+    async def story(served: Lane) -> None:
+        await served.ask({"task": "echo"})
+        asked = [served.ask({"task": "nap", "seconds": 0.01, "say": k}) for k in range(100)]
+        answers = await asyncio.gather(*asked)
+        assert 1 < sum(answer.error is None for answer in answers) < 20
+        assert all(answer.error in (None, lanes.BUSY) for answer in answers)
+        assert (await served.ask({"task": "echo", "say": 1})).head["said"] == 1
+
+    in_lane(story)
+
+
 SERVER = """
 import asyncio, sys
 sys.path.insert(0, {tests!r})
@@ -151,7 +200,7 @@ async def main():
     served = lane(early=True)
     running = asyncio.create_task(served.run())
     pid = (await served.ask({{"task": "echo"}})).head["pid"]
-    asking = asyncio.create_task(served.ask({{"task": {task!r}, "seconds": 60}}))
+    asking = asyncio.create_task(served.ask({{"task": {task!r}, "seconds": 60, "say": {where!r}}}))
     await asyncio.sleep(0.1)
     print(pid, flush=True)
     await asking
@@ -161,10 +210,11 @@ asyncio.run(main())
 
 
 @pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="the system has no SIGKILL")
-@pytest.mark.parametrize("task", ["nap", "spin"])
-def test_no_worker_outlives_the_server(task: str) -> None:
+@pytest.mark.parametrize("task", ["nap", "spin", "leave"])
+def test_no_worker_outlives_the_server(task: str, tmp_path: Path) -> None:
     """However it dies, and whatever the worker does: a pipe closes, and there is nothing to clean up."""
-    script = SERVER.format(tests=str(Path(__file__).parent), task=task)
+    where = tmp_path / "where.txt"
+    script = SERVER.format(tests=str(Path(__file__).parent), task=task, where=str(where))
     environment = {**os.environ, "PYTHONPATH": str(TESTS)}
     with subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, env=environment) as server:
         assert server.stdout is not None
@@ -172,3 +222,4 @@ def test_no_worker_outlives_the_server(task: str) -> None:
         assert is_alive(pid)
         server.kill()
     assert is_gone(pid)
+    assert not where.exists() or not Path(where.read_text()).exists()

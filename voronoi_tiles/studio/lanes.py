@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import shutil
 import sys
 from asyncio.subprocess import DEVNULL, PIPE, Process
 from collections.abc import Awaitable, Callable, Mapping
@@ -29,6 +30,9 @@ _STARTING_S: Final = 60.0
 _BUFFER: Final = 1 << 20
 """How much of an answer is read ahead; bytes."""
 
+_WAITING_MAX: Final = 8
+"""How much that no newer request replaces may wait in a lane; a count."""
+
 TOO_LONG: Final = {
     "message": f"This takes longer than {LIMIT_S:g} seconds, and was given up.",
     "remedy": "Draw less, take larger tolerances, or make a smaller sheet; voronoi-tiles export has no such limit.",
@@ -36,6 +40,10 @@ TOO_LONG: Final = {
 DIED: Final = {
     "message": "What computes this has ended unexpectedly, and was started again.",
     "remedy": "Undo the last change if it happens again, and please report it.",
+}
+BUSY: Final = {
+    "message": "There is too much to be done before this.",
+    "remedy": "Wait until the files that were asked for are there, and ask again.",
 }
 
 
@@ -54,6 +62,7 @@ class Worker:
         """Work in a folder: what requests name is seen from there."""
         self._folder, self._module = folder, module
         self._process: Process | None = None
+        self._scratch: str | None = None
 
     @property
     def pid(self) -> int | None:
@@ -64,6 +73,7 @@ class Worker:
         """Start the process, and wait until it is ready. Raises EOFError where it ends."""
         if self._process is not None and self._process.returncode is None:
             return
+        await self.end()
         self._process = await asyncio.create_subprocess_exec(
             *(sys.executable, "-m", self._module),
             stdin=PIPE,
@@ -73,7 +83,12 @@ class Worker:
             limit=_BUFFER,
             start_new_session=True,  # Ctrl-C is for the server, which ends it
         )
-        await asyncio.wait_for(self._receive(), _STARTING_S)
+        try:
+            ready, _ = await asyncio.wait_for(self._receive(), _STARTING_S)
+            self._scratch = ready.get("scratch")
+        except BaseException:  # what it says later would be taken for an answer
+            await self.end()
+            raise
 
     async def ask(self, head: Mapping[str, Any], body: bytes = b"", limit_s: float = LIMIT_S) -> Answer:
         """Have something done; a worker that does not do it is ended."""
@@ -96,12 +111,15 @@ class Worker:
         return Answer(answer, data) if error is None else Answer({}, b"", error)
 
     async def end(self) -> None:
-        """End the process, whatever it does."""
+        """End the process, whatever it does, and remove the files that it has left half done."""
         process, self._process = self._process, None
+        scratch, self._scratch = self._scratch, None
         if process is not None and process.returncode is None:
             with suppress(ProcessLookupError):
                 process.kill()
             await process.wait()
+        if scratch is not None:
+            shutil.rmtree(scratch, ignore_errors=True)
 
     async def _receive(self) -> tuple[Mapping[str, Any], bytes]:
         """The next frame. Raises EOFError where the worker ends instead."""
@@ -155,7 +173,9 @@ class Lane:
             self._slots.pop(slot, None)
 
     async def ask(self, head: Mapping[str, Any], body: bytes = b"", *, urgent: bool = True) -> Answer:
-        """Have something done that no newer request replaces, and wait for it."""
+        """Have something done that no newer request replaces, and wait for it; refused where too much waits already."""
+        if sum(isinstance(slot, asyncio.Future) for slot in self._slots) >= _WAITING_MAX:
+            return Answer({}, b"", BUSY)
         done: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
 
         async def deliver(answer: Answer) -> None:

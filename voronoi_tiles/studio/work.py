@@ -9,7 +9,8 @@ from __future__ import annotations
 import json
 import os
 import queue
-import sys
+import shutil
+import tempfile
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
@@ -130,26 +131,32 @@ def do(request: Request, body: bytes, tasks: Tasks = TASKS) -> bytes:
 def run(tasks: Tasks = TASKS, warm: Callable[[], object] | None = None) -> None:
     """Do what is asked for until nobody is there to ask; `warm` does what makes the first time as quick as others."""
     _bound_memory()
-    answers = os.fdopen(os.dup(1), "wb")
+    asked, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)  # a design that names standard input, "-", reads nothing
     os.dup2(2, 1)  # what some library prints is no answer
+    scratch = tempfile.tempdir = tempfile.mkdtemp(prefix="voronoi-tiles-")  # we may be ended at any moment
     requests: queue.SimpleQueue[tuple[Request, bytes]] = queue.SimpleQueue()
-    threading.Thread(target=_read, args=(sys.stdin.buffer, requests), daemon=True).start()
+    threading.Thread(target=_read, args=(asked, requests, scratch), daemon=True).start()
     if warm is not None:
         warm()
-    frame = pack({"ready": True})
+    frame = pack({"scratch": scratch})
     while True:
         answers.write(frame)
         answers.flush()
         frame = do(*requests.get(), tasks)
 
 
-def _read(file: BinaryIO, requests: queue.SimpleQueue[tuple[Request, bytes]]) -> None:
-    """Read requests, and end the process with the last, whatever it is doing: the server is gone."""
+def _read(file: BinaryIO, requests: queue.SimpleQueue[tuple[Request, bytes]], scratch: str) -> None:
+    """Read requests, and end the process with the last, whatever it is doing: the server is gone.
+
+    What it has half done is in the folder `scratch`, which is removed.
+    """
     with suppress(Exception):
         while len(start := file.read(FRAME_START)) == FRAME_START:
             head, body = sizes_of(start)
             request = json.loads(file.read(head))
             requests.put((request, file.read(body)))
+    shutil.rmtree(scratch, ignore_errors=True)
     os._exit(0)
 
 
