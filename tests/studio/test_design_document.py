@@ -6,6 +6,7 @@ import errno
 import json
 import os
 import random
+import shutil
 import signal
 import subprocess
 import sys
@@ -657,3 +658,94 @@ def test_killed_at_any_moment(file: Path, opens: Opens, run: int) -> None:
     found = max(number_of(part["design"]) for part in (answer, answer.get("recovery", answer)))
     assert killed - min((at for k, at in drawn.items() if k > found), default=killed) <= 1.0
     assert {path.name for path in file.parent.iterdir() if not path.name.endswith(".tmp")} == {"bird.toml"}
+
+
+@pytest.mark.usefixtures("file")
+def test_a_clock_that_is_set_back_loses_nothing(opens: Opens, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was drawn after the file was written is found, whatever time it is."""
+    document = opens()
+    design = moved(design_of(document))
+    assert document.save(design)["type"] == "saved"
+    newer = moved(design, 3)
+    now = time.time()
+    monkeypatch.setattr(time, "time", lambda: now - 86_400)
+    document.note(newer)
+    document.close()
+    assert opens().opened()["recovery"]["design"] == newer
+
+
+@pytest.mark.parametrize("at", ["1e308", "-1e300", "NaN", "Infinity", "1e17"])
+def test_a_copy_of_no_time_is_none(file: Path, opens: Opens, state: Path, at: str) -> None:
+    """A copy that was damaged is passed over."""
+    document = opens()
+    document.note(moved(design_of(document)))
+    document.close()
+    (copy,) = copies(state)
+    copy.write_text(f'{{"design": {{}}, "at": {at}, "of": {file.stat().st_mtime_ns}}}')
+    assert "recovery" not in opens().opened()
+
+
+@pytest.mark.usefixtures("file")
+def test_a_state_folder_that_is_cleared_away_is_made_again(opens: Opens, state: Path) -> None:
+    """By the next copy."""
+    document = opens()
+    design = moved(design_of(document))
+    document.note(design)
+    shutil.rmtree(state)
+    document.note(moved(design))
+    assert len(copies(state)) == 1
+
+
+@pytest.mark.parametrize("over", [False, True])
+def test_what_comes_while_a_save_is_written_is_kept(
+    file: Path, opens: Opens, monkeypatch: pytest.MonkeyPatch, over: bool
+) -> None:
+    """It is a conflict, or is kept as a backup, as what had come before."""
+    document = opens()
+    design = moved(design_of(document))
+    theirs = TEXT.replace("60.0", "70.0").encode()
+    write = os.write
+
+    def late(descriptor: int, data: bytes) -> int:
+        monkeypatch.setattr(os, "write", write)
+        file.write_bytes(theirs)
+        return write(descriptor, data)
+
+    monkeypatch.setattr(os, "write", late)
+    answer = document.save(design, over=over)
+    assert answer["type"] == ("saved" if over else "conflict")
+    kept = file.with_name("bird-backup.toml") if over else file
+    assert kept.read_bytes() == theirs
+    assert sorted(file.parent.iterdir()) == sorted({file, kept})
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="the system has no named pipes")
+def test_a_pipe_that_comes_in_the_last_moment_is_not_waited_for(
+    file: Path, opens: Opens, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is no design, and whoever keeps the file goes on."""
+    document = opens()
+    design = moved(design_of(document))
+    file.unlink()
+    os.mkfifo(file)
+    monkeypatch.setattr("voronoi_tiles.studio.design_document.is_special", lambda _path: False)
+    assert "is empty" in document.save(design)["note"]
+
+
+def test_a_change_right_after_a_save_is_noticed(file: Path, opens: Opens, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is theirs, though it is there before the file was looked at again."""
+    document = opens()
+    theirs = TEXT.replace("60.0", "70.0").encode()
+    design = moved(design_of(document))
+    replaced = document._replaced
+
+    def then(there: Any, data: bytes) -> bool:
+        done = replaced(there, data)
+        file.write_bytes(theirs)
+        return done
+
+    monkeypatch.setattr(document, "_replaced", then)
+    assert document.save(design)["type"] == "saved"
+    change = document.changed()
+    assert change is not None
+    assert change["design"]["cell"]["a"] == 70.0

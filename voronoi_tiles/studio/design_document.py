@@ -9,13 +9,14 @@ import json
 import os
 import re
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from itertools import count
 from pathlib import Path
 from typing import Any, Final, TypeAlias
 
-from voronoi_tiles.base.documents import document_text, read_bytes
+from voronoi_tiles.base.documents import document_text
 from voronoi_tiles.base.errors import DesignError, OutputError, why_not_opened
-from voronoi_tiles.base.files import is_special, write_whole
+from voronoi_tiles.base.files import is_special, write_whole, writing
 from voronoi_tiles.base.tolerance import FILE_BYTES_MAX
 from voronoi_tiles.designs.load import STARTER, parse, refuse_drawing
 from voronoi_tiles.designs.starters import starter_text
@@ -29,6 +30,11 @@ NEW: Final = "design.toml"
 
 _GROUP: Final = "p4"
 _BOM: Final = b"\xef\xbb\xbf"
+
+
+class _ChangedError(Exception):
+    """The file has become another one while it was being saved."""
+
 
 _Disk: TypeAlias = bytes | str | None
 """What is on disk: the bytes of the file, None where there is none, and why it cannot be read where it cannot."""
@@ -133,10 +139,10 @@ class Document:
         data = text.encode()
         if self._known is not None and self._known.startswith(_BOM):
             data = _BOM + data
-        if data != there:
-            write_whole(self.path, data)
+        if data != there and not self._replaced(there, data):
+            return self.save(design, over)
         self._known = self._seen = data
-        self._design, self._text, self._look = design, text, self._state()
+        self._design, self._text = design, text
         self._recovery.forget()
         if backup is not None:
             notes = (*notes, f"What was there is kept as {os.path.basename(backup)}.")  # noqa: PTH119 - any name
@@ -148,7 +154,7 @@ class Document:
         if same(self._design, design):
             self._recovery.drop()
         else:
-            self._recovery.write(design)
+            self._recovery.write(design, next(iter(self._state()), None))
 
     def changed(self) -> dict[str, Any] | None:
         """What another program has made of the file, once for each change; None where there is nothing new.
@@ -201,7 +207,8 @@ class Document:
         if is_special(self.path):  # to read a pipe could take for ever
             raise DesignError("is a pipe or a device", file=self._shown, remedy="Name a TOML or JSON file.")
         try:
-            return read_bytes(self.path, FILE_BYTES_MAX + 1)
+            with open(self.path, "rb", opener=_without_waiting) as stream:
+                return stream.read(FILE_BYTES_MAX + 1) or b""  # a pipe that has come meanwhile has nothing
         except FileNotFoundError:
             return None
         except (OSError, ValueError) as error:
@@ -265,6 +272,15 @@ class Document:
             return edited(self._text, design)
         return self._text if same(self._design, design) else _json_text(merged(self._design, design), self._text), ()
 
+    def _replaced(self, there: _Disk, data: bytes) -> bool:
+        """Write the file, if there is still what was there; whether it was. Raises OutputError."""
+        with suppress(_ChangedError), writing(self.path) as file:
+            file.write(data)
+            if self._there() != there:
+                raise _ChangedError
+            return True
+        return False
+
     def _back_up(self, data: bytes) -> str:
         """Keep what another program has written beside the file; the path. Raises OutputError."""
         path = Path(self.path)
@@ -275,9 +291,13 @@ class Document:
         raise AssertionError("numbers do not end")
 
     def _is_news(self, copy: RecoveryCopy) -> bool:
-        """Whether a copy is newer than the file, and says something else."""
-        written_at = self._state()[:1]
-        return (not written_at or copy.at * 1e9 > written_at[0]) and not same(self._design, copy.design)
+        """Whether a copy is newer than the file, and says something else.
+
+        Clocks are set back: a file that is as old as it was when the copy was written has not changed since.
+        """
+        written_at = next(iter(self._state()), None)
+        newer = written_at is None or copy.of == written_at or copy.at * 1e9 > written_at
+        return newer and not same(self._design, copy.design)
 
     def _opening_notes(self) -> list[str]:
         """What there is to say when a design is opened."""
@@ -292,6 +312,11 @@ class Document:
         if self._recovery.trouble:
             notes.append(f"No recovery copies can be kept ({self._recovery.trouble}): save often.")
         return notes
+
+
+def _without_waiting(path: str, flags: int) -> int:
+    """Open a file, and never wait for the other end of a pipe."""
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
 def _form(path: str, text: str) -> str:

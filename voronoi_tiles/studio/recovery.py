@@ -28,10 +28,14 @@ if sys.platform != "win32":
 
 
 class RecoveryCopy(NamedTuple):
-    """A copy that was found: the design in its JSON form, and when it was written, in seconds since 1970."""
+    """A copy that was found: the design in its JSON form, and when it was written, in seconds since 1970.
+
+    `of` is when the file had been written by then, in nanoseconds since 1970; None where there was none.
+    """
 
     design: Mapping[str, Any]
     at: float
+    of: int | None
 
     @property
     def when(self) -> str:
@@ -69,16 +73,18 @@ class Recovery:
             self.trouble = str(getattr(error, "strerror", None) or error)
         self._current: Path | None = None
 
-    def write(self, design: Mapping[str, Any]) -> None:
-        """Write the copy of this session anew, whole or not at all. Raises OutputError."""
+    def write(self, design: Mapping[str, Any], of: int | None) -> None:
+        """Write the copy of this session anew, whole or not at all; `of` is that of the copy. Raises OutputError."""
         if self.trouble:
             return
         if self._current is None:
             self._number += 1
             stamp = f"{time.time_ns():020d}-{os.getpid()}-{self._number}"
             self._current = self._folder / f"{self._name}-{stamp}.json"
-        copy = {"file": self._path, "at": time.time(), "design": design}
+        copy = {"file": self._path, "at": time.time(), "of": of, "design": design}
         try:
+            with suppress(OSError):  # it may have been cleared away; what cannot be made cannot be written to
+                self._folder.mkdir(mode=0o700, parents=True, exist_ok=True)
             write_whole(self._current, json.dumps(copy).encode())
         except OutputError as error:
             raise OutputError(
@@ -106,10 +112,11 @@ class Recovery:
                 self._acquire()
         copies = []
         for path in self._copies():
-            with suppress(OSError, ValueError, LookupError, TypeError, RecursionError):
+            with suppress(OSError, ArithmeticError, ValueError, LookupError, TypeError, RecursionError):
                 copy = json.loads(path.read_bytes())
-                if isinstance(copy["design"], dict):
-                    copies.append(RecoveryCopy(copy["design"], float(copy["at"])))
+                found = RecoveryCopy(copy["design"], float(copy["at"]), copy.get("of"))
+                if isinstance(found.design, dict) and found.when:
+                    copies.append(found)
         return sorted(copies, key=lambda copy: copy.at, reverse=True)
 
     def forget(self) -> None:
