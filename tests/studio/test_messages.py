@@ -19,6 +19,7 @@ from voronoi_tiles.base.errors import ArgumentError, DesignError, OutputError, T
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.designs.starters import starter, starter_text
 from voronoi_tiles.studio.messages import (
+    FILES_MAX,
     DesignMessage,
     GroupsMessage,
     JobMessage,
@@ -284,3 +285,32 @@ def test_who_sends_and_never_reads_is_not_waited_for(studio: RunningStudio) -> N
             assert told(other)["type"] == "opened"
             tell(other, "design", rev=1, design=DESIGN, rest=True)
             assert told(other, "outline")["rev"] == 1
+
+
+@pytest.mark.parametrize(
+    "site",
+    [
+        [{"art": "a/" * 500_000}],
+        [{"art": "a/" * 480 + f"{k}.svg"} for k in range(1_000)],
+        [{"strokes": [{"file": f"{k}.svg"}]} for k in range(50_000)],
+        [{"art": "same.svg"}] * 70_000,
+    ],
+    ids=["one", "long", "many", "same"],
+)
+def test_files_are_looked_for_in_no_time(tmp_path: Path, site: list[Any]) -> None:
+    """Whoever names them a million letters long, or by the thousand: the server answers others meanwhile."""
+    begun = time.process_time()
+    with suppress(DesignError):
+        check_files({"site": site}, {}, str(tmp_path), ())
+    assert time.process_time() - begun < 0.5
+
+
+def test_the_files_of_a_design_are_counted(tmp_path: Path) -> None:
+    """Each once, and none of its own."""
+    many = [f"{k}.svg" for k in range(FILES_MAX + 1)]
+    check_files({"site": [{"art": name} for name in many[1:] * 2]}, {}, str(tmp_path), ())
+    check_files({"site": [{"art": name} for name in many]}, {}, str(tmp_path), many[:1])
+    with pytest.raises(DesignError, match="names 201 files"):
+        check_files({"site": [{"art": name} for name in many]}, {}, str(tmp_path), ())
+    with pytest.raises(DesignError, match="too long"):
+        check_files({"site": [{"art": "x" * 1_001}]}, {}, str(tmp_path), ())

@@ -37,6 +37,12 @@ LIMITS: Final = {"message": MESSAGE_MAX, "drop": DROP_MAX, "strokes": STROKES_MA
 DEPTH_MAX: Final = 16
 """How deeply messages are nested at most; a count. A point of a stroke of a site of a design is the eighth level."""
 
+FILES_MAX: Final = 200
+"""Most files that a design names, beside those that it had on disk; a count."""
+
+_NAME_MAX: Final = 1_000
+"""Longest name of a file; characters. Each folder on the way is looked at."""
+
 _DIGITS_MAX: Final = 25
 _REVISION_MAX: Final = 2**53
 _NUMBERS: Final = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)")
@@ -189,8 +195,23 @@ def check_files(design: Table, job: Table, folder: str, own: Collection[str]) ->
 
     Raises DesignError, which names the key.
     """
+    named: dict[str, str] = {}
     for key, name in (*_named_files(design), *_files_of_job(job)):
-        if name not in own and not _is_inside(name, folder):
+        if name not in own:
+            named.setdefault(name, key)
+    if len(named) > FILES_MAX:
+        raise DesignError(
+            f"the design names {len(named):,} files, and the studio takes {FILES_MAX:,}",
+            key="site",
+            remedy="Draw several things into one file.",
+        )
+    home = os.path.realpath(folder)
+    for name, key in named.items():
+        if len(name) > _NAME_MAX:
+            raise DesignError(
+                f"the name {shown(name)} of a file is too long", key=key, remedy="Give the file a shorter one."
+            )
+        if not _is_inside(name, home):
             raise DesignError(
                 f"the file {shown(name)} is outside the design's folder",
                 key=key,
@@ -313,12 +334,11 @@ def _files_of_job(job: Table) -> Iterator[tuple[str, str]]:
             yield key, name
 
 
-def _is_inside(name: str, folder: str) -> bool:
-    """Whether a name, as seen from a folder, leads to what is in it, links and all."""
+def _is_inside(name: str, home: str) -> bool:
+    """Whether a name, as seen from a folder, which is no link, leads to what is in it, links and all."""
     if "\0" in name or os.path.isabs(name):  # noqa: PTH117 - any name
         return False
     try:
-        home = os.path.realpath(folder)
         return Path(os.path.realpath(os.path.join(home, name))).is_relative_to(home)  # noqa: PTH118 - same
     except (OSError, ValueError):
         return False
