@@ -7,7 +7,7 @@ that one is proved. What users hold is a `voronoi_tiles.tiling.Tiling`, the tile
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from itertools import pairwise
@@ -18,6 +18,7 @@ from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.base.tolerance import SAME_POINT
 from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
+from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.vector.arcs import Neighbour
 from voronoi_tiles.vector.cells.bisectors import TouchingElementsError
 from voronoi_tiles.vector.cells.cells import UnboundedCellError, bound_cells
@@ -26,6 +27,7 @@ from voronoi_tiles.vector.cells.half_edges import trace_contour
 from voronoi_tiles.vector.cells.pencils import make_rows
 from voronoi_tiles.vector.cells.touching import refuse_touching
 from voronoi_tiles.vector.cells.trace import OpenBoundaryError, trace_boundary
+from voronoi_tiles.vector.complex.approximation import approximated
 from voronoi_tiles.vector.complex.boundary import TileBoundaries
 from voronoi_tiles.vector.complex.edges import UnpairedEdgeError, find_edges
 from voronoi_tiles.vector.complex.period import Period, make_period
@@ -135,6 +137,24 @@ class Tessellation:
     def period(self) -> Period:
         """The tiles of one cell, with the edges that they share."""
         return make_period(self.action, self.placed, self.quotient)
+
+    def approximated(self, fit: Callable[[Paths], Paths]) -> Period:
+        """The period with the curves that `fit` gives for its exact edges, as `voronoi_tiles.vector.complex` has them.
+
+        It takes longer than all else that is done for a sheet: that of the last fit is kept, for one that is equal.
+        """
+        kept = self._approximations
+        period = kept.get(fit)
+        if period is None:
+            period = approximated(self.period, self.quotient, fit)
+            kept.clear()
+            kept[fit] = period
+        return period
+
+    @cached_property
+    def _approximations(self) -> dict[Callable[[Paths], Paths], Period]:
+        """The period with other curves, by what gave them: the last one alone."""
+        return {}
 
     @cached_property
     def placed_outlines(self) -> list[Outline]:

@@ -17,8 +17,9 @@ from helpers.outlines import CommandLine
 from voronoi_tiles.base.errors import ArgumentError, DesignError, VoronoiTilesError
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.designs.starters import starter, starter_text
+from voronoi_tiles.fabrication.arc_fitting import edge_arcs
 from voronoi_tiles.fabrication.job import Job
-from voronoi_tiles.studio.making import coupon_file, exported, product, read_options
+from voronoi_tiles.studio.making import _kept, coupon_file, exported, product, read_options
 
 JOBS: dict[str, dict[str, Any]] = {
     "exact": {},
@@ -120,6 +121,42 @@ def test_the_page_is_shown_what_is_cut() -> None:
     assert "duplicate" not in {finding["kind"] for finding in product(3, design, apart, {}, "bird")["findings"]}
     few, many = (product(3, design, apart, {"neck": neck}, "bird")["found"] for neck in (0, "3mm"))
     assert few < many
+
+
+def test_arcs_are_fitted_once_while_the_design_stays(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Half the time of a job with a kerf goes into them; whatever changes, what is shown is of that design and job."""
+    fits: list[object] = []
+
+    def counted(*given: Any, **more: Any) -> Any:
+        fits.append(given)
+        return edge_arcs(*given, **more)
+
+    monkeypatch.setattr("voronoi_tiles.fabrication.arc_fitting.edge_arcs", counted)
+    job: dict[str, Any] = {"kerf": 0.15, "accuracy": 0.02}
+    designs = [moved(by) for by in (0.0, 1e-6, 0.0)]
+    jobs = [job, {**job, "accuracy": 0.05}, {**job, "kerf": 0.2}]
+    for changed in designs:
+        for asked in jobs:
+            shown = product(1, changed, asked, {}, "bird")
+            _kept.cache_clear()
+            assert comparable(shown) == comparable(product(1, changed, asked, {}, "bird"))
+    _kept.cache_clear()
+    fits.clear()
+    for margin in (1, 2, 3):
+        product(1, designs[0], {**job, "margin": margin}, {}, "bird")
+    assert len(fits) == 1
+
+
+def moved(by: float) -> dict[str, Any]:
+    """A starter with a point moved."""
+    design: dict[str, Any] = json.loads(json.dumps(starter("p4").to_dict()))
+    design["site"][0]["strokes"][0]["catmull_rom"][0][0] += by
+    return design
+
+
+def comparable(shown: dict[str, Any]) -> dict[str, Any]:
+    """What is shown, but for how long it took."""
+    return {key: value for key, value in shown.items() if key != "ms"}
 
 
 def test_one_of_each_has_a_page_and_no_sheet() -> None:

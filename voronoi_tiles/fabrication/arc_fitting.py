@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
+from dataclasses import dataclass
 from typing import Final
 
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
@@ -22,12 +22,35 @@ ABSORBED: Final = 400.0
 def curve_fit(job: Job, curves: str, budget: AccuracyBudget, unit_mm: float) -> Callable[[Paths], Paths] | None:
     """What replaces the exact curves of tiles, in units of `unit_mm` millimetres, before anything else is done.
 
-    Kerf and fillets need arcs. None where the exact curves stay.
+    Kerf and fillets need arcs. None where the exact curves stay. What does the same is equal.
     """
     if job.moves_contours or curves == "arc":
-        return partial(edge_arcs, accuracy=budget.arcs / unit_mm, absorbed=ABSORBED * budget.whole / unit_mm)
+        return EdgeArcs(budget.arcs / unit_mm, ABSORBED * budget.whole / unit_mm)
     # Nothing else is done to these.
-    return partial(to_lines, accuracy=budget.whole / unit_mm) if curves == "polyline" else None
+    return EdgeLines(budget.whole / unit_mm) if curves == "polyline" else None
+
+
+@dataclass(frozen=True)
+class EdgeArcs:
+    """Replaces the edges of tiles by arcs, as `edge_arcs` does; two of the same measures are equal."""
+
+    accuracy: float
+    absorbed: float
+
+    def __call__(self, paths: Paths) -> Paths:
+        """Fit the arcs."""
+        return edge_arcs(paths, accuracy=self.accuracy, absorbed=self.absorbed)
+
+
+@dataclass(frozen=True)
+class EdgeLines:
+    """Replaces the edges of tiles by chords within an accuracy; two of the same are equal."""
+
+    accuracy: float
+
+    def __call__(self, paths: Paths) -> Paths:
+        """Lay the chords."""
+        return to_lines(paths, accuracy=self.accuracy)
 
 
 def edge_arcs(paths: Paths, *, accuracy: float, absorbed: float) -> Paths:

@@ -27,7 +27,6 @@ from voronoi_tiles.paths.conversion import to_lines
 from voronoi_tiles.paths.offset import OffsetError, offset
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.paths.segments import item_boxes
-from voronoi_tiles.vector.complex.approximation import approximated
 from voronoi_tiles.vector.complex.period import Period
 from voronoi_tiles.vector.copies import Placed
 from voronoi_tiles.vector.motions import IDENTITY, reverses_orientation
@@ -218,7 +217,7 @@ def lay_out(
     region = sheet.region
     shift = 0j if region is None else sheet.centre + (job.offset or 0j)
     page = PageMap(tessellation.action, scale * design.unit_mm * unit_at(job.rotate), shift)
-    period = tessellation.period if fit is None else approximated(tessellation.period, tessellation.quotient, fit)
+    period = tessellation.period if fit is None else tessellation.approximated(fit)
     tiles = DressedTiles(period.placed(page.factor, page.shift), page, Compensation(job, budget))
     if region is None:
         placement = _one_of_each(tiles.period, tessellation.placed)
