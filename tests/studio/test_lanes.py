@@ -143,9 +143,10 @@ def test_a_worker_that_cannot_start_is_said() -> None:
     in_lane(story)
 
 
-def test_a_worker_that_is_slow_to_start_gives_no_wrong_answers(monkeypatch: pytest.MonkeyPatch) -> None:
-    """One that is not ready in time is ended: that it is ready would be taken for the first answer."""
+def test_a_worker_that_is_slow_to_start_gives_no_wrong_answers(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One that is not ready in time is ended: that it is ready would be taken for the first answer. No files stay."""
     monkeypatch.setattr(lanes, "_STARTING_S", 0.001)
+    monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
 
     async def story(served: Lane) -> None:
         await asyncio.sleep(0.05)  # the first start is given up
@@ -154,6 +155,7 @@ def test_a_worker_that_is_slow_to_start_gives_no_wrong_answers(monkeypatch: pyte
             assert (await served.ask({"task": "echo", "say": k})).head["said"] == k
 
     in_lane(story, early=True)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_worker_hears_requests_alone() -> None:

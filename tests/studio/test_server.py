@@ -118,6 +118,7 @@ def test_what_is_asked_for_by_address_is_answered(studio: RunningStudio) -> None
         "/index.html/",
         "/C:/x.js",
         "/no.js",
+        f"/{'a' * 5000}.js",
     ):
         answer = studio.ask(path)
         assert answer.status == 404, path

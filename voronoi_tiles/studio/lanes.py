@@ -13,6 +13,7 @@ import asyncio
 import json
 import shutil
 import sys
+import tempfile
 from asyncio.subprocess import DEVNULL, PIPE, Process
 from collections.abc import Awaitable, Callable, Mapping
 from contextlib import suppress
@@ -74,8 +75,10 @@ class Worker:
         if self._process is not None and self._process.returncode is None:
             return
         await self.end()
+        with suppress(OSError):  # without room, a worker can do much that needs no files
+            self._scratch = tempfile.mkdtemp(prefix="voronoi-tiles-")
         self._process = await asyncio.create_subprocess_exec(
-            *(sys.executable, "-m", self._module),
+            *(sys.executable, "-m", self._module, *([self._scratch] if self._scratch else [])),
             stdin=PIPE,
             stdout=PIPE,
             stderr=DEVNULL,
@@ -84,8 +87,7 @@ class Worker:
             start_new_session=True,  # Ctrl-C is for the server, which ends it
         )
         try:
-            ready, _ = await asyncio.wait_for(self._receive(), _STARTING_S)
-            self._scratch = ready.get("scratch")
+            await asyncio.wait_for(self._receive(), _STARTING_S)
         except BaseException:  # what it says later would be taken for an answer
             await self.end()
             raise

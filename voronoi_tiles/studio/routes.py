@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Awaitable, Callable, Mapping
 from importlib.util import find_spec
 from pathlib import Path, PurePath
@@ -204,7 +205,7 @@ def page_file(folder: Path, name: str) -> Path | None:
     if any(not part or part.startswith(".") or not part.isascii() or "\\" in part for part in parts):
         return None
     found = folder.joinpath(*parts)
-    return found if found.suffix in _TYPES and found.is_file() else None
+    return found if found.suffix in _TYPES and os.path.isfile(found) else None  # noqa: PTH113 - any name, however long
 
 
 def _shader() -> Path | None:

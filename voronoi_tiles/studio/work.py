@@ -10,6 +10,7 @@ import json
 import os
 import queue
 import shutil
+import sys
 import tempfile
 import threading
 from collections.abc import Callable, Mapping, Sequence
@@ -129,34 +130,38 @@ def do(request: Request, body: bytes, tasks: Tasks = TASKS) -> bytes:
 
 
 def run(tasks: Tasks = TASKS, warm: Callable[[], object] | None = None) -> None:
-    """Do what is asked for until nobody is there to ask; `warm` does what makes the first time as quick as others."""
+    """Do what is asked for until nobody is there to ask; `warm` does what makes the first time as quick as others.
+
+    Temporary files go into the folder that is named on the command line, which goes with us.
+    """
     _bound_memory()
     asked, answers = os.fdopen(os.dup(0), "rb"), os.fdopen(os.dup(1), "wb")
     os.dup2(os.open(os.devnull, os.O_RDONLY), 0)  # a design that names standard input, "-", reads nothing
     os.dup2(2, 1)  # what some library prints is no answer
-    scratch = tempfile.tempdir = tempfile.mkdtemp(prefix="voronoi-tiles-")  # we may be ended at any moment
+    scratch = tempfile.tempdir = sys.argv[1] if len(sys.argv) > 1 else None
     requests: queue.SimpleQueue[tuple[Request, bytes]] = queue.SimpleQueue()
     threading.Thread(target=_read, args=(asked, requests, scratch), daemon=True).start()
     if warm is not None:
         warm()
-    frame = pack({"scratch": scratch})
+    frame = pack({"ready": True})
     while True:
         answers.write(frame)
         answers.flush()
         frame = do(*requests.get(), tasks)
 
 
-def _read(file: BinaryIO, requests: queue.SimpleQueue[tuple[Request, bytes]], scratch: str) -> None:
+def _read(file: BinaryIO, requests: queue.SimpleQueue[tuple[Request, bytes]], scratch: str | None) -> None:
     """Read requests, and end the process with the last, whatever it is doing: the server is gone.
 
-    What it has half done is in the folder `scratch`, which is removed.
+    What it has half done is in the folder `scratch`, where it has one, which is removed.
     """
     with suppress(Exception):
         while len(start := file.read(FRAME_START)) == FRAME_START:
             head, body = sizes_of(start)
             request = json.loads(file.read(head))
             requests.put((request, file.read(body)))
-    shutil.rmtree(scratch, ignore_errors=True)
+    if scratch is not None:
+        shutil.rmtree(scratch, ignore_errors=True)
     os._exit(0)
 
 
