@@ -86,6 +86,16 @@ def test_a_picture_can_be_had() -> None:
     assert data.startswith(b"\x89PNG")
 
 
+@pytest.mark.parametrize("name", ["\u65e5" * 100, "a" * 200, "\u00e9" * 100 + "."])
+def test_long_names_are_cut(name: str) -> None:
+    """Where letters take several bytes, too: the file can be written, and kept by whoever downloads it."""
+    file, data = exported(starter("p4").to_dict(), {"format": "json"}, name)
+    stem = file.removesuffix(".json")
+    assert name.startswith(stem)
+    assert 100 < len(file.encode()) < 200
+    assert json.loads(data)
+
+
 def test_a_coupon_is_that_of_the_command_line(tmp_path: Path, voronoi_tiles: CommandLine) -> None:
     """Byte for byte."""
     options = {"thickness": "3mm", "kerfs": "0.1:0.3:0.1", "plug": "12mm", "preset": "lightburn"}

@@ -404,6 +404,17 @@ def test_the_browser_is_opened_by_a_file(tmp_path: Path, monkeypatch: pytest.Mon
 
 
 @pytest.mark.slow
+def test_a_design_of_any_name_is_downloaded(tmp_path: Path) -> None:
+    """Where the page names it not."""
+    name = "a\u200b" + "b" * 150
+    (tmp_path / f"{name}.toml").write_text(starter_text("p4"), encoding="utf-8")
+    with running(tmp_path, f"{name}.toml") as studio:
+        body = json.dumps({"design": starter("p4").to_dict(), "job": {"format": "json"}}).encode()
+        answer = studio.ask("/export", method="POST", body=body)
+        assert (answer.status, answer.headers["content-disposition"][-6:]) == (200, "b.json")
+
+
+@pytest.mark.slow
 def test_two_studios_at_one_file_are_said(tmp_path: Path) -> None:
     """The second is told of the first, and neither overwrites the other unasked."""
     (tmp_path / "bird.toml").write_text(starter_text("p4"), encoding="utf-8")

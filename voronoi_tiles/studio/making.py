@@ -41,6 +41,9 @@ SHOWN_MAX: Final = 16 << 20
 FINDINGS_MAX: Final = 1_000
 """Most findings that are sent, the worst first; a count."""
 
+_STEM_MAX: Final = 150
+"""Longest name of a download; bytes of UTF-8. File systems take 255, with what tells several files apart."""
+
 _ODD: Final = re.compile(r"[^\w.-]+")
 _LONG_AGO: Final = (1980, 1, 1, 0, 0, 0)
 
@@ -86,7 +89,7 @@ def exported(design: Mapping[str, Any], job: Mapping[str, Any], name: str) -> tu
     asked, form = read_options(job)
     options = asked if job.keys() - {"format"} else None  # without any, the exact tiles as they lie in the plane
     tiling = tiling_of(design, name)
-    stem = _ODD.sub("-", name).strip(".-") or "design"
+    stem = _ODD.sub("-", name).encode()[:_STEM_MAX].decode(errors="ignore").strip(".-") or "design"
     with TemporaryDirectory(prefix="voronoi-tiles-") as folder:
         path = Path(folder) / f"{stem}.{form}"
         if form == "png":

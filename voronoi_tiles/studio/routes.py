@@ -183,9 +183,9 @@ async def _body_of(request: Request, most: int) -> bytes | None:
 
 
 def _read_name(table: Table, default: str) -> str:
-    """The name of a design, as files say it. Raises ArgumentError."""
+    """The name of a design, as files say it, by default that of the file. Raises ArgumentError."""
     name = read_text(table, "name", default)
-    if not (name.isprintable() and 0 < len(name) <= _NAME_MAX):
+    if name != default and not (name.isprintable() and 0 < len(name) <= _NAME_MAX):
         raise ArgumentError(f"{shown(name)} is no name", remedy="Give a short one.")
     return name
 
