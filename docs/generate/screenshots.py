@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import io
 import shutil
 import sys
 import tempfile
 from pathlib import Path
+
+from PIL import Image
 
 DOCS = Path(__file__).parents[1]
 sys.path.append(str(DOCS.parent / "tests"))
@@ -13,14 +16,18 @@ sys.path.append(str(DOCS.parent / "tests"))
 from helpers.page import SOFTWARE_GL  # noqa: E402 - from the tests
 from helpers.studio import Window, opened, running  # noqa: E402 - from the tests
 
+COLOURS = 26
+"""How many colours the pictures have."""
+
 DESIGN = DOCS.parent / "examples" / "p4-hook.toml"
 
 
 def shoot(window: Window, name: str) -> None:
-    """Photograph the window."""
+    """Photograph the window, in so few colours that the file is small."""
     window.page.mouse.move(700, 30)
     window.page.wait_for_timeout(800)
-    window.page.screenshot(path=str(DOCS / "pictures" / f"studio-{name}.png"))
+    picture = Image.open(io.BytesIO(window.page.screenshot())).convert("RGB")
+    picture.quantize(COLOURS).save(DOCS / "pictures" / f"studio-{name}.png", optimize=True)
 
 
 def main() -> None:
@@ -30,7 +37,7 @@ def main() -> None:
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
         chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=SOFTWARE_GL)
         shutil.copy(DESIGN, folder)
-        size = {"width": 1180, "height": 720}
+        size = {"width": 1000, "height": 600}
         with (
             running(Path(folder), DESIGN.name) as studio,
             opened(chromium, studio, viewport=size, color_scheme="light") as window,

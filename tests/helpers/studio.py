@@ -153,7 +153,7 @@ def opened(
         page.add_init_script(script)
         page.goto(studio.url + fragment)
         window = Window(page)
-        page.wait_for_function("() => window.studio")
+        page.wait_for_function("() => window.studio && document.getElementById('file').textContent !== 'no design'")
         yield window
         assert not complaints or found == [], found
     finally:

@@ -428,16 +428,22 @@ def test_several_sites(window: Window) -> None:
 
 
 def test_group_and_cell_by_the_keyboard(window: Window) -> None:
-    """Arrow keys go through the groups; the cell's sides take units; the file's units leave the size as it is."""
+    """Arrow keys go through the groups, Enter takes one, and the one before is as it was.
+
+    The cell's sides take units; the file's units leave the size as it is.
+    """
     page = window.page
     before = window.text
     page.get_by_role("tab", name="Symmetry").click()
     page.locator("[data-group=p4]").focus()
     page.keyboard.press("ArrowRight")
+    assert window.text == before
+    page.keyboard.press("Enter")
     assert window.design["group"] != "p4"
     assert page.evaluate("() => document.activeElement.dataset.group") == window.design["group"]
     page.keyboard.press("ArrowLeft")
-    assert window.design["group"] == "p4"
+    page.keyboard.press("Enter")
+    assert window.text == before
     side = page.get_by_label("Side a, mm")
     side.fill("2.5in")
     side.press("Enter")

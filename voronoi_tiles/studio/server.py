@@ -37,7 +37,7 @@ USUAL: Final = 8317
 
 
 def bind(port: int | None) -> socket.socket:
-    """A socket of the loopback interface; port 0 takes a free one, None the usual one or, if that is in use, a free one.
+    """A socket of the loopback interface; port 0 takes a free one, None the usual one or, where it is in use, that.
 
     Raises ArgumentError.
     """

@@ -28,7 +28,10 @@ const times = (m, v) => [0, 3, 6].map((k) => m[k] * v[0] + m[k + 1] * v[1] + m[k
 /** How a colour looks to some eyes: lightness, and two hues. */
 function seen(colour, eyes) {
     const light = colour.map((part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4));
-    return times(LAB, times(CONES, times(EYES[eyes], light)).map((part) => Math.cbrt(Math.max(part, 0))));
+    return times(
+        LAB,
+        times(CONES, times(EYES[eyes], light)).map((part) => Math.cbrt(Math.max(part, 0))),
+    );
 }
 
 /** The smallest difference between two of the first colours, to the eyes that see it least. */
@@ -58,15 +61,29 @@ for (const dark of [false, true]) {
 
 test("a colouring counts in the lattice's vectors, whatever the basis", () => {
     const colour = [0, 1, 2].map((k) => [0, 1, 2, 3, 4].map((x) => [k + x, 7 * x]));
-    const colouring = { rows: [[1, 3], [2, 1]], m: 5, n: 2, colour };
-    const basis = [[2, 1], [-1, 0]];
+    const colouring = {
+        rows: [
+            [1, 3],
+            [2, 1],
+        ],
+        m: 5,
+        n: 2,
+        colour,
+    };
+    const basis = [
+        [2, 1],
+        [-1, 0],
+    ];
     const colours = coloursOf(colouring, 3, basis);
     for (let i = -7; i < 7; i++) {
         for (let j = -7; j < 7; j++) {
             const [s, t] = [i * basis[0][0] + j * basis[1][0], i * basis[0][1] + j * basis[1][1]];
             const place = [(((s + 3 * t) % 5) + 5) % 5, (((2 * s + t) % 2) + 2) % 2];
             for (let k = 0; k < 3; k++) assert.equal(colourAt(colours, k, i, j), colour[k][place[0]][place[1]]);
-            for (const [across, up] of [[colours.period[0], 0], [0, colours.period[1]]]) {
+            for (const [across, up] of [
+                [colours.period[0], 0],
+                [0, colours.period[1]],
+            ]) {
                 assert.equal(colourAt(colours, 1, i + across, j + up), colourAt(colours, 1, i, j));
             }
         }
@@ -75,8 +92,20 @@ test("a colouring counts in the lattice's vectors, whatever the basis", () => {
 });
 
 test("without a colouring that fits, colours go by site and motion, and translates that are neighbours differ", () => {
-    const basis = [[1, 0], [0, 1]];
-    const around = [[1, 0], [0, 1], [1, 1], [1, -1], [-1, 0], [0, -1], [-1, -1], [-1, 1]];
+    const basis = [
+        [1, 0],
+        [0, 1],
+    ];
+    const around = [
+        [1, 0],
+        [0, 1],
+        [1, 1],
+        [1, -1],
+        [-1, 0],
+        [0, -1],
+        [-1, -1],
+        [-1, 1],
+    ];
     for (const placements of [1, 2]) {
         const colours = coloursOf(null, placements, basis);
         for (const [i, j] of around) {
@@ -85,10 +114,21 @@ test("without a colouring that fits, colours go by site and motion, and translat
             }
         }
     }
-    const unfit = { rows: [[1, 0], [0, 1]], m: 1, n: 1, colour: [[[0]], [[0]]] };
+    const unfit = {
+        rows: [
+            [1, 0],
+            [0, 1],
+        ],
+        m: 1,
+        n: 1,
+        colour: [[[0]], [[0]]],
+    };
     for (const colouring of [undefined, unfit, { ...unfit, m: 2 }]) {
         const colours = coloursOf(colouring, 6, basis);
-        assert.deepEqual([0, 1, 2, 3, 4, 5].map((k) => colourAt(colours, k, 3, -5)), [0, 1, 2, 3, 4, 5]);
+        assert.deepEqual(
+            [0, 1, 2, 3, 4, 5].map((k) => colourAt(colours, k, 3, -5)),
+            [0, 1, 2, 3, 4, 5],
+        );
         assert.deepEqual(colours.period, [1, 1]);
     }
 });

@@ -21,10 +21,26 @@ const DESIGN = frozen({
             scale: 2,
             translate: [1, 2],
             strokes: [
-                { segment: [[5, 3], [25, 11]] },
+                {
+                    segment: [
+                        [5, 3],
+                        [25, 11],
+                    ],
+                },
                 { circle: [0.1, 0.2], radius: 2, weight: 3 },
                 { path: "M 1 1 L 2 3" },
-                { hermite: [[0, 0], [4, 0]], tangents: [[3, 6], [3, -6]], mirror: true, rotate: 10 },
+                {
+                    hermite: [
+                        [0, 0],
+                        [4, 0],
+                    ],
+                    tangents: [
+                        [3, 6],
+                        [3, -6],
+                    ],
+                    mirror: true,
+                    rotate: 10,
+                },
             ],
             art: { file: "face.svg", translate: [25.4, 0] },
         },
@@ -47,7 +63,12 @@ test("strokes are added, replaced and removed, and the rest is shared", () => {
         two.site[0].strokes.map((stroke) => Object.keys(stroke)[0]),
         ["segment", "point", "point", "path", "hermite"],
     );
-    const gone = [{ site: 1, stroke: 0 }, { site: 0, stroke: 0 }, { site: 0, stroke: 2 }, { site: 0, stroke: 0 }];
+    const gone = [
+        { site: 1, stroke: 0 },
+        { site: 0, stroke: 0 },
+        { site: 0, stroke: 2 },
+        { site: 0, stroke: 0 },
+    ];
     assert.deepEqual(
         edits.removeStrokes(DESIGN, gone).site.map((site) => site.strokes.length),
         [2, 0],
@@ -76,7 +97,19 @@ test("strokes move by the vector, however they and their sites are placed", () =
 test("what moves there and back is written as before", () => {
     const plain = frozen({
         ...DESIGN,
-        site: [{ strokes: [{ polyline: [[0.1, 1000.7], [12.345678, -0.003], [1e-9, 7]] }] }],
+        site: [
+            {
+                strokes: [
+                    {
+                        polyline: [
+                            [0.1, 1000.7],
+                            [12.345678, -0.003],
+                            [1e-9, 7],
+                        ],
+                    },
+                ],
+            },
+        ],
     });
     let design = plain;
     for (const step of [0.1, 0.2, 33.3, -0.7])

@@ -45,7 +45,12 @@ test("pieces meet with one tangent, but in corners", () => {
 });
 
 test("corners stay corners", () => {
-    const corners = [[0, 0], [30, 0], [30, 30], [5, 12]];
+    const corners = [
+        [0, 0],
+        [30, 0],
+        [30, 30],
+        [5, 12],
+    ];
     const trail = corners
         .slice(1)
         .flatMap((end, k) => trailOf(40, (t) => corners[k].map((value, n) => value + t * (end[n] - value))));
@@ -66,14 +71,21 @@ test("a trail that comes back is closed", () => {
 test("two points are a line, and one is nothing", () => {
     assertNear(
         fit(
-            [[0, 0], [9, 3]],
+            [
+                [0, 0],
+                [9, 3],
+            ],
             0.3,
         ).bezier.flat(),
         [0, 0, 3, 1, 6, 2, 9, 3],
     );
     assert.equal(
         fit(
-            [[1, 1], [1, 1], [1.01, 1]],
+            [
+                [1, 1],
+                [1, 1],
+                [1.01, 1],
+            ],
             0.3,
         ),
         null,

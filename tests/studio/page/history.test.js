@@ -21,7 +21,12 @@ import { PLACEMENTS, STROKES, frozen, random } from "./helpers.js";
 /** How many random stories are told; the slow test asks for 10,000. */
 const STORIES = Number(process.env.VORONOI_TILES_STORIES ?? 250);
 
-const square = [[0, 0], [0.5, 0], [0.5, 0.5], [0, 0.5]];
+const square = [
+    [0, 0],
+    [0.5, 0],
+    [0.5, 0.5],
+    [0, 0.5],
+];
 const identity = { name: "x,y", w: [1, 0, 0, 1], t: [0, 0] };
 const TABLES = frozen({
     groups: [
@@ -30,7 +35,12 @@ const TABLES = frozen({
             free: ["a", "b", "angle"],
             angle: null,
             operations: [identity],
-            region: [[0, 0], [1, 0], [1, 1], [0, 1]],
+            region: [
+                [0, 0],
+                [1, 0],
+                [1, 1],
+                [0, 1],
+            ],
         },
         {
             name: "p4",
@@ -39,7 +49,11 @@ const TABLES = frozen({
             region: square,
             operations: [
                 identity,
-                ...[[-1, 0, 0, -1], [0, -1, 1, 0], [0, 1, -1, 0]].map((w) => ({ name: "", w, t: [0, 0] })),
+                ...[
+                    [-1, 0, 0, -1],
+                    [0, -1, 1, 0],
+                    [0, 1, -1, 0],
+                ].map((w) => ({ name: "", w, t: [0, 0] })),
             ],
         },
     ],

@@ -16,8 +16,21 @@ import { cubicsOf } from "../../../voronoi_tiles/studio/page/model/strokes.js";
 import { assertNear } from "./helpers.js";
 
 const strokes = [
-    { bezier: [[0, 0], [2, 3], [5, 4], [7, 1]] },
-    { polyline: [[0, 0], [10, 0], [10, 10]] },
+    {
+        bezier: [
+            [0, 0],
+            [2, 3],
+            [5, 4],
+            [7, 1],
+        ],
+    },
+    {
+        polyline: [
+            [0, 0],
+            [10, 0],
+            [10, 10],
+        ],
+    },
     { point: [20, 20] },
     { path: "" },
 ];
@@ -41,7 +54,11 @@ test("a copy leads to its stroke, and to the motion that makes it", () => {
     const lattice = { a: [60, 0], b: [0, 60] };
     const own = nearestCopy(entries, motions, lattice, [10.2, 5], 0.5);
     assert.deepEqual([own.ref.stroke, own.motion], [1, 0]);
-    for (const [i, j] of [[0, 0], [3, -2], [-1, 4]]) {
+    for (const [i, j] of [
+        [0, 0],
+        [3, -2],
+        [-1, 4],
+    ]) {
         const at = [-10.2 + 60 * i, 5 + 60 * j];
         const hit = nearestCopy(entries, motions, lattice, at, 0.5);
         assert.deepEqual([hit.ref.stroke, hit.piece, hit.motion], [1, 1, 1]);
@@ -57,7 +74,10 @@ test("the nearest node is found, of two at one place the upper one, and handles 
     assert.deepEqual(nearestNode(nodes, [2.1, 3.1], 0.5).role, "out");
     assert.equal(nearestNode(nodes, [2.1, 3.1], 0.1), null);
     assert.deepEqual(nearestNode(nodes, [0, 0], 1).ref.stroke, 1);
-    const [anchor, handle] = [{ ...nodes[0], at: [1, 1] }, { ...nodes[1], at: [1, 1] }];
+    const [anchor, handle] = [
+        { ...nodes[0], at: [1, 1] },
+        { ...nodes[1], at: [1, 1] },
+    ];
     assert.equal(nearestNode([handle, anchor], [1, 1.1], 1), handle);
     assert.equal(nearestNode([anchor, handle], [1, 1.1], 1), handle);
 });
@@ -80,8 +100,22 @@ test("a box holds the strokes and nodes that are inside", () => {
 
 const elements = {
     centres: [{ at: [30, 30], order: 4 }],
-    mirrors: [[[15, -50], [15, 50]], [[-50, 7], [50, 7]]],
-    glides: [[[0, 20], [10, 30]]],
+    mirrors: [
+        [
+            [15, -50],
+            [15, 50],
+        ],
+        [
+            [-50, 7],
+            [50, 7],
+        ],
+    ],
+    glides: [
+        [
+            [0, 20],
+            [10, 30],
+        ],
+    ],
 };
 
 test("points come before lines, where lines cross before one of them, and the grid last", () => {

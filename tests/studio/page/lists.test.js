@@ -138,7 +138,11 @@ function check(group, sites, frame, block, band, random) {
 for (const [name, group] of Object.entries(GROUPS)) {
     test(`lists of windows and cells hold all that matters at ${SAMPLES} samples: ${name}`, () => {
         const random = dice(7 + name.length);
-        for (const [count, size] of [[1, 5], [9, 20], [30, 90]]) {
+        for (const [count, size] of [
+            [1, 5],
+            [9, 20],
+            [30, 90],
+        ]) {
             const sites = [strokes(random, count, size), strokes(random, 2, 4)].slice(0, count === 9 ? 2 : 1);
             for (const pixels of [0.2, 3]) {
                 const frame = {
@@ -199,7 +203,11 @@ test("the shortest basis spans the lattice it is made of", () => {
 });
 
 test("what is no drawing has no pattern, and elements that are not finite are left out", () => {
-    for (const lattice of [{ a: [1, 0], b: [2, 0] }, { a: [0, 1], b: [1, 0] }, { a: [1, 0], b: [NaN, 1] }]) {
+    for (const lattice of [
+        { a: [1, 0], b: [2, 0] },
+        { a: [0, 1], b: [1, 0] },
+        { a: [1, 0], b: [NaN, 1] },
+    ]) {
         assert.equal(reducedBasis(lattice), null);
     }
     const basis = reducedBasis(GROUPS.p4.lattice);

@@ -109,14 +109,41 @@ test("all nodes together move the curve as it is", () => {
 });
 
 test("numbers that do not change are written as before, and those that do without dust", () => {
-    const stroke = frozen({ bezier: [[0.1, 0.7], [1.1, 2], [3.3, 4.4], [5.000001, 6]] });
-    assert.deepEqual(moveNodes(stroke, placementOf({}, {}), [{ node: 0, to: [0.1 + 0.2, 0.7] }], {}), {
-        bezier: [[0.3, 0.7], [1.3, 2], [3.3, 4.4], [5.000001, 6]],
+    const stroke = frozen({
+        bezier: [
+            [0.1, 0.7],
+            [1.1, 2],
+            [3.3, 4.4],
+            [5.000001, 6],
+        ],
     });
-    const hermite = frozen({ hermite: [[0.1, 0.7], [1.1, 2]], tangents: [[1.1, 2.3], [0.7, 0.1]] });
+    assert.deepEqual(moveNodes(stroke, placementOf({}, {}), [{ node: 0, to: [0.1 + 0.2, 0.7] }], {}), {
+        bezier: [
+            [0.3, 0.7],
+            [1.3, 2],
+            [3.3, 4.4],
+            [5.000001, 6],
+        ],
+    });
+    const hermite = frozen({
+        hermite: [
+            [0.1, 0.7],
+            [1.1, 2],
+        ],
+        tangents: [
+            [1.1, 2.3],
+            [0.7, 0.1],
+        ],
+    });
     assert.deepEqual(moveNodes(hermite, placementOf({}, {}), [{ node: 3, to: [1.4, 2] }], {}), {
-        hermite: [[0.1, 0.7], [1.4, 2]],
-        tangents: [[1.1, 2.3], [0.7, 0.1]],
+        hermite: [
+            [0.1, 0.7],
+            [1.4, 2],
+        ],
+        tangents: [
+            [1.1, 2.3],
+            [0.7, 0.1],
+        ],
     });
 });
 
@@ -131,7 +158,17 @@ test("a handle of a smooth anchor turns the opposite one, which keeps its length
     const corner = moveNodes(stroke, placementOf({}, {}), [{ node: 2, to: [7, 4] }], { alone: true });
     assert.deepEqual(moveNodes(corner, placementOf({}, {}), [{ node: 4, to: [9, 9] }], {}).bezier[2], [7, 4]);
     // Two handles on one side are a cusp.
-    const cusp = frozen({ bezier: [[0, 0], [1, 1], [4, 4], [5, 0], [4, 4], [8, 1], [9, 0]] });
+    const cusp = frozen({
+        bezier: [
+            [0, 0],
+            [1, 1],
+            [4, 4],
+            [5, 0],
+            [4, 4],
+            [8, 1],
+            [9, 0],
+        ],
+    });
     assert.equal(nodesOf(cusp).find(({ node }) => node === 3).smooth, false);
     assert.deepEqual(moveNodes(cusp, placementOf({}, {}), [{ node: 2, to: [3, 3] }], {}).bezier[4], [4, 4]);
     // Round the seam of a closed chain.
@@ -168,7 +205,15 @@ test("closed curves stay closed", () => {
             if (moved.tangents) assert.deepEqual(moved.tangents[0], moved.tangents.at(-1));
         }
     }
-    const seam = frozen({ ...STROKES[7], tangents: [[3, -6], [1, 4], [-5, 1], [2, 2]] });
+    const seam = frozen({
+        ...STROKES[7],
+        tangents: [
+            [3, -6],
+            [1, 4],
+            [-5, 1],
+            [2, 2],
+        ],
+    });
     const moved = moveNodes(seam, placement, [{ node: 1, to: [2, 2] }], {});
     assertNear(at(nodesOf(moved), 1), [2, 2]);
     assertNear(at(nodesOf(moved), 8), at(nodesOf(seam), 8));
@@ -248,13 +293,35 @@ test("deleting all or too many nodes leaves what can be drawn", () => {
     }
     assert.deepEqual(
         deleteNodes(
-            { bspline: [[0, 0], [1, 2], [3, 1], [4, 4]] },
+            {
+                bspline: [
+                    [0, 0],
+                    [1, 2],
+                    [3, 1],
+                    [4, 4],
+                ],
+            },
             [1],
             {},
         ),
-        [{ polyline: [[0, 0], [3, 1], [4, 4]] }],
+        [
+            {
+                polyline: [
+                    [0, 0],
+                    [3, 1],
+                    [4, 4],
+                ],
+            },
+        ],
     );
-    assert.deepEqual(deleteNodes(STROKES[3], [1], {}), [{ polyline: [[1, 2], [3, 9]] }]);
+    assert.deepEqual(deleteNodes(STROKES[3], [1], {}), [
+        {
+            polyline: [
+                [1, 2],
+                [3, 9],
+            ],
+        },
+    ]);
     assert.deepEqual(deleteNodes(STROKES[1], [1], {}), []);
     assert.deepEqual(deleteNodes(STROKES[12], [1], {}), [STROKES[12]]);
     assert.deepEqual(deleteNodes({ file: "leaf.svg" }, [0], {}), [{ file: "leaf.svg" }]);
@@ -263,16 +330,60 @@ test("deleting all or too many nodes leaves what can be drawn", () => {
 test("cutting takes the pieces at a node as well", () => {
     assert.deepEqual(
         deleteNodes(
-            { polyline: [[0, 0], [1, 0], [2, 0], [3, 0], [4, 0]], rotate: 5 },
+            {
+                polyline: [
+                    [0, 0],
+                    [1, 0],
+                    [2, 0],
+                    [3, 0],
+                    [4, 0],
+                ],
+                rotate: 5,
+            },
             [2],
             { cut: true },
         ),
-        [{ polyline: [[0, 0], [1, 0]], rotate: 5 }, { polyline: [[3, 0], [4, 0]], rotate: 5 }],
+        [
+            {
+                polyline: [
+                    [0, 0],
+                    [1, 0],
+                ],
+                rotate: 5,
+            },
+            {
+                polyline: [
+                    [3, 0],
+                    [4, 0],
+                ],
+                rotate: 5,
+            },
+        ],
     );
-    assert.deepEqual(deleteNodes(STROKES[3], [1], { cut: true }), [{ polyline: [[3, 9], [1, 2]] }]);
+    assert.deepEqual(deleteNodes(STROKES[3], [1], { cut: true }), [
+        {
+            polyline: [
+                [3, 9],
+                [1, 2],
+            ],
+        },
+    ]);
     assert.deepEqual(deleteNodes(STROKES[4], [0], { cut: true }), [{ bezier: STROKES[4].bezier.slice(3) }]);
     assert.deepEqual(deleteNodes(STROKES[5], [0], { cut: true }), []);
-    const ring = { bezier: [[0, 0], [1, 1], [2, 1], [3, 0], [4, 0], [4, 1], [4, 2], [3, 3], [1, 3], [0, 0]] };
+    const ring = {
+        bezier: [
+            [0, 0],
+            [1, 1],
+            [2, 1],
+            [3, 0],
+            [4, 0],
+            [4, 1],
+            [4, 2],
+            [3, 3],
+            [1, 3],
+            [0, 0],
+        ],
+    };
     assert.deepEqual(deleteNodes(ring, [6], { cut: true }), [{ bezier: ring.bezier.slice(0, 4) }]);
     assert.deepEqual(deleteNodes(ring, [0], { cut: true }), [{ bezier: ring.bezier.slice(3, 7) }]);
     const runs = deleteNodes({ path: "M0 0L1 0L2 0L3 0L4 0M9 9L8 8" }, [6], { cut: true });
@@ -289,20 +400,41 @@ test("a handle that is deleted goes back into its anchor", () => {
 
 test("a smooth anchor becomes a corner, and a corner smooth", () => {
     const corner = toggleSmooth(STROKES[4], 3);
-    assert.deepEqual(corner.bezier.slice(2, 5), [[7, 1], [7, 1], [7, 1]]);
+    assert.deepEqual(corner.bezier.slice(2, 5), [
+        [7, 1],
+        [7, 1],
+        [7, 1],
+    ]);
     assert.equal(nodesOf(toggleSmooth(corner, 3)).find(({ node }) => node === 3).smooth, true);
     const hermite = toggleSmooth(STROKES[6], 3);
-    assert.deepEqual(hermite.tangents, [[3, 6], [0, 0], [0.3, 6]]);
+    assert.deepEqual(hermite.tangents, [
+        [3, 6],
+        [0, 0],
+        [0.3, 6],
+    ]);
     const again = toggleSmooth(hermite, 3);
     assert.equal(kindOf(again), "hermite");
     assert.ok(nodesOf(again).find(({ node }) => node === 3).smooth);
     const line = toggleSmooth(
-        { polyline: [[0, 0], [3, 3], [6, 0]], rotate: 9 },
+        {
+            polyline: [
+                [0, 0],
+                [3, 3],
+                [6, 0],
+            ],
+            rotate: 9,
+        },
         1,
     );
     assertNear(line.bezier.flat(), [0, 0, 0, 0, 3 - Math.SQRT2, 3, 3, 3, 3 + Math.SQRT2, 3, 6, 0, 6, 0]);
     assert.equal(line.rotate, 9);
-    const straight = { polyline: [[0, 0], [3, 0], [0, 0]] };
+    const straight = {
+        polyline: [
+            [0, 0],
+            [3, 0],
+            [0, 0],
+        ],
+    };
     assert.ok(nodesOf(toggleSmooth(straight, 1)).find(({ node }) => node === 3).smooth);
     assert.deepEqual(toggleSmooth(STROKES[8], 1), STROKES[8]);
     const path = toggleSmooth(STROKES[13], 3);
@@ -311,7 +443,19 @@ test("a smooth anchor becomes a corner, and a corner smooth", () => {
 });
 
 test("handles are pulled out of anchors to both sides", () => {
-    for (const [k, node] of [[1, 0], [1, 1], [2, 1], [3, 0], [4, 3], [4, 6], [5, 0], [6, 3], [6, 6], [7, 0], [13, 0]]) {
+    for (const [k, node] of [
+        [1, 0],
+        [1, 1],
+        [2, 1],
+        [3, 0],
+        [4, 3],
+        [4, 6],
+        [5, 0],
+        [6, 3],
+        [6, 6],
+        [7, 0],
+        [13, 0],
+    ]) {
         for (const [site, keys] of PLACEMENTS) {
             const stroke = frozen({ ...STROKES[k], ...keys });
             const placement = placementOf(site, stroke);
@@ -322,7 +466,12 @@ test("handles are pulled out of anchors to both sides", () => {
             const places = nodes.filter(({ role }) => role === "in" || role === "out").map((one) => one.at);
             const has = (place) => places.some((one) => Math.hypot(one[0] - place[0], one[1] - place[1]) < 1e-9);
             assert.ok(has(to), JSON.stringify(stroke));
-            const isEnd = [[1, 0], [1, 1], [4, 6], [6, 6]].some(([one, other]) => one === k && other === node);
+            const isEnd = [
+                [1, 0],
+                [1, 1],
+                [4, 6],
+                [6, 6],
+            ].some(([one, other]) => one === k && other === node);
             assert.equal(has([anchor[0] - 1, anchor[1] - 2]), !isEnd, JSON.stringify([stroke, node]));
         }
     }
@@ -337,7 +486,10 @@ test("the pen draws hermite while handles are even, then bezier, of one shape", 
     const broken = even.map((point, k) => (k === 1 ? { ...point, in: [-1, 2] } : point));
     for (const [site] of PLACEMENTS) {
         const placement = placementOf(site, {});
-        for (const [points, kind] of [[even, "hermite"], [broken, "bezier"]]) {
+        for (const [points, kind] of [
+            [even, "hermite"],
+            [broken, "bezier"],
+        ]) {
             const stroke = penStroke(points, placement);
             assert.equal(kindOf(stroke), kind);
             const expected = [

@@ -31,23 +31,59 @@ test("what cannot be drawn has no pieces, and nothing is thrown", () => {
         { segment: [] },
         { polyline: [[1], [2, 3]] },
         { polyline: [null, null] },
-        { bezier: [[0, 0], [1, NaN], [2, 2], [3, 3]] },
+        {
+            bezier: [
+                [0, 0],
+                [1, NaN],
+                [2, 2],
+                [3, 3],
+            ],
+        },
         { bezier: 7 },
-        { bspline: [[0, 0], [1, 1], [2, 0]] },
+        {
+            bspline: [
+                [0, 0],
+                [1, 1],
+                [2, 0],
+            ],
+        },
         { circle: [], radius: 3 },
         { circle: [0, 0], radius: "x" },
         { path: 5 },
         { path: "L 3 4" },
         { path: "" },
         { file: "a.svg" },
-        { segment: [[0, 0], [1, 1]], scale: NaN },
-        { segment: [[0, 0], [1, 1]], translate: ["x", 0] },
-        { hermite: [["a", "b"], [1, 1]] },
+        {
+            segment: [
+                [0, 0],
+                [1, 1],
+            ],
+            scale: NaN,
+        },
+        {
+            segment: [
+                [0, 0],
+                [1, 1],
+            ],
+            translate: ["x", 0],
+        },
+        {
+            hermite: [
+                ["a", "b"],
+                [1, 1],
+            ],
+        },
     ];
     for (const stroke of broken)
         assert.equal(cubicsOf(stroke, placementOf({}, stroke)).length, 0, JSON.stringify(stroke));
     assert.equal(
-        cubicsOf({ hermite: [[0, 0], [1, 1]], tangents: "x" }).length,
+        cubicsOf({
+            hermite: [
+                [0, 0],
+                [1, 1],
+            ],
+            tangents: "x",
+        }).length,
         8,
     );
     assert.equal(flatten(new Float64Array(0), 1).length, 0);
@@ -58,15 +94,35 @@ test("strokes that are begun are drawn as far as they go", () => {
         assert.deepEqual([...cubicsOf({ [kind]: [[3, 4]] })], [3, 4, 3, 4, 3, 4, 3, 4]);
     }
     assert.equal(
-        cubicsOf({ bezier: [[0, 0], [1, 1], [2, 2], [3, 3], [4, 4]] }).length,
+        cubicsOf({
+            bezier: [
+                [0, 0],
+                [1, 1],
+                [2, 2],
+                [3, 3],
+                [4, 4],
+            ],
+        }).length,
         8,
     );
     assert.equal(
-        cubicsOf({ catmull_rom: [[0, 0], [0, 0], [2, 2]] }).length,
+        cubicsOf({
+            catmull_rom: [
+                [0, 0],
+                [0, 0],
+                [2, 2],
+            ],
+        }).length,
         8,
     );
     assert.equal(
-        cubicsOf({ catmull_rom: [[0, 0], [0, 0]], closed: true }).length,
+        cubicsOf({
+            catmull_rom: [
+                [0, 0],
+                [0, 0],
+            ],
+            closed: true,
+        }).length,
         8,
     );
 });

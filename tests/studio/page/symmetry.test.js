@@ -35,7 +35,12 @@ const TABLES = {
             mirrors: [],
             glides: [],
             operations: [operation([1, 0, 0, 1])],
-            region: [[0, 0], [1, 0], [1, 1], [0, 1]],
+            region: [
+                [0, 0],
+                [1, 0],
+                [1, 1],
+                [0, 1],
+            ],
         },
         {
             name: "pm",
@@ -43,9 +48,17 @@ const TABLES = {
             angle: 90,
             centres: [],
             glides: [],
-            mirrors: [{ through: [0, 0], along: [0, 1] }, { through: [0.5, 0], along: [0, 1] }],
+            mirrors: [
+                { through: [0, 0], along: [0, 1] },
+                { through: [0.5, 0], along: [0, 1] },
+            ],
             operations: [operation([1, 0, 0, 1]), operation([-1, 0, 0, 1])],
-            region: [[0, 0], [0.5, 0], [0.5, 1], [0, 1]],
+            region: [
+                [0, 0],
+                [0.5, 0],
+                [0.5, 1],
+                [0, 1],
+            ],
         },
     ],
 };
@@ -61,11 +74,21 @@ test("similarities compose and are undone", () => {
         assertNear(apply(compose(one, other), z), apply(one, apply(other, z)), 1e-13);
         assertNear(apply(inverse(one), apply(one, z)), z, 1e-12);
     }
-    assert.deepEqual([0, 90, -180, 450, 720].map(unitAt), [[1, 0], [0, 1], [-1, 0], [0, 1], [1, 0]]);
+    assert.deepEqual([0, 90, -180, 450, 720].map(unitAt), [
+        [1, 0],
+        [0, 1],
+        [-1, 0],
+        [0, 1],
+        [1, 0],
+    ]);
 });
 
 test("skew and turned-over lattices: images, cells and folding agree with counting", () => {
-    for (const cell of [{ a: 60, b: 50, angle: 75 }, { a: 20, b: 90, angle: 12 }, { a: 40, b: 11, angle: 160 }]) {
+    for (const cell of [
+        { a: 60, b: 50, angle: 75 },
+        { a: 20, b: 90, angle: 12 },
+        { a: 40, b: 11, angle: 160 },
+    ]) {
         const lattice = latticeOf(design("p1", cell), TABLES);
         const point = [3.3, -1.7];
         const all = [];
@@ -95,7 +118,12 @@ test("orbits are the images under all motions", () => {
     const orbit = orbitIn(motions, lattice, [7, 5], [-10, 0, 70, 49]);
     assert.deepEqual(
         orbit.map(([x, y]) => [x, y]).sort((p, q) => p[0] - q[0]),
-        [[-7, 5], [7, 5], [53, 5], [67, 5]],
+        [
+            [-7, 5],
+            [7, 5],
+            [53, 5],
+            [67, 5],
+        ],
     );
     assert.deepEqual(moved(motions[1], [7, 5]), [-7, 5]);
     assertNear(regionOf(own, TABLES).flat(), [0, 0, 30, 0, 30, 50, 0, 50]);
@@ -114,7 +142,10 @@ test("too many cells have no elements to show", () => {
 
 test("what is an ulp outside a box is on its border", () => {
     const own = design("pm", { a: 60, b: 50 });
-    for (const box of [[7, 1, 30 - 2 ** -48, 49], [30 + 2 ** -48, 1, 40, 49]]) {
+    for (const box of [
+        [7, 1, 30 - 2 ** -48, 49],
+        [30 + 2 ** -48, 1, 40, 49],
+    ]) {
         assert.equal(elementsIn(own, TABLES, box).mirrors.length, 1);
         assert.equal(imagesIn(latticeOf(own, TABLES), [30, 5], box).length, 1);
         assert.equal(imagesIn(latticeOf(own, TABLES), [30 + 1e-9, 5], [7, 1, 30, 49]).length, 0);

@@ -32,67 +32,67 @@ let jobKey = "";
  * @returns {any}
  */
 function kept(name) {
-  try {
-    return JSON.parse(localStorage.getItem(name) ?? "{}");
-  } catch {
-    return {};
-  }
+    try {
+        return JSON.parse(localStorage.getItem(name) ?? "{}");
+    } catch {
+        return {};
+    }
 }
 
 const store = new Store({
-  design: EMPTY,
-  revision: 0,
-  file: "",
-  saved: true,
-  selection: NOTHING,
-  tool: "select",
-  site: 0,
-  tables: null,
-  exact: null,
-  refusal: null,
-  product: null,
-  jobRefusal: null,
-  jobPending: false,
-  job: {},
-  unit: "mm",
-  shown: { elements: true, cell: true, grid: false, copies: true, region: false, colours: true, edges: true },
-  theme: "",
-  connected: true,
-  dragging: false,
-  trouble: null,
-  ...kept("voronoi_tiles studio"),
+    design: EMPTY,
+    revision: 0,
+    file: "",
+    saved: true,
+    selection: NOTHING,
+    tool: "select",
+    site: 0,
+    tables: null,
+    exact: null,
+    refusal: null,
+    product: null,
+    jobRefusal: null,
+    jobPending: false,
+    job: {},
+    unit: "mm",
+    shown: { elements: true, cell: true, grid: false, copies: true, region: false, colours: true, edges: true },
+    theme: "",
+    connected: true,
+    dragging: false,
+    trouble: null,
+    ...kept("voronoi_tiles studio"),
 });
 
 const stage = new Stage(
-  /** @type {HTMLCanvasElement} */ (element("picture")),
-  /** @type {HTMLCanvasElement} */ (element("overlay")),
-  store,
+    /** @type {HTMLCanvasElement} */ (element("picture")),
+    /** @type {HTMLCanvasElement} */ (element("overlay")),
+    store,
 );
 const sheet = new SheetView(/** @type {HTMLCanvasElement} */ (element("sheet")), store);
 const link = new Link(store);
 
 /** @type {import("./tools/tool.js").Hands} */
 const hands = {
-  store,
-  entries: () => stage.entries(),
-  symmetry: () => stage.symmetry(),
-  camera: stage.camera,
-  redraw: () => stage.redraw(),
-  take(tool) {
-    store.set({ tool });
-    if (sheet.visible) {
-      openTab(/** @type {HTMLButtonElement} */ (element("tab-drawing")));
-    }
-  },
-  hint(text) {
-    element("hint").textContent = text;
-    element("hint").hidden = !text;
-  },
+    store,
+    entries: () => stage.entries(),
+    symmetry: () => stage.symmetry(),
+    camera: stage.camera,
+    redraw: () => stage.redraw(),
+    take(tool) {
+        store.set({ tool });
+        if (sheet.visible) {
+            openTab(/** @type {HTMLButtonElement} */ (element("tab-drawing")));
+        }
+    },
+    hint(text) {
+        element("hint").textContent = text;
+        element("hint").hidden = !text;
+    },
 };
 const toolbox = new Toolbox(/** @type {HTMLCanvasElement} */ (element("overlay")), hands);
 Object.assign(stage, { hands, toolbox });
 store.subscribe(["dragging"], () => {
-  link.scale = stage.camera.scale;
+    link.scale = stage.camera.scale;
 });
 
 // --- commands -----------------------------------------------------------------------------------------------------
@@ -104,12 +104,12 @@ const middle = () => /** @type {[number, number]} */ ([stage.camera.size[0] / 2,
 
 /** @param {number} factor */
 const zoomBy = (factor) => {
-  if (sheet.visible) {
-    sheet.zoom(factor);
-    return;
-  }
-  stage.camera.zoomAt(middle(), factor);
-  stage.redraw();
+    if (sheet.visible) {
+        sheet.zoom(factor);
+        return;
+    }
+    stage.camera.zoomAt(middle(), factor);
+    stage.redraw();
 };
 
 /** @type {{rev: number, design: import("./model/design.js").Design | null}} what was sent to be saved */
@@ -120,73 +120,79 @@ let keepsMine = false;
 
 /** @param {boolean} [over] whether to write over that; a backup of it is kept */
 function save(over = keepsMine) {
-  const [rev, design] = [store.state.revision, store.settled];
-  if (link.send({ type: "save", rev, design, over })) {
-    saving = { rev, design };
-  }
+    const [rev, design] = [store.state.revision, store.settled];
+    if (link.send({ type: "save", rev, design, over })) {
+        saving = { rev, design };
+    }
 }
 
 const ask = dialogs(element("dialogs"), {
-  store,
-  link,
-  stage,
-  save,
-  keepMine() {
-    keepsMine = true;
-  },
+    store,
+    link,
+    stage,
+    save,
+    keepMine() {
+        keepsMine = true;
+    },
 });
 
 /** @type {Record<string, () => void>} */
 const COMMANDS = {
-  undo() {
-    if (!toolbox.tool.undo?.(hands)) {
-      store.undo();
-    }
-  },
-  redo: () => store.redo(),
-  save: () => save(),
-  "save-as": () => void ask.saveAs(),
-  export: () => ask.export(),
-  open: () => ask.open(),
-  gallery: () => void ask.gallery(),
-  coupon: () => ask.coupon(),
-  share: () => ask.share(),
-  help: () => ask.help(),
-  theme: () => store.set({ theme: stage.dark ? "light" : "dark" }),
-  "zoom-in": () => zoomBy(1.4),
-  "zoom-out": () => zoomBy(1 / 1.4),
-  fit: () => (sheet.visible ? sheet.fit() : stage.fit("cell")),
-  "fit-all": () => stage.fit("all"),
-  "fit-selection": () => stage.fit("selection"),
-  "toggle-elements": () => toggle("elements"),
-  "toggle-grid": () => toggle("grid"),
-  "toggle-copies": () => toggle("copies"),
-  "select-all": () => store.set({ tool: "select", selection: { strokes: stage.entries().map((entry) => entry.ref), nodes: [] } }),
-  double() {
-    const { selection } = store.state;
-    const strokes = selection.strokes.map((ref) => ({ site: ref.site, stroke: store.settled.site[ref.site].strokes[ref.stroke] }));
-    if (strokes.length) {
-      const by = 12 / stage.camera.scale;
-      store.edit("double", (design) => {
-        const before = design.site.map((site) => site.strokes.length);
-        design = strokes.reduce((made, { site, stroke }) => addStroke(made, site, stroke), design);
-        const refs = design.site.flatMap((site, i) => site.strokes.map((_, k) => ({ site: i, stroke: k })).slice(before[i]));
-        return moveStrokes(design, refs, [by, -by]);
-      });
-    }
-  },
+    undo() {
+        if (!toolbox.tool.undo?.(hands)) {
+            store.undo();
+        }
+    },
+    redo: () => store.redo(),
+    save: () => save(),
+    "save-as": () => void ask.saveAs(),
+    export: () => ask.export(),
+    open: () => ask.open(),
+    gallery: () => void ask.gallery(),
+    coupon: () => ask.coupon(),
+    share: () => ask.share(),
+    help: () => ask.help(),
+    theme: () => store.set({ theme: stage.dark ? "light" : "dark" }),
+    "zoom-in": () => zoomBy(1.4),
+    "zoom-out": () => zoomBy(1 / 1.4),
+    fit: () => (sheet.visible ? sheet.fit() : stage.fit("cell")),
+    "fit-all": () => stage.fit("all"),
+    "fit-selection": () => stage.fit("selection"),
+    "toggle-elements": () => toggle("elements"),
+    "toggle-grid": () => toggle("grid"),
+    "toggle-copies": () => toggle("copies"),
+    "select-all": () =>
+        store.set({ tool: "select", selection: { strokes: stage.entries().map((entry) => entry.ref), nodes: [] } }),
+    double() {
+        const { selection } = store.state;
+        const strokes = selection.strokes.map((ref) => ({
+            site: ref.site,
+            stroke: store.settled.site[ref.site].strokes[ref.stroke],
+        }));
+        if (strokes.length) {
+            const by = 12 / stage.camera.scale;
+            store.edit("double", (design) => {
+                const before = design.site.map((site) => site.strokes.length);
+                design = strokes.reduce((made, { site, stroke }) => addStroke(made, site, stroke), design);
+                const refs = design.site.flatMap((site, i) =>
+                    site.strokes.map((_, k) => ({ site: i, stroke: k })).slice(before[i]),
+                );
+                return moveStrokes(design, refs, [by, -by]);
+            });
+        }
+    },
 };
 
 /** @param {string} command */
 function run(command) {
-  COMMANDS[command]?.();
+    COMMANDS[command]?.();
 }
 
 document.addEventListener("click", (event) => {
-  const button = event.target instanceof Element && event.target.closest("[data-command]");
-  if (button instanceof HTMLElement && button.dataset.command) {
-    run(button.dataset.command);
-  }
+    const button = event.target instanceof Element && event.target.closest("[data-command]");
+    if (button instanceof HTMLElement && button.dataset.command) {
+        run(button.dataset.command);
+    }
 });
 listen(hands, toolbox, /** @type {HTMLCanvasElement} */ (element("overlay")), run);
 clipboard(hands);
@@ -194,115 +200,120 @@ clipboard(hands);
 // --- tools and tabs -----------------------------------------------------------------------------------------------
 
 for (const tool of TOOLS) {
-  if (BREAKS.has(tool.name)) {
-    element("tools").append(document.createElement("hr"));
-  }
-  const button = document.createElement("button");
-  button.type = "button";
-  button.dataset.tool = tool.name;
-  button.title = `${tool.title} (${tool.key.toUpperCase()})`;
-  button.setAttribute("aria-label", tool.title);
-  button.setAttribute("aria-keyshortcuts", tool.key);
-  const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
-  const use = document.createElementNS("http://www.w3.org/2000/svg", "use");
-  use.setAttribute("href", `#i-${tool.icon}`);
-  svg.append(use);
-  const letter = document.createElement("kbd");
-  letter.textContent = tool.key.toUpperCase();
-  letter.setAttribute("aria-hidden", "true");
-  button.append(svg, letter);
-  button.addEventListener("click", () => hands.take(tool.name));
-  element("tools").append(button);
+    if (BREAKS.has(tool.name)) {
+        element("tools").append(document.createElement("hr"));
+    }
+    const button = document.createElement("button");
+    button.type = "button";
+    button.dataset.tool = tool.name;
+    button.title = `${tool.title} (${tool.key.toUpperCase()})`;
+    button.setAttribute("aria-label", tool.title);
+    button.setAttribute("aria-keyshortcuts", tool.key);
+    const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
+    const use = document.createElementNS("http://www.w3.org/2000/svg", "use");
+    use.setAttribute("href", `#i-${tool.icon}`);
+    svg.append(use);
+    const letter = document.createElement("kbd");
+    letter.textContent = tool.key.toUpperCase();
+    letter.setAttribute("aria-hidden", "true");
+    button.append(svg, letter);
+    button.addEventListener("click", () => hands.take(tool.name));
+    element("tools").append(button);
 }
 
 const tabs = /** @type {HTMLButtonElement[]} */ ([...document.querySelectorAll("[role=tab]")]);
 
 /** @param {HTMLButtonElement} chosen */
 function openTab(chosen) {
-  for (const tab of tabs) {
-    const on = tab === chosen;
-    tab.setAttribute("aria-selected", String(on));
-    tab.tabIndex = on ? 0 : -1;
-    element(tab.getAttribute("aria-controls") ?? "").hidden = !on;
-  }
-  const jobs = chosen.id === "tab-job" || chosen.id === "tab-report";
-  link.askJobs(jobs);
-  sheet.show(jobs);
-  element("hint").hidden = jobs;
+    for (const tab of tabs) {
+        const on = tab === chosen;
+        tab.setAttribute("aria-selected", String(on));
+        tab.tabIndex = on ? 0 : -1;
+        element(tab.getAttribute("aria-controls") ?? "").hidden = !on;
+    }
+    const jobs = chosen.id === "tab-job" || chosen.id === "tab-report";
+    link.askJobs(jobs);
+    sheet.show(jobs);
+    element("hint").hidden = jobs;
 }
 
 for (const [k, tab] of tabs.entries()) {
-  tab.addEventListener("click", () => openTab(tab));
-  tab.addEventListener("keydown", (event) => {
-    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
-    if (step) {
-      const next = tabs[(k + step + tabs.length) % tabs.length];
-      openTab(next);
-      next.focus();
-    }
-  });
+    tab.addEventListener("click", () => openTab(tab));
+    tab.addEventListener("keydown", (event) => {
+        const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+        if (step) {
+            const next = tabs[(k + step + tabs.length) % tabs.length];
+            openTab(next);
+            next.focus();
+        }
+    });
 }
 
 // --- what the page says -------------------------------------------------------------------------------------------
 
 store.subscribe(["tool"], ({ tool }) => {
-  for (const button of document.querySelectorAll("[data-tool]")) {
-    button.setAttribute("aria-pressed", String(/** @type {HTMLElement} */ (button).dataset.tool === tool));
-  }
+    for (const button of document.querySelectorAll("[data-tool]")) {
+        button.setAttribute("aria-pressed", String(/** @type {HTMLElement} */ (button).dataset.tool === tool));
+    }
 });
 
 store.subscribe(["file", "saved"], ({ file, saved }) => {
-  element("file").textContent = file || "no design";
-  element("saved").dataset.state = saved ? "saved" : "unsaved";
-  element("saved").textContent = saved ? "saved" : "not saved";
-  document.title = `${saved ? "" : "* "}${file || "studio"} - voronoi_tiles`;
+    element("file").textContent = file || "no design";
+    element("saved").dataset.state = saved ? "saved" : "unsaved";
+    element("saved").textContent = saved ? "saved" : "not saved";
+    document.title = `${saved ? "" : "* "}${file || "studio"} - voronoi_tiles`;
 });
 
 store.subscribe(["revision", "dragging"], () => {
-  for (const [command, can] of /** @type {const} */ ([["undo", store.canUndo], ["redo", store.canRedo]])) {
-    /** @type {HTMLButtonElement} */ (document.querySelector(`[data-command=${command}]`)).disabled = !can;
-  }
+    for (const [command, can] of /** @type {const} */ ([
+        ["undo", store.canUndo],
+        ["redo", store.canRedo],
+    ])) {
+        /** @type {HTMLButtonElement} */ (document.querySelector(`[data-command=${command}]`)).disabled = !can;
+    }
 });
 
 store.subscribe(["exact", "refusal", "revision", "connected"], ({ exact, refusal, revision, connected }) => {
-  const behind = !exact || (exact.rev < revision && !refusal);
-  const [state, text] = !connected
-    ? ["behind", "no connection"]
-    : refusal
-      ? ["refused", "no tile"]
-      : behind
-        ? ["behind", "exact tile follows"]
-        : exact.proved
-          ? ["proved", "proved"]
-          : ["proving", "exact, proof follows"];
-  element("exact").dataset.state = state;
-  element("exact").textContent = text;
-  document.documentElement.dataset.exact = `${state} ${exact?.rev ?? -1} ${revision}`;
+    const behind = !exact || (exact.rev < revision && !refusal);
+    const [state, text] = !connected
+        ? ["behind", "no connection"]
+        : refusal
+          ? ["refused", "no tile"]
+          : behind
+            ? ["behind", "exact tile follows"]
+            : exact.proved
+              ? ["proved", "proved"]
+              : ["proving", "exact, proof follows"];
+    element("exact").dataset.state = state;
+    element("exact").textContent = text;
+    document.documentElement.dataset.exact = `${state} ${exact?.rev ?? -1} ${revision}`;
 });
 
 store.subscribe(["exact", "refusal", "unit", "tables", "design"], ({ exact, unit, tables, design }) => {
-  if (!exact || !tables) {
-    element("measure").textContent = "";
-    return;
-  }
-  const mm = tables.units[design.units ?? "mm"];
-  const parts = exact.tiles.slice(0, 3).map((tile) => {
-    const [width, height] = [tile.width, tile.height].map((side) => ((side * mm) / tables.units[unit]).toFixed(unit === "mm" ? 2 : 3));
-    const neighbours = `${tile.neighbours} ${tile.neighbours === 1 ? "neighbour" : "neighbours"}`;
-    return `${exact.tiles.length > 1 ? `${tile.site}: ` : ""}${width} x ${height} ${unit}, ${neighbours}, ${tile.copies} in a cell`;
-  });
-  element("measure").textContent = parts.join("; ") + (exact.tiles.length > 3 ? "; ..." : "");
+    if (!exact || !tables) {
+        element("measure").textContent = "";
+        return;
+    }
+    const mm = tables.units[design.units ?? "mm"];
+    const parts = exact.tiles.slice(0, 3).map((tile) => {
+        const [width, height] = [tile.width, tile.height].map((side) =>
+            ((side * mm) / tables.units[unit]).toFixed(unit === "mm" ? 2 : 3),
+        );
+        const neighbours = `${tile.neighbours} ${tile.neighbours === 1 ? "neighbour" : "neighbours"}`;
+        return `${exact.tiles.length > 1 ? `${tile.site}: ` : ""}${width} x ${height} ${unit}, ${neighbours}, ${tile.copies} in a cell`;
+    });
+    element("measure").textContent = parts.join("; ") + (exact.tiles.length > 3 ? "; ..." : "");
 });
 
 toolbox.pointed = (at) => {
-  const { unit, tables, design } = store.state;
-  const factor = tables ? ((tables.units[design.units ?? "mm"] * (design.scale ?? 1)) / tables.units[unit]) : 1;
-  element("pointer").textContent = at ? `${shown(at[0] * factor, unit)}, ${shown(at[1] * factor, unit)} ${unit}` : "";
+    const { unit, tables, design } = store.state;
+    const factor = tables ? (tables.units[design.units ?? "mm"] * (design.scale ?? 1)) / tables.units[unit] : 1;
+    element("pointer").textContent = at ? `${shown(at[0] * factor, unit)}, ${shown(at[1] * factor, unit)} ${unit}` : "";
 };
 
 const LOST = {
-  message: "The connection to the studio's server is lost.",
-  remedy: "The page tries again; what is drawn stays here. If the server was stopped, start it again: voronoi-tiles studio.",
+    message: "The connection to the studio's server is lost.",
+    remedy: "The page tries again; what is drawn stays here. If the server was stopped, start it again: voronoi-tiles studio.",
 };
 
 /**
@@ -311,54 +322,75 @@ const LOST = {
  * @returns {import("./store.js").Trouble | null}
  */
 function whyNoTile({ design, refusal }) {
-  const bare = design.site.findIndex((site) => !site.strokes.length);
-  if (!refusal || bare < 0) {
-    return refusal?.error ?? null;
-  }
-  const what = design.site.length > 1 ? `${design.site[bare].name ?? `site${bare + 1}`} has no stroke yet` : "Nothing is drawn yet";
-  return { message: what, remedy: "Take the pen (P) or another tool and draw.", quiet: true };
+    const bare = design.site.findIndex((site) => !site.strokes.length);
+    if (!refusal || bare < 0) {
+        return refusal?.error ?? null;
+    }
+    const what =
+        design.site.length > 1
+            ? `${design.site[bare].name ?? `site${bare + 1}`} has no stroke yet`
+            : "Nothing is drawn yet";
+    return { message: what, remedy: "Take the pen (P) or another tool and draw.", quiet: true };
 }
 
 store.subscribe(["refusal", "trouble", "connected"], (state) => {
-  const { trouble, connected } = state;
-  const said = [connected ? null : LOST, trouble, connected ? whyNoTile(state) : null].filter((one) => one !== null);
-  const banner = element("banner");
-  banner.hidden = !said.length;
-  banner.classList.toggle("quiet", said.every((one) => "quiet" in one && one.quiet));
-  banner.replaceChildren(
-    ...said.map((one) => {
-      const strong = make("strong", {}, one.message.replace(/[.?!]?$/, (end) => end || ".").replace(/^[a-z]+ /, (word) => word[0].toUpperCase() + word.slice(1)));
-      const close = one === trouble && make("button", { type: "button", class: "quiet", onclick: () => store.set({ trouble: null }) }, "Close");
-      return make("div", {}, make("p", {}, strong, ` ${one.remedy}`), close);
-    }),
-  );
+    const { trouble, connected } = state;
+    const said = [connected ? null : LOST, trouble, connected ? whyNoTile(state) : null].filter((one) => one !== null);
+    const banner = element("banner");
+    banner.hidden = !said.length;
+    banner.classList.toggle(
+        "quiet",
+        said.every((one) => "quiet" in one && one.quiet),
+    );
+    banner.replaceChildren(
+        ...said.map((one) => {
+            const strong = make(
+                "strong",
+                {},
+                one.message
+                    .replace(/[.?!]?$/, (end) => end || ".")
+                    .replace(/^[a-z]+ /, (word) => word[0].toUpperCase() + word.slice(1)),
+            );
+            const close =
+                one === trouble &&
+                make(
+                    "button",
+                    { type: "button", class: "quiet", onclick: () => store.set({ trouble: null }) },
+                    "Close",
+                );
+            return make("div", {}, make("p", {}, strong, ` ${one.remedy}`), close);
+        }),
+    );
 });
 
 store.subscribe(["theme"], ({ theme }) => {
-  document.documentElement.dataset.theme = theme;
+    document.documentElement.dataset.theme = theme;
 });
 
 store.subscribe(["unit"], ({ unit }) => {
-  /** @type {HTMLSelectElement} */ (element("unit")).value = unit;
+    /** @type {HTMLSelectElement} */ (element("unit")).value = unit;
 });
 element("unit").addEventListener("change", (event) => {
-  store.set({ unit: /** @type {any} */ (event.target).value });
+    store.set({ unit: /** @type {any} */ (event.target).value });
 });
 
 store.subscribe(["job"], ({ job }) => {
-  if (jobKey) {
-    localStorage.setItem(jobKey, JSON.stringify(job));
-  }
+    if (jobKey) {
+        localStorage.setItem(jobKey, JSON.stringify(job));
+    }
 });
 
 store.subscribe(["unit", "theme", "shown"], (state) => {
-  localStorage.setItem("voronoi_tiles studio", JSON.stringify(Object.fromEntries(HABITS.map((key) => [key, /** @type {any} */ (state)[key]]))));
+    localStorage.setItem(
+        "voronoi_tiles studio",
+        JSON.stringify(Object.fromEntries(HABITS.map((key) => [key, /** @type {any} */ (state)[key]]))),
+    );
 });
 
 window.addEventListener("beforeunload", (event) => {
-  if (!store.state.saved && !store.state.connected) {
-    event.preventDefault();
-  }
+    if (!store.state.saved && !store.state.connected) {
+        event.preventDefault();
+    }
 });
 
 // --- the beginning ------------------------------------------------------------------------------------------------
@@ -367,69 +399,77 @@ window.addEventListener("beforeunload", (event) => {
 const note = (text) => (text ? { message: text, remedy: "", quiet: true } : null);
 
 link.on("opened", (message) => {
-  keepsMine = false;
-  if (message.again) {
-    link.sendNow();
-    return;
-  }
-  const trouble = note(message.note);
-  if (store.state.file) {
-    // What others have made of the file was asked for: undo leads back.
-    store.edit("take theirs", () => message.design, { selection: NOTHING });
-    store.set({ file: message.file, trouble });
-  } else {
-    store.open(message.design, { file: message.file, trouble });
-    stage.fit();
-    jobKey = `voronoi_tiles job ${message.folder}/${message.file}`;
-    store.set({ job: kept(jobKey) });
-  }
-  store.keep(message.saved ? message.design : null);
-  openShared();
-  if (message.recovery) {
-    ask.recover(message.recovery);
-  }
+    keepsMine = false;
+    if (message.again) {
+        link.sendNow();
+        return;
+    }
+    const trouble = note(message.note);
+    if (store.state.file) {
+        // What others have made of the file was asked for: undo leads back.
+        store.edit("take theirs", () => message.design, { selection: NOTHING });
+        store.set({ file: message.file, trouble });
+    } else {
+        store.open(message.design, { file: message.file, trouble });
+        stage.fit();
+        jobKey = `voronoi_tiles job ${message.folder}/${message.file}`;
+        store.set({ job: kept(jobKey) });
+    }
+    store.keep(message.saved ? message.design : null);
+    openShared();
+    if (message.recovery) {
+        ask.recover(message.recovery);
+    }
 });
 link.on("saved", (message) => {
-  keepsMine = false;
-  store.set({ file: message.file, trouble: note(message.note) });
-  if (message.rev === saving.rev) {
-    store.keep(saving.design);
-  }
+    keepsMine = false;
+    store.set({ file: message.file, trouble: note(message.note) });
+    if (message.rev === saving.rev) {
+        store.keep(saving.design);
+    }
 });
 link.on("conflict", (message) => ask.conflict(message));
 link.on("changed", (message) => {
-  keepsMine = false;
-  ask.changed(message);
+    keepsMine = false;
+    ask.changed(message);
 });
 link.on("failed", (message) => store.set({ trouble: message.error }));
 
 /** Take the design in the address, where a link was opened: it was never sent to a server. */
 function openShared() {
-  const { hash } = location;
-  if (store.state.file && hash.startsWith("#design=")) {
-    history.replaceState(null, "", location.pathname + location.search);
-    ask.openLink(hash);
-  }
+    const { hash } = location;
+    if (store.state.file && hash.startsWith("#design=")) {
+        history.replaceState(null, "", location.pathname + location.search);
+        ask.openLink(hash);
+    }
 }
 window.addEventListener("hashchange", openShared);
 
 /** What a script in the page may ask: where a point of the drawing is on it, and what is drawn. */
 const face = {
-  design: () => store.state.design,
-  toPage(/** @type {[number, number]} */ at) {
-    const box = element("overlay").getBoundingClientRect();
-    const [x, y] = stage.camera.toScreen(at);
-    return [box.left + x, box.top + y];
-  },
+    design: () => store.state.design,
+    toPage(/** @type {[number, number]} */ at) {
+        const box = element("overlay").getBoundingClientRect();
+        const [x, y] = stage.camera.toScreen(at);
+        return [box.left + x, box.top + y];
+    },
 };
 
-connectPanels({ store, link, stage, run, openTab: (name) => openTab(/** @type {HTMLButtonElement} */ (element(`tab-${name}`))) });
+connectPanels({
+    store,
+    link,
+    stage,
+    run,
+    openTab: (name) => openTab(/** @type {HTMLButtonElement} */ (element(`tab-${name}`))),
+});
 const [tables, shader] = await Promise.all([
-  fetch("tables.json").then((answer) => answer.json()),
-  fetch("gl/exact.glsl").then((answer) => answer.text()),
+    fetch("tables.json").then((answer) => answer.json()),
+    fetch("gl/exact.glsl").then((answer) => answer.text()),
 ]);
 store.set({ tables });
 stage.usePreview(shader);
 link.connect();
-const measured = new URLSearchParams(location.search).has("bench") ? (await import("./bench.js")).bench({ store, stage }) : null;
+const measured = new URLSearchParams(location.search).has("bench")
+    ? (await import("./bench.js")).bench({ store, stage })
+    : null;
 Object.assign(window, { studio: { ...face, bench: measured } });

@@ -18,62 +18,63 @@ const TIMES_MAX = 100_000;
  * @returns {{figures: () => Figures, reset: () => void, preview: () => any}}
  */
 export function bench({ store, stage }) {
-  /** @type {Map<number, number>} when a revision was made */
-  const made = new Map();
-  let revision = -1;
-  /** @type {Figures} */
-  let figures = { ages: [], proved: 0, frames: 0, rests: [], jobs: [] };
+    /** @type {Map<number, number>} when a revision was made */
+    const made = new Map();
+    let revision = -1;
+    /** @type {Figures} */
+    let figures = { ages: [], proved: 0, frames: 0, rests: [], jobs: [] };
 
-  store.subscribe(["revision"], (state) => {
-    revision = state.revision;
-    made.set(revision, performance.now());
-    if (made.size > TIMES_MAX) {
-      made.delete([...made.keys()][0]);
-    }
-  });
-  store.subscribe(["exact"], ({ exact }) => {
-    const start = exact ? made.get(exact.rev) : undefined;
-    if (!exact || start === undefined) {
-      return;
-    }
-    const { rev, proved } = exact;
-    // The stage draws it in the frame that is asked for now; what runs after that frame's callbacks has seen it drawn.
-    requestAnimationFrame(() => {
-      const age = performance.now() - start;
-      figures.ages.push(age);
-      figures.proved += Number(proved);
-      if (proved && rev === revision && !store.state.dragging) {
-        figures.rests.push(age);
-      }
+    store.subscribe(["revision"], (state) => {
+        revision = state.revision;
+        made.set(revision, performance.now());
+        if (made.size > TIMES_MAX) {
+            made.delete([...made.keys()][0]);
+        }
     });
-  });
-  store.subscribe(["product"], ({ product }) => {
-    const start = product && made.get(product.rev);
-    if (start) {
-      figures.jobs.push(performance.now() - start);
-    }
-  });
-  const count = () => {
-    figures.frames += 1;
+    store.subscribe(["exact"], ({ exact }) => {
+        const start = exact ? made.get(exact.rev) : undefined;
+        if (!exact || start === undefined) {
+            return;
+        }
+        const { rev, proved } = exact;
+        // The stage draws it in the frame that is asked for now; what runs after that frame's callbacks has seen it drawn.
+        requestAnimationFrame(() => {
+            const age = performance.now() - start;
+            figures.ages.push(age);
+            figures.proved += Number(proved);
+            if (proved && rev === revision && !store.state.dragging) {
+                figures.rests.push(age);
+            }
+        });
+    });
+    store.subscribe(["product"], ({ product }) => {
+        const start = product && made.get(product.rev);
+        if (start) {
+            figures.jobs.push(performance.now() - start);
+        }
+    });
+    const count = () => {
+        figures.frames += 1;
+        requestAnimationFrame(count);
+    };
     requestAnimationFrame(count);
-  };
-  requestAnimationFrame(count);
 
-  const shown = document.createElement("p");
-  shown.id = "bench";
-  document.querySelector(".status")?.prepend(shown);
-  setInterval(() => {
-    const { ages } = figures;
-    const sorted = [...ages].sort((a, b) => a - b);
-    const at = (/** @type {number} */ share) => (sorted.length ? sorted[Math.floor(share * (sorted.length - 1))].toFixed(1) : "-");
-    shown.textContent = `${ages.length} outlines, age ${at(0.5)} ms, p95 ${at(0.95)} ms`;
-  }, 500);
+    const shown = document.createElement("p");
+    shown.id = "bench";
+    document.querySelector(".status")?.prepend(shown);
+    setInterval(() => {
+        const { ages } = figures;
+        const sorted = [...ages].sort((a, b) => a - b);
+        const at = (/** @type {number} */ share) =>
+            sorted.length ? sorted[Math.floor(share * (sorted.length - 1))].toFixed(1) : "-";
+        shown.textContent = `${ages.length} outlines, age ${at(0.5)} ms, p95 ${at(0.95)} ms`;
+    }, 500);
 
-  return {
-    figures: () => figures,
-    reset() {
-      figures = { ages: [], proved: 0, frames: 0, rests: [], jobs: [] };
-    },
-    preview: () => stage.bench(),
-  };
+    return {
+        figures: () => figures,
+        reset() {
+            figures = { ages: [], proved: 0, frames: 0, rests: [], jobs: [] };
+        },
+        preview: () => stage.bench(),
+    };
 }

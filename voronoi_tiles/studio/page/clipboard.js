@@ -11,25 +11,25 @@ import { NOTHING } from "./store.js";
  * @param {any[]} strokes
  */
 function svgOf(entries, strokes) {
-  const box = [Infinity, Infinity, -Infinity, -Infinity];
-  const paths = entries.map(({ cubics }) => {
-    let data = "";
-    for (let k = 0; k < cubics.length; k += 8) {
-      const c = [...cubics.subarray(k, k + 8)].map((value, n) => (n % 2 ? -value : value));
-      c.forEach((value, n) => {
-        box[n % 2] = Math.min(box[n % 2], value);
-        box[2 + (n % 2)] = Math.max(box[2 + (n % 2)], value);
-      });
-      const again = k > 0 && cubics[k] === cubics[k - 2] && cubics[k + 1] === cubics[k - 1];
-      data += `${again ? "" : `M ${c[0]} ${c[1]} `}C ${c.slice(2).join(" ")} `;
-    }
-    return `<path d="${data.trim()}" fill="none" stroke="black" stroke-width="0.2"/>`;
-  });
-  const [width, height] = [Math.max(box[2] - box[0], 1), Math.max(box[3] - box[1], 1)];
-  const hold = new DOMParser().parseFromString('<svg xmlns="http://www.w3.org/2000/svg"/>', "image/svg+xml");
-  hold.documentElement.setAttribute("data-voronoi-tiles", JSON.stringify(strokes));
-  const attribute = new XMLSerializer().serializeToString(hold).match(/data-voronoi-tiles="[^"]*"/)?.[0] ?? "";
-  return `<svg xmlns="http://www.w3.org/2000/svg" ${attribute} width="${width}mm" height="${height}mm" viewBox="${box[0]} ${box[1]} ${width} ${height}">${paths.join("")}</svg>`;
+    const box = [Infinity, Infinity, -Infinity, -Infinity];
+    const paths = entries.map(({ cubics }) => {
+        let data = "";
+        for (let k = 0; k < cubics.length; k += 8) {
+            const c = [...cubics.subarray(k, k + 8)].map((value, n) => (n % 2 ? -value : value));
+            c.forEach((value, n) => {
+                box[n % 2] = Math.min(box[n % 2], value);
+                box[2 + (n % 2)] = Math.max(box[2 + (n % 2)], value);
+            });
+            const again = k > 0 && cubics[k] === cubics[k - 2] && cubics[k + 1] === cubics[k - 1];
+            data += `${again ? "" : `M ${c[0]} ${c[1]} `}C ${c.slice(2).join(" ")} `;
+        }
+        return `<path d="${data.trim()}" fill="none" stroke="black" stroke-width="0.2"/>`;
+    });
+    const [width, height] = [Math.max(box[2] - box[0], 1), Math.max(box[3] - box[1], 1)];
+    const hold = new DOMParser().parseFromString('<svg xmlns="http://www.w3.org/2000/svg"/>', "image/svg+xml");
+    hold.documentElement.setAttribute("data-voronoi-tiles", JSON.stringify(strokes));
+    const attribute = new XMLSerializer().serializeToString(hold).match(/data-voronoi-tiles="[^"]*"/)?.[0] ?? "";
+    return `<svg xmlns="http://www.w3.org/2000/svg" ${attribute} width="${width}mm" height="${height}mm" viewBox="${box[0]} ${box[1]} ${width} ${height}">${paths.join("")}</svg>`;
 }
 
 /**
@@ -38,14 +38,16 @@ function svgOf(entries, strokes) {
  * @returns {any[] | null}
  */
 function ownStrokes(text) {
-  const root = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
-  const held = root.getAttribute("data-voronoi-tiles");
-  try {
-    const strokes = held ? JSON.parse(held) : null;
-    return Array.isArray(strokes) && strokes.every((stroke) => stroke && typeof stroke === "object") ? strokes : null;
-  } catch {
-    return null;
-  }
+    const root = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;
+    const held = root.getAttribute("data-voronoi-tiles");
+    try {
+        const strokes = held ? JSON.parse(held) : null;
+        return Array.isArray(strokes) && strokes.every((stroke) => stroke && typeof stroke === "object")
+            ? strokes
+            : null;
+    } catch {
+        return null;
+    }
 }
 
 /**
@@ -53,48 +55,54 @@ function ownStrokes(text) {
  * @param {import("./tools/tool.js").Hands} hands
  */
 export function clipboard({ store, entries, camera }) {
-  const typing = () => document.activeElement?.matches("input, select, textarea") ?? false;
+    const typing = () => document.activeElement?.matches("input, select, textarea") ?? false;
 
-  for (const kind of /** @type {const} */ (["copy", "cut"])) {
-    document.addEventListener(kind, (event) => {
-      const { selection } = store.state;
-      if (typing() || !selection.strokes.length || !event.clipboardData) {
-        return;
-      }
-      const chosen = entries().filter(({ ref }) => selection.strokes.some((other) => other.site === ref.site && other.stroke === ref.stroke));
-      const strokes = chosen.map(({ ref }) => store.settled.site[ref.site].strokes[ref.stroke]);
-      const svg = svgOf(chosen, strokes);
-      event.clipboardData.setData("image/svg+xml", svg);
-      event.clipboardData.setData("text/plain", svg);
-      event.preventDefault();
-      if (kind === "cut") {
-        store.edit("cut", (design) => without(design, { strokes: selection.strokes, nodes: [] }), { selection: NOTHING });
-      }
+    for (const kind of /** @type {const} */ (["copy", "cut"])) {
+        document.addEventListener(kind, (event) => {
+            const { selection } = store.state;
+            if (typing() || !selection.strokes.length || !event.clipboardData) {
+                return;
+            }
+            const chosen = entries().filter(({ ref }) =>
+                selection.strokes.some((other) => other.site === ref.site && other.stroke === ref.stroke),
+            );
+            const strokes = chosen.map(({ ref }) => store.settled.site[ref.site].strokes[ref.stroke]);
+            const svg = svgOf(chosen, strokes);
+            event.clipboardData.setData("image/svg+xml", svg);
+            event.clipboardData.setData("text/plain", svg);
+            event.preventDefault();
+            if (kind === "cut") {
+                store.edit("cut", (design) => without(design, { strokes: selection.strokes, nodes: [] }), {
+                    selection: NOTHING,
+                });
+            }
+        });
+    }
+
+    document.addEventListener("paste", (event) => {
+        const data = event.clipboardData;
+        const text = data?.getData("image/svg+xml") || data?.getData("text/plain") || "";
+        if (typing()) {
+            return;
+        }
+        if (text.includes("#design=")) {
+            event.preventDefault();
+            document.dispatchEvent(new CustomEvent("studio-link", { detail: text }));
+            return;
+        }
+        if (!text.includes("<svg")) {
+            return;
+        }
+        event.preventDefault();
+        const own = ownStrokes(text);
+        if (own) {
+            paste(store, own, 12 / camera.scale);
+        } else {
+            document.dispatchEvent(
+                new CustomEvent("studio-drop", { detail: new File([text], "pasted.svg", { type: "image/svg+xml" }) }),
+            );
+        }
     });
-  }
-
-  document.addEventListener("paste", (event) => {
-    const data = event.clipboardData;
-    const text = data?.getData("image/svg+xml") || data?.getData("text/plain") || "";
-    if (typing()) {
-      return;
-    }
-    if (text.includes("#design=")) {
-      event.preventDefault();
-      document.dispatchEvent(new CustomEvent("studio-link", { detail: text }));
-      return;
-    }
-    if (!text.includes("<svg")) {
-      return;
-    }
-    event.preventDefault();
-    const own = ownStrokes(text);
-    if (own) {
-      paste(store, own, 12 / camera.scale);
-    } else {
-      document.dispatchEvent(new CustomEvent("studio-drop", { detail: new File([text], "pasted.svg", { type: "image/svg+xml" }) }));
-    }
-  });
 }
 
 /**
@@ -104,12 +112,17 @@ export function clipboard({ store, entries, camera }) {
  * @param {number} by units
  */
 export function paste(store, strokes, by) {
-  const { site } = store.state;
-  const first = store.settled.site[site].strokes.length;
-  const refs = strokes.map((_, k) => ({ site, stroke: first + k }));
-  store.edit(
-    "paste",
-    (design) => moveStrokes(strokes.reduce((made, stroke) => addStroke(made, site, stroke), design), refs, [by, -by]),
-    { selection: { strokes: refs, nodes: [] } },
-  );
+    const { site } = store.state;
+    const first = store.settled.site[site].strokes.length;
+    const refs = strokes.map((_, k) => ({ site, stroke: first + k }));
+    store.edit(
+        "paste",
+        (design) =>
+            moveStrokes(
+                strokes.reduce((made, stroke) => addStroke(made, site, stroke), design),
+                refs,
+                [by, -by],
+            ),
+        { selection: { strokes: refs, nodes: [] } },
+    );
 }

@@ -45,167 +45,182 @@
  */
 
 const MESSAGE_MAX = 1 << 20;
-const TOO_LARGE = { message: "This design is larger than the studio sends.", remedy: "Take strokes out, or cut it by the command line." };
+const TOO_LARGE = {
+    message: "This design is larger than the studio sends.",
+    remedy: "Take strokes out, or cut it by the command line.",
+};
 const REST_MS = 60;
 const JOB_MS = 150;
 const TAKEN_OVER = 4001;
 const AGAIN_MS = [200, 500, 1000, 2000, 5000];
 
 export class Link {
-  #store;
-  /** @type {WebSocket | null} */
-  #socket = null;
-  #tries = 0;
-  #frame = 0;
-  #rest = 0;
-  #jobTimer = 0;
-  #sent = { revision: -1, rest: false };
-  /** @type {Map<number, Design>} what was sent, by its revision, until an answer to a later one has come */
-  #designs = new Map();
-  #asksJobs = false;
-  /** pixels a unit: what is dragged is flattened to a quarter of a pixel */
-  scale = 8;
-  /** @type {Map<string, ((message: any) => void)[]>} */
-  #heard = new Map();
+    #store;
+    /** @type {WebSocket | null} */
+    #socket = null;
+    #tries = 0;
+    #frame = 0;
+    #rest = 0;
+    #jobTimer = 0;
+    #sent = { revision: -1, rest: false };
+    /** @type {Map<number, Design>} what was sent, by its revision, until an answer to a later one has come */
+    #designs = new Map();
+    #asksJobs = false;
+    /** pixels a unit: what is dragged is flattened to a quarter of a pixel */
+    scale = 8;
+    /** @type {Map<string, ((message: any) => void)[]>} */
+    #heard = new Map();
 
-  /** @param {Store} store */
-  constructor(store) {
-    this.#store = store;
-    store.subscribe(["revision", "dragging"], () => this.#schedule());
-    store.subscribe(["job"], () => this.#scheduleJob());
-  }
-
-  /**
-   * Call a function with every message of a type.
-   * @param {string} type
-   * @param {(message: any) => void} tell
-   */
-  on(type, tell) {
-    this.#heard.set(type, [...(this.#heard.get(type) ?? []), tell]);
-  }
-
-  connect() {
-    const socket = new WebSocket(`ws://${location.host}/ws${this.#store.state.file ? "?again=1" : ""}`);
-    this.#socket = socket;
-    socket.addEventListener("open", () => {
-      this.#tries = 0;
-      this.#sent = { revision: -1, rest: false };
-      this.#store.set({ connected: true });
-    });
-    socket.addEventListener("message", (event) => this.#receive(JSON.parse(event.data)));
-    socket.addEventListener("close", (event) => {
-      this.#socket = null;
-      if (event.code === TAKEN_OVER) {
-        this.#store.set({ trouble: { message: "The studio is open in another tab.", remedy: "Go on there, or load this page again to go on here." } });
-        return;
-      }
-      this.#store.set({ connected: false });
-      setTimeout(() => this.connect(), AGAIN_MS[Math.min(this.#tries++, AGAIN_MS.length - 1)]);
-    });
-  }
-
-  /**
-   * Send a message; false where there is no connection, or it is too large.
-   * @param {Record<string, unknown>} message
-   */
-  send(message) {
-    if (this.#socket?.readyState !== WebSocket.OPEN) {
-      return false;
+    /** @param {Store} store */
+    constructor(store) {
+        this.#store = store;
+        store.subscribe(["revision", "dragging"], () => this.#schedule());
+        store.subscribe(["job"], () => this.#scheduleJob());
     }
-    const text = JSON.stringify(message);
-    if (text.length > MESSAGE_MAX) {
-      const { revision: rev } = this.#store.state;
-      this.#store.set(message.type === "design" ? { refusal: { rev, lane: "outline", error: TOO_LARGE } } : { trouble: TOO_LARGE });
-      return false;
+
+    /**
+     * Call a function with every message of a type.
+     * @param {string} type
+     * @param {(message: any) => void} tell
+     */
+    on(type, tell) {
+        this.#heard.set(type, [...(this.#heard.get(type) ?? []), tell]);
     }
-    this.#socket.send(text);
-    return true;
-  }
 
-  /** Send the design as it is, at once. */
-  sendNow() {
-    this.#send(!this.#store.state.dragging);
-  }
-
-  /** @param {boolean} wanted whether report and findings are looked at */
-  askJobs(wanted) {
-    this.#asksJobs = wanted;
-    if (wanted) {
-      this.#scheduleJob();
+    connect() {
+        const socket = new WebSocket(`ws://${location.host}/ws${this.#store.state.file ? "?again=1" : ""}`);
+        this.#socket = socket;
+        socket.addEventListener("open", () => {
+            this.#tries = 0;
+            this.#sent = { revision: -1, rest: false };
+            this.#store.set({ connected: true });
+        });
+        socket.addEventListener("message", (event) => this.#receive(JSON.parse(event.data)));
+        socket.addEventListener("close", (event) => {
+            this.#socket = null;
+            if (event.code === TAKEN_OVER) {
+                this.#store.set({
+                    trouble: {
+                        message: "The studio is open in another tab.",
+                        remedy: "Go on there, or load this page again to go on here.",
+                    },
+                });
+                return;
+            }
+            this.#store.set({ connected: false });
+            setTimeout(() => this.connect(), AGAIN_MS[Math.min(this.#tries++, AGAIN_MS.length - 1)]);
+        });
     }
-  }
 
-  #schedule() {
-    this.#frame ||= requestAnimationFrame(() => {
-      this.#frame = 0;
-      this.#send(false);
-    });
-    clearTimeout(this.#rest);
-    this.#rest = window.setTimeout(() => this.#send(true), REST_MS);
-    this.#scheduleJob();
-  }
-
-  /** @param {boolean} rest whether the pointer rests: the answer is to be proved, at full tolerance */
-  #send(rest) {
-    const { design, revision } = this.#store.state;
-    if (revision === this.#sent.revision && (this.#sent.rest || !rest)) {
-      return;
-    }
-    const coarse = rest ? {} : { tolerance: 0.25 / this.scale };
-    if (design && this.send({ type: "design", rev: revision, design, rest, ...coarse })) {
-      this.#sent = { revision, rest };
-      this.#designs.set(revision, design);
-    }
-  }
-
-  /** @param {number} rev */
-  #forget(rev) {
-    for (const old of this.#designs.keys()) {
-      if (old < rev) {
-        this.#designs.delete(old);
-      }
-    }
-  }
-
-  #scheduleJob() {
-    clearTimeout(this.#jobTimer);
-    if (this.#asksJobs) {
-      this.#store.set({ jobPending: true });
-    }
-    this.#jobTimer = window.setTimeout(() => {
-      const { design, revision, job, dragging } = this.#store.state;
-      if (this.#asksJobs && design && !dragging) {
-        this.send({ type: "job", rev: revision, design, job });
-      }
-    }, JOB_MS);
-  }
-
-  /** @param {any} message */
-  #receive(message) {
-    const { exact, refusal, revision, product } = this.#store.state;
-    switch (message.type) {
-      case "outline":
-        if (!exact || message.rev >= exact.rev) {
-          this.#store.set({ exact: { ...message, design: this.#designs.get(message.rev) ?? this.#store.state.design }, refusal: refusal && refusal.rev > message.rev ? refusal : null });
-          this.#forget(message.rev);
+    /**
+     * Send a message; false where there is no connection, or it is too large.
+     * @param {Record<string, unknown>} message
+     */
+    send(message) {
+        if (this.#socket?.readyState !== WebSocket.OPEN) {
+            return false;
         }
-        break;
-      case "refused":
-        if (message.lane === "outline" && (!exact || message.rev >= exact.rev)) {
-          this.#store.set({ refusal: message });
-        } else if (message.lane === "job" && message.rev === revision) {
-          this.#store.set({ jobRefusal: message, jobPending: false });
+        const text = JSON.stringify(message);
+        if (text.length > MESSAGE_MAX) {
+            const { revision: rev } = this.#store.state;
+            this.#store.set(
+                message.type === "design"
+                    ? { refusal: { rev, lane: "outline", error: TOO_LARGE } }
+                    : { trouble: TOO_LARGE },
+            );
+            return false;
         }
-        break;
-      case "product":
-        if (!product || message.rev >= product.rev) {
-          this.#store.set({ product: message, jobRefusal: null, jobPending: message.rev !== revision });
-        }
-        break;
-      case "trouble":
-        this.#store.set({ trouble: message });
-        break;
+        this.#socket.send(text);
+        return true;
     }
-    this.#heard.get(message.type)?.forEach((tell) => tell(message));
-  }
+
+    /** Send the design as it is, at once. */
+    sendNow() {
+        this.#send(!this.#store.state.dragging);
+    }
+
+    /** @param {boolean} wanted whether report and findings are looked at */
+    askJobs(wanted) {
+        this.#asksJobs = wanted;
+        if (wanted) {
+            this.#scheduleJob();
+        }
+    }
+
+    #schedule() {
+        this.#frame ||= requestAnimationFrame(() => {
+            this.#frame = 0;
+            this.#send(false);
+        });
+        clearTimeout(this.#rest);
+        this.#rest = window.setTimeout(() => this.#send(true), REST_MS);
+        this.#scheduleJob();
+    }
+
+    /** @param {boolean} rest whether the pointer rests: the answer is to be proved, at full tolerance */
+    #send(rest) {
+        const { design, revision } = this.#store.state;
+        if (revision === this.#sent.revision && (this.#sent.rest || !rest)) {
+            return;
+        }
+        const coarse = rest ? {} : { tolerance: 0.25 / this.scale };
+        if (design && this.send({ type: "design", rev: revision, design, rest, ...coarse })) {
+            this.#sent = { revision, rest };
+            this.#designs.set(revision, design);
+        }
+    }
+
+    /** @param {number} rev */
+    #forget(rev) {
+        for (const old of this.#designs.keys()) {
+            if (old < rev) {
+                this.#designs.delete(old);
+            }
+        }
+    }
+
+    #scheduleJob() {
+        clearTimeout(this.#jobTimer);
+        if (this.#asksJobs) {
+            this.#store.set({ jobPending: true });
+        }
+        this.#jobTimer = window.setTimeout(() => {
+            const { design, revision, job, dragging } = this.#store.state;
+            if (this.#asksJobs && design && !dragging) {
+                this.send({ type: "job", rev: revision, design, job });
+            }
+        }, JOB_MS);
+    }
+
+    /** @param {any} message */
+    #receive(message) {
+        const { exact, refusal, revision, product } = this.#store.state;
+        switch (message.type) {
+            case "outline":
+                if (!exact || message.rev >= exact.rev) {
+                    this.#store.set({
+                        exact: { ...message, design: this.#designs.get(message.rev) ?? this.#store.state.design },
+                        refusal: refusal && refusal.rev > message.rev ? refusal : null,
+                    });
+                    this.#forget(message.rev);
+                }
+                break;
+            case "refused":
+                if (message.lane === "outline" && (!exact || message.rev >= exact.rev)) {
+                    this.#store.set({ refusal: message });
+                } else if (message.lane === "job" && message.rev === revision) {
+                    this.#store.set({ jobRefusal: message, jobPending: false });
+                }
+                break;
+            case "product":
+                if (!product || message.rev >= product.rev) {
+                    this.#store.set({ product: message, jobRefusal: null, jobPending: message.rev !== revision });
+                }
+                break;
+            case "trouble":
+                this.#store.set({ trouble: message });
+                break;
+        }
+        this.#heard.get(message.type)?.forEach((tell) => tell(message));
+    }
 }

@@ -28,18 +28,23 @@ const kept = new WeakMap();
  * @param {string | undefined} resolved
  */
 function entryOf(site, stroke, resolved) {
-  let strokes = kept.get(site);
-  if (!strokes) {
-    kept.set(site, (strokes = new WeakMap()));
-  }
-  const found = strokes.get(stroke);
-  if (found && found.resolved === resolved) {
-    return found.entry;
-  }
-  const placement = placementOf(site, stroke);
-  const entry = { kind: kindOf(stroke), placement, cubics: cubicsOf(stroke, placement, resolved), nodes: nodesOf(stroke, placement) };
-  strokes.set(stroke, { resolved, entry });
-  return entry;
+    let strokes = kept.get(site);
+    if (!strokes) {
+        kept.set(site, (strokes = new WeakMap()));
+    }
+    const found = strokes.get(stroke);
+    if (found && found.resolved === resolved) {
+        return found.entry;
+    }
+    const placement = placementOf(site, stroke);
+    const entry = {
+        kind: kindOf(stroke),
+        placement,
+        cubics: cubicsOf(stroke, placement, resolved),
+        nodes: nodesOf(stroke, placement),
+    };
+    strokes.set(stroke, { resolved, entry });
+    return entry;
 }
 
 /**
@@ -49,9 +54,12 @@ function entryOf(site, stroke, resolved) {
  * @returns {Entry[]}
  */
 export function entriesOf(design, resolved = {}) {
-  return design.site.flatMap((site, i) =>
-    site.strokes.map((stroke, k) => ({ ...entryOf(site, stroke, resolved[`${i}.${k}`]), ref: { site: i, stroke: k } })),
-  );
+    return design.site.flatMap((site, i) =>
+        site.strokes.map((stroke, k) => ({
+            ...entryOf(site, stroke, resolved[`${i}.${k}`]),
+            ref: { site: i, stroke: k },
+        })),
+    );
 }
 
 /**
@@ -62,16 +70,16 @@ export function entriesOf(design, resolved = {}) {
  * @returns {Float64Array[]}
  */
 export function segmentsOf(design, entries, tolerance) {
-  return design.site.map((_, i) => {
-    const parts = entries.filter((entry) => entry.ref.site === i).map((entry) => flatten(entry.cubics, tolerance));
-    const all = new Float64Array(parts.reduce((sum, part) => sum + part.length, 0));
-    let at = 0;
-    for (const part of parts) {
-      all.set(part, at);
-      at += part.length;
-    }
-    return all;
-  });
+    return design.site.map((_, i) => {
+        const parts = entries.filter((entry) => entry.ref.site === i).map((entry) => flatten(entry.cubics, tolerance));
+        const all = new Float64Array(parts.reduce((sum, part) => sum + part.length, 0));
+        let at = 0;
+        for (const part of parts) {
+            all.set(part, at);
+            at += part.length;
+        }
+        return all;
+    });
 }
 
 /**
@@ -80,14 +88,14 @@ export function segmentsOf(design, entries, tolerance) {
  * @returns {[number, number, number, number] | null}
  */
 export function boxOf(entries) {
-  const box = /** @type {[number, number, number, number]} */ ([Infinity, Infinity, -Infinity, -Infinity]);
-  for (const { cubics } of entries) {
-    for (let k = 0; k < cubics.length; k += 2) {
-      box[0] = Math.min(box[0], cubics[k]);
-      box[1] = Math.min(box[1], cubics[k + 1]);
-      box[2] = Math.max(box[2], cubics[k]);
-      box[3] = Math.max(box[3], cubics[k + 1]);
+    const box = /** @type {[number, number, number, number]} */ ([Infinity, Infinity, -Infinity, -Infinity]);
+    for (const { cubics } of entries) {
+        for (let k = 0; k < cubics.length; k += 2) {
+            box[0] = Math.min(box[0], cubics[k]);
+            box[1] = Math.min(box[1], cubics[k + 1]);
+            box[2] = Math.max(box[2], cubics[k]);
+            box[3] = Math.max(box[3], cubics[k + 1]);
+        }
     }
-  }
-  return box[0] <= box[2] ? box : null;
+    return box[0] <= box[2] ? box : null;
 }

@@ -6,9 +6,9 @@
  * @param {import("./model/design.js").Design} design
  */
 export function linkOf(design) {
-  const bytes = new TextEncoder().encode(JSON.stringify(design));
-  const binary = Array.from(bytes, (byte) => String.fromCharCode(byte)).join("");
-  return `${location.origin}/#design=${btoa(binary).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "")}`;
+    const bytes = new TextEncoder().encode(JSON.stringify(design));
+    const binary = Array.from(bytes, (byte) => String.fromCharCode(byte)).join("");
+    return `${location.origin}/#design=${btoa(binary).replaceAll("+", "-").replaceAll("/", "_").replace(/=+$/, "")}`;
 }
 
 /**
@@ -18,25 +18,34 @@ export function linkOf(design) {
  * @returns {import("./model/design.js").Design}
  */
 export function sharedDesign(text, limits) {
-  const code = text.match(/#design=([\w-]*)/)?.[1] ?? "";
-  /** @type {any} */
-  let design = null;
-  try {
-    const binary = atob(code.replaceAll("-", "+").replaceAll("_", "/"));
-    design = JSON.parse(new TextDecoder("utf-8", { fatal: true }).decode(Uint8Array.from(binary, (one) => one.charCodeAt(0))));
-  } catch {
-    // Said below.
-  }
-  if (!isDrawable(design)) {
-    throw new Error("The link holds no design that can be read. It may have been cut off: ask for it again.");
-  }
-  const strokes = design.site.flatMap((/** @type {any} */ site) => site.strokes);
-  const points = strokes.flatMap((/** @type {any} */ stroke) => Object.values(stroke)).reduce((/** @type {number} */ sum, /** @type {any} */ value) => sum + (Array.isArray(value) ? value.length : 0), 0);
-  if (strokes.length > limits.strokes || points > limits.points) {
-    const has = `${strokes.length.toLocaleString("en")} strokes with ${points.toLocaleString("en")} points`;
-    throw new Error(`The design in the link is too large for the studio: ${has}. The command line takes designs of any size.`);
-  }
-  return design;
+    const code = text.match(/#design=([\w-]*)/)?.[1] ?? "";
+    /** @type {any} */
+    let design = null;
+    try {
+        const binary = atob(code.replaceAll("-", "+").replaceAll("_", "/"));
+        design = JSON.parse(
+            new TextDecoder("utf-8", { fatal: true }).decode(Uint8Array.from(binary, (one) => one.charCodeAt(0))),
+        );
+    } catch {
+        // Said below.
+    }
+    if (!isDrawable(design)) {
+        throw new Error("The link holds no design that can be read. It may have been cut off: ask for it again.");
+    }
+    const strokes = design.site.flatMap((/** @type {any} */ site) => site.strokes);
+    const points = strokes
+        .flatMap((/** @type {any} */ stroke) => Object.values(stroke))
+        .reduce(
+            (/** @type {number} */ sum, /** @type {any} */ value) => sum + (Array.isArray(value) ? value.length : 0),
+            0,
+        );
+    if (strokes.length > limits.strokes || points > limits.points) {
+        const has = `${strokes.length.toLocaleString("en")} strokes with ${points.toLocaleString("en")} points`;
+        throw new Error(
+            `The design in the link is too large for the studio: ${has}. The command line takes designs of any size.`,
+        );
+    }
+    return design;
 }
 
 /**
@@ -44,14 +53,16 @@ export function sharedDesign(text, limits) {
  * @param {any} design
  */
 function isDrawable(design) {
-  const table = (/** @type {any} */ value) => typeof value === "object" && value !== null && !Array.isArray(value);
-  return (
-    table(design) &&
-    table(design.cell) &&
-    Number.isFinite(design.cell.a) &&
-    typeof design.group === "string" &&
-    Array.isArray(design.site) &&
-    design.site.length > 0 &&
-    design.site.every((/** @type {any} */ site) => table(site) && Array.isArray(site.strokes) && site.strokes.every(table))
-  );
+    const table = (/** @type {any} */ value) => typeof value === "object" && value !== null && !Array.isArray(value);
+    return (
+        table(design) &&
+        table(design.cell) &&
+        Number.isFinite(design.cell.a) &&
+        typeof design.group === "string" &&
+        Array.isArray(design.site) &&
+        design.site.length > 0 &&
+        design.site.every(
+            (/** @type {any} */ site) => table(site) && Array.isArray(site.strokes) && site.strokes.every(table),
+        )
+    );
 }

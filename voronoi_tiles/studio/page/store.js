@@ -41,152 +41,154 @@ import { History } from "./model/history.js";
 export const NOTHING = Object.freeze({ strokes: [], nodes: [] });
 
 export class Store {
-  /** @type {State} */
-  #state;
-  /** @type {Set<{keys: readonly string[], tell: (state: State) => void}>} */
-  #listeners = new Set();
-  /** @type {Set<string>} */
-  #changed = new Set();
-  #history;
-  /** @type {Design | null} what the file holds, as far as it is known */
-  #kept = null;
+    /** @type {State} */
+    #state;
+    /** @type {Set<{keys: readonly string[], tell: (state: State) => void}>} */
+    #listeners = new Set();
+    /** @type {Set<string>} */
+    #changed = new Set();
+    #history;
+    /** @type {Design | null} what the file holds, as far as it is known */
+    #kept = null;
 
-  /** @param {State} state */
-  constructor(state) {
-    this.#state = Object.freeze({ ...state });
-    this.#history = new History(state.design);
-  }
-
-  get state() {
-    return this.#state;
-  }
-
-  /**
-   * Change some keys. Whoever listens to one of them is told once, when what runs now has ended.
-   * @param {Partial<State>} patch
-   */
-  set(patch) {
-    /** @type {Record<string, unknown>} */
-    const old = /** @type {any} */ (this.#state);
-    const keys = Object.entries(patch).filter(([key, value]) => old[key] !== value).map(([key]) => key);
-    if (!keys.length) {
-      return;
+    /** @param {State} state */
+    constructor(state) {
+        this.#state = Object.freeze({ ...state });
+        this.#history = new History(state.design);
     }
-    this.#state = Object.freeze({ ...this.#state, ...patch });
-    if (!this.#changed.size) {
-      queueMicrotask(() => this.#tell());
-    }
-    keys.forEach((key) => this.#changed.add(key));
-  }
 
-  #tell() {
-    const changed = this.#changed;
-    this.#changed = new Set();
-    for (const { keys, tell } of this.#listeners) {
-      if (keys.some((key) => changed.has(key))) {
+    get state() {
+        return this.#state;
+    }
+
+    /**
+     * Change some keys. Whoever listens to one of them is told once, when what runs now has ended.
+     * @param {Partial<State>} patch
+     */
+    set(patch) {
+        /** @type {Record<string, unknown>} */
+        const old = /** @type {any} */ (this.#state);
+        const keys = Object.entries(patch)
+            .filter(([key, value]) => old[key] !== value)
+            .map(([key]) => key);
+        if (!keys.length) {
+            return;
+        }
+        this.#state = Object.freeze({ ...this.#state, ...patch });
+        if (!this.#changed.size) {
+            queueMicrotask(() => this.#tell());
+        }
+        keys.forEach((key) => this.#changed.add(key));
+    }
+
+    #tell() {
+        const changed = this.#changed;
+        this.#changed = new Set();
+        for (const { keys, tell } of this.#listeners) {
+            if (keys.some((key) => changed.has(key))) {
+                tell(this.#state);
+            }
+        }
+    }
+
+    /**
+     * Call a function now and after every change of one of the keys.
+     * @param {readonly (keyof State)[]} keys
+     * @param {(state: State) => void} tell
+     * @returns {() => void} ends it
+     */
+    subscribe(keys, tell) {
+        const listener = { keys, tell };
+        this.#listeners.add(listener);
         tell(this.#state);
-      }
+        return () => this.#listeners.delete(listener);
     }
-  }
 
-  /**
-   * Call a function now and after every change of one of the keys.
-   * @param {readonly (keyof State)[]} keys
-   * @param {(state: State) => void} tell
-   * @returns {() => void} ends it
-   */
-  subscribe(keys, tell) {
-    const listener = { keys, tell };
-    this.#listeners.add(listener);
-    tell(this.#state);
-    return () => this.#listeners.delete(listener);
-  }
-
-  /**
-   * Change the design, a step of the history. Changes of one `merge` that follow each other are one step.
-   * @param {string} label what undo says it takes back
-   * @param {(design: Design) => Design} change
-   * @param {{merge?: string, selection?: Selection}} [more]
-   */
-  edit(label, change, more = {}) {
-    const design = change(this.#history.design);
-    if (design === this.#history.design && !this.#state.dragging) {
-      return;
+    /**
+     * Change the design, a step of the history. Changes of one `merge` that follow each other are one step.
+     * @param {string} label what undo says it takes back
+     * @param {(design: Design) => Design} change
+     * @param {{merge?: string, selection?: Selection}} [more]
+     */
+    edit(label, change, more = {}) {
+        const design = change(this.#history.design);
+        if (design === this.#history.design && !this.#state.dragging) {
+            return;
+        }
+        this.#history.push(design, { label, merge: more.merge });
+        this.#show(design, { dragging: false, ...(more.selection ? { selection: more.selection } : {}) });
     }
-    this.#history.push(design, { label, merge: more.merge });
-    this.#show(design, { dragging: false, ...(more.selection ? { selection: more.selection } : {}) });
-  }
 
-  /**
-   * Show a design that is still in the hand: made of the one before the drag, and not in the history.
-   * @param {(design: Design) => Design} change
-   */
-  preview(change) {
-    this.#show(change(this.#history.design), { dragging: true });
-  }
-
-  /** Take back what is in the hand. */
-  cancel() {
-    if (this.#state.dragging) {
-      this.#show(this.#history.design, { dragging: false });
+    /**
+     * Show a design that is still in the hand: made of the one before the drag, and not in the history.
+     * @param {(design: Design) => Design} change
+     */
+    preview(change) {
+        this.#show(change(this.#history.design), { dragging: true });
     }
-  }
 
-  /** The design before what is in the hand. */
-  get settled() {
-    return this.#history.design;
-  }
-
-  get canUndo() {
-    return this.#history.canUndo;
-  }
-
-  get canRedo() {
-    return this.#history.canRedo;
-  }
-
-  /** Take back the last step, or what is in the hand. */
-  undo() {
-    if (this.#state.dragging) {
-      this.cancel();
-    } else if (this.#history.canUndo) {
-      this.#show(this.#history.undo(), { selection: NOTHING });
+    /** Take back what is in the hand. */
+    cancel() {
+        if (this.#state.dragging) {
+            this.#show(this.#history.design, { dragging: false });
+        }
     }
-  }
 
-  redo() {
-    if (!this.#state.dragging && this.#history.canRedo) {
-      this.#show(this.#history.redo(), { selection: NOTHING });
+    /** The design before what is in the hand. */
+    get settled() {
+        return this.#history.design;
     }
-  }
 
-  /**
-   * Know what the file holds; undo and redo lead back to it.
-   * @param {Design | null} design null: nothing of ours
-   */
-  keep(design) {
-    this.#kept = design;
-    this.set({ saved: this.#history.design === design });
-  }
+    get canUndo() {
+        return this.#history.canUndo;
+    }
 
-  /**
-   * Begin with another design: a new history.
-   * @param {Design} design
-   * @param {Partial<State>} patch
-   */
-  open(design, patch) {
-    this.#history = new History(design);
-    this.#kept = null;
-    this.#show(design, { selection: NOTHING, site: 0, dragging: false, exact: null, refusal: null, ...patch });
-  }
+    get canRedo() {
+        return this.#history.canRedo;
+    }
 
-  /**
-   * @param {Design} design
-   * @param {Partial<State>} patch
-   */
-  #show(design, patch) {
-    const site = Math.min(this.#state.site, design.site.length - 1);
-    const saved = this.#history.design === this.#kept;
-    this.set({ design, revision: this.#state.revision + 1, site, saved, ...patch });
-  }
+    /** Take back the last step, or what is in the hand. */
+    undo() {
+        if (this.#state.dragging) {
+            this.cancel();
+        } else if (this.#history.canUndo) {
+            this.#show(this.#history.undo(), { selection: NOTHING });
+        }
+    }
+
+    redo() {
+        if (!this.#state.dragging && this.#history.canRedo) {
+            this.#show(this.#history.redo(), { selection: NOTHING });
+        }
+    }
+
+    /**
+     * Know what the file holds; undo and redo lead back to it.
+     * @param {Design | null} design null: nothing of ours
+     */
+    keep(design) {
+        this.#kept = design;
+        this.set({ saved: this.#history.design === design });
+    }
+
+    /**
+     * Begin with another design: a new history.
+     * @param {Design} design
+     * @param {Partial<State>} patch
+     */
+    open(design, patch) {
+        this.#history = new History(design);
+        this.#kept = null;
+        this.#show(design, { selection: NOTHING, site: 0, dragging: false, exact: null, refusal: null, ...patch });
+    }
+
+    /**
+     * @param {Design} design
+     * @param {Partial<State>} patch
+     */
+    #show(design, patch) {
+        const site = Math.min(this.#state.site, design.site.length - 1);
+        const saved = this.#history.design === this.#kept;
+        this.set({ design, revision: this.#state.revision + 1, site, saved, ...patch });
+    }
 }

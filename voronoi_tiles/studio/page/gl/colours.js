@@ -73,7 +73,13 @@ export function inks(dark) {
 export function coloursOf(colouring, placements, basis) {
     const known = colouring && fits(colouring, placements) ? colouring : bySite(placements);
     const [[a, b], [c, d]] = known.rows;
-    const [p, q] = known === colouring ? basis : [[1, 0], [0, 1]];
+    const [p, q] =
+        known === colouring
+            ? basis
+            : [
+                  [1, 0],
+                  [0, 1],
+              ];
     /** @type {[number, number, number, number]} */
     const rows = [a * p[0] + b * p[1], a * q[0] + b * q[1], c * p[0] + d * p[1], c * q[0] + d * q[1]];
     const { m, n } = known;
@@ -119,7 +125,15 @@ function fits({ m, n, colour }, placements) {
 function bySite(placements) {
     const m = placements > 2 ? 1 : 4;
     const colour = Array.from({ length: placements }, (_, k) => Array.from({ length: m }, (_, x) => [k * m + x]));
-    return { rows: [[1, 2], [0, 0]], m, n: 1, colour };
+    return {
+        rows: [
+            [1, 2],
+            [0, 0],
+        ],
+        m,
+        n: 1,
+        colour,
+    };
 }
 
 /**

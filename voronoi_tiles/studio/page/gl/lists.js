@@ -62,7 +62,7 @@ function keep(elements, list, first, last, cx, cy, radius, band, kept, end) {
     let runs = 0;
     let m1 = Infinity;
     let m2 = Infinity;
-    for (let k = 0; k < size; ) {
+    for (let k = 0; k < size;) {
         const name = copy[list[first + k]];
         let least = Infinity;
         for (; k < size && copy[list[first + k]] === name; k++) {

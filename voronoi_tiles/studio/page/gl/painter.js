@@ -397,8 +397,14 @@ export class Painter {
      * @param {number} unit The first texture unit that is free.
      */
     #shade(program, scene, pattern, view, home, tables, unit) {
-        const { dark = false, border = 1.5, borderColour, strokes = 0, strokeColour, strokeOpacity = 0.4 } =
-            scene.style ?? {};
+        const {
+            dark = false,
+            border = 1.5,
+            borderColour,
+            strokes = 0,
+            strokeColour,
+            strokeOpacity = 0.4,
+        } = scene.style ?? {};
         const ink = inks(dark);
         const { rows, m, n, period } = this.#coloursOf(scene, pattern);
         const half = (/** @type {number} */ width) => (width > 0 ? (width * view.perCss) / 2 : -1);

@@ -13,7 +13,10 @@ export class Program {
     constructor(gl, fragment) {
         this.gl = gl;
         const program = gl.createProgram();
-        for (const [kind, text] of [[gl.VERTEX_SHADER, WHOLE_SCREEN], [gl.FRAGMENT_SHADER, fragment]]) {
+        for (const [kind, text] of [
+            [gl.VERTEX_SHADER, WHOLE_SCREEN],
+            [gl.FRAGMENT_SHADER, fragment],
+        ]) {
             const shader = /** @type {WebGLShader} */ (gl.createShader(Number(kind)));
             gl.shaderSource(shader, String(text));
             gl.compileShader(shader);

@@ -102,7 +102,11 @@ function numberOf(motion, motions, lattice) {
 function liesOn(some, others, close) {
     for (let k = 0; k < some.length; k += 4) {
         const [x0, y0, x1, y1] = [some[k], some[k + 1], some[k + 2], some[k + 3]];
-        for (const point of /** @type {Point[]} */ ([[x0, y0], [(x0 + x1) / 2, (y0 + y1) / 2], [x1, y1]])) {
+        for (const point of /** @type {Point[]} */ ([
+            [x0, y0],
+            [(x0 + x1) / 2, (y0 + y1) / 2],
+            [x1, y1],
+        ])) {
             if (!isNear(point, others, close)) return false;
         }
     }

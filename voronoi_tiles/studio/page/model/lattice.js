@@ -47,7 +47,12 @@ export function fold(lattice, z) {
  * @returns {[number, number][]}
  */
 export function cellsIn(lattice, [x0, y0, x1, y1]) {
-    const corners = /** @type {Point[]} */ ([[x0, y0], [x1, y0], [x0, y1], [x1, y1]]);
+    const corners = /** @type {Point[]} */ ([
+        [x0, y0],
+        [x1, y0],
+        [x0, y1],
+        [x1, y1],
+    ]);
     const [left, bottom, right, top] = boxOf(corners.flatMap((corner) => fractional(lattice, corner)));
     /** @type {[number, number][]} */
     const cells = [];
@@ -66,7 +71,10 @@ export function cellsIn(lattice, [x0, y0, x1, y1]) {
 export function reduced({ a, b }) {
     let [p, q] = [a, b];
     /** @type {[Point, Point]} */
-    let [one, other] = [[1, 0], [0, 1]];
+    let [one, other] = [
+        [1, 0],
+        [0, 1],
+    ];
     const turn = () => {
         [p, q] = [q, scaled(p, -1)];
         [one, other] = [other, scaled(one, -1)];
@@ -135,7 +143,10 @@ export const marginOf = (box) => BORDER * Math.max(...box.map(Math.abs));
  */
 export function across([x0, y0, x1, y1], [dx, dy], margin) {
     const slack = margin * Math.hypot(dx, dy);
-    const [ys, xs] = [[dx * y0, dx * y1], [dy * x0, dy * x1]];
+    const [ys, xs] = [
+        [dx * y0, dx * y1],
+        [dy * x0, dy * x1],
+    ];
     return [Math.min(...ys) - Math.max(...xs) - slack, Math.max(...ys) - Math.min(...xs) + slack];
 }
 

@@ -88,7 +88,12 @@ function laidIn(design, region, resolved) {
         return { outward, reach, limit: dot(outward, corner) - BORDER * width };
     });
     const far = 2 * Math.max(...[...points, ...region].map(length));
-    const plane = /** @type {Point[]} */ ([[-far, -far], [far, -far], [far, far], [-far, far]]);
+    const plane = /** @type {Point[]} */ ([
+        [-far, -far],
+        [far, -far],
+        [far, far],
+        [-far, far],
+    ]);
     /** Where the origin of the drawing can be laid, at a size. @type {(size: number) => Point[]} */
     const room = (size) =>
         sides.reduce((left, { outward, reach, limit }) => clipped(left, outward, limit - size * reach), plane);

@@ -315,7 +315,10 @@ function halves([x0, y0, x1, y1, x2, y2, x3, y3]) {
         ye = (yb + yc) / 2;
     const x = (xd + xe) / 2,
         y = (yd + ye) / 2;
-    return [[x0, y0, xa, ya, xd, yd, x, y], [x, y, xe, ye, xc, yc, x3, y3]];
+    return [
+        [x0, y0, xa, ya, xd, yd, x, y],
+        [x, y, xe, ye, xc, yc, x3, y3],
+    ];
 }
 
 /**

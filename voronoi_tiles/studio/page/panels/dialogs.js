@@ -23,9 +23,9 @@ import { field, make } from "./elements.js";
 
 /** @param {Blob} blob @param {string} name */
 function download(blob, name) {
-  const address = URL.createObjectURL(blob);
-  make("a", { href: address, download: name }).click();
-  setTimeout(() => URL.revokeObjectURL(address), 10_000);
+    const address = URL.createObjectURL(blob);
+    make("a", { href: address, download: name }).click();
+    setTimeout(() => URL.revokeObjectURL(address), 10_000);
 }
 
 /**
@@ -35,18 +35,18 @@ function download(blob, name) {
  * @param {string} [type]
  */
 async function post(path, body, type = "application/json") {
-  const answer = await fetch(path, { method: "POST", headers: { "Content-Type": type }, body });
-  if (!answer.ok) {
-    const error = await answer.json().catch(() => ({ message: `The server says ${answer.status}`, remedy: "" }));
-    throw Object.assign(new Error(`${error.message.replace(/\.?$/, ".")} ${error.remedy ?? ""}`.trim()), { error });
-  }
-  return answer;
+    const answer = await fetch(path, { method: "POST", headers: { "Content-Type": type }, body });
+    if (!answer.ok) {
+        const error = await answer.json().catch(() => ({ message: `The server says ${answer.status}`, remedy: "" }));
+        throw Object.assign(new Error(`${error.message.replace(/\.?$/, ".")} ${error.remedy ?? ""}`.trim()), { error });
+    }
+    return answer;
 }
 
 /** @param {Response} answer @param {string} other */
 function nameOf(answer, other) {
-  const name = answer.headers.get("Content-Disposition")?.match(/filename\*=utf-8''([^;]+)/)?.[1];
-  return name ? decodeURIComponent(name) : other;
+    const name = answer.headers.get("Content-Disposition")?.match(/filename\*=utf-8''([^;]+)/)?.[1];
+    return name ? decodeURIComponent(name) : other;
 }
 
 /**
@@ -55,290 +55,375 @@ function nameOf(answer, other) {
  * @param {Context} context
  */
 export function dialogs(home, { store, link, stage, save, keepMine }) {
-  /**
-   * @param {string} title
-   * @param {Node[]} content
-   * @param {{label: string, first?: boolean, run?: () => unknown}[]} actions the last closes without doing anything
-   */
-  const open = (title, content, actions) => {
-    const said = make("p", { class: "error", role: "alert" });
-    const buttons = actions.map(({ label, first, run }) =>
-      make(
-        "button",
-        {
-          type: "button",
-          class: first ? "first" : "",
-          onclick: async () => {
-            try {
-              await run?.();
-              box.close();
-            } catch (error) {
-              said.textContent = error instanceof Error ? error.message : String(error);
-            }
-          },
-        },
-        label,
-      ),
-    );
-    const heading = make("h2", { id: "dialog-title" }, title);
-    const box = make("dialog", { "aria-labelledby": "dialog-title", onclose: () => box.remove() }, heading, ...content, said, make("footer", {}, ...buttons));
-    home.replaceChildren(box);
-    box.showModal();
-    box.scrollTop = 0;
-    return { box, said };
-  };
-
-  const close = { label: "Close" };
-  const cancel = { label: "Cancel" };
-
-  /** @param {string} message @param {boolean} [quiet] */
-  const say = (message, quiet = false) => store.set({ trouble: { message, remedy: "", quiet } });
-
-  /** @param {any} design that takes the place of what is drawn; undo leads back */
-  const begin = (design) => {
-    store.edit("open", () => design, { selection: NOTHING });
-    store.set({ site: 0 });
-    stage.fit();
-  };
-
-  /** Take what another program has made of the file. */
-  const reload = () => link.send({ type: "reload" });
-
-  /** @param {File} file */
-  const take = async (file) => {
-    const { design } = store.state;
-    const units = encodeURIComponent(design.units ?? "mm");
-    const answer = await (await post(`drop?name=${encodeURIComponent(file.name)}&units=${units}`, file, "application/octet-stream")).json();
-    if (answer.design) {
-      begin(answer.design);
-      store.set({ job: answer.job ?? {} });
-    } else {
-      paste(store, trueSize(answer.strokes), 0);
-    }
-    if (answer.notes?.length) {
-      say(answer.notes.join(" "), true);
-    }
-  };
-
-  /**
-   * Strokes of a drawing in its own size, in the middle of one asymmetric unit, where its copies are least in the way.
-   * @param {any[]} strokes in the design's units, before any placement
-   */
-  const trueSize = (strokes) => {
-    const { design, tables, site } = store.state;
-    const placement = placementOf(design.site[site], {});
-    const scale = Number((1 / ((design.scale ?? 1) * Math.hypot(...placement.a))).toPrecision(12));
-    const scaled = strokes.map((stroke) => (scale === 1 ? stroke : { ...stroke, scale: (stroke.scale ?? 1) * scale }));
-    const box = boxOf(entriesOf({ ...design, site: [{ ...design.site[site], strokes: scaled }] }));
-    if (!box) {
-      return scaled;
-    }
-    const region = regionOf(design, tables);
-    const middle = [0, 1].map((axis) => region.reduce((sum, at) => sum + at[axis], 0) / region.length);
-    const by = /** @type {[number, number]} */ (rounded([middle[0] - (box[0] + box[2]) / 2, middle[1] - (box[1] + box[3]) / 2], 1 / stage.camera.scale));
-    const refs = scaled.map((_, stroke) => ({ site, stroke }));
-    const alone = design.site.map((one, i) => (i === site ? { ...one, strokes: scaled } : one));
-    return [...moveStrokes({ ...design, site: alone }, refs, by).site[site].strokes];
-  };
-
-  /** @param {File | undefined} file */
-  const tryTake = (file) => {
-    if (file) {
-      take(file).catch((error) => say(error.message));
-    }
-  };
-  document.addEventListener("dragover", (event) => event.preventDefault());
-  document.addEventListener("drop", (event) => {
-    event.preventDefault();
-    tryTake(event.dataTransfer?.files[0]);
-  });
-  document.addEventListener("studio-drop", (event) => tryTake(/** @type {CustomEvent} */ (event).detail));
-
-  /**
-   * Open a link that holds a design.
-   * @param {string} text
-   */
-  const openLink = (text) => {
-    try {
-      begin(sharedDesign(text, store.state.tables.limits));
-    } catch (error) {
-      say(error instanceof Error ? error.message : String(error));
-    }
-  };
-  document.addEventListener("studio-link", (event) => openLink(/** @type {CustomEvent} */ (event).detail));
-
-  return {
-    openLink,
-
-    export() {
-      const { tables, job, file } = store.state;
-      const stem = file.replace(/\.[^.]*$/, "") || "tiles";
-      const name = make("input", { type: "text", ".value": stem, autocomplete: "off" });
-      const format = make("select", {}, ...tables.formats.map((/** @type {string} */ one) => make("option", {}, one)));
-      const what = Object.keys(job).length
-        ? Object.entries(job).map(([key, value]) => `${key} ${Array.isArray(value) ? value.join(" x ") : value}`).join(", ")
-        : "no options: the exact tiles, one of each";
-      open(
-        "Export",
-        [field("Format", format), field("Name", name), make("p", { class: "note" }, `The job: ${what}.`)],
-        [
-          {
-            label: "Download",
-            first: true,
-            run: async () => {
-              const answer = await post("export", JSON.stringify({ design: store.settled, job: { ...store.state.job, format: format.value }, name: name.value }));
-              download(await answer.blob(), nameOf(answer, `${name.value}.${format.value}`));
-            },
-          },
-          cancel,
-        ],
-      );
-    },
-
-    coupon() {
-      const thickness = make("input", { type: "text", ".value": "3mm" });
-      open(
-        "A test piece that shows the kerf",
-        [make("p", {}, "Cut it once in your material: how well its slots fit says how wide your laser cuts."), field("Thickness of the material", thickness)],
-        [
-          {
-            label: "Download",
-            first: true,
-            run: async () => {
-              const answer = await post("coupon", JSON.stringify({ thickness: thickness.value }));
-              download(await answer.blob(), nameOf(answer, "coupon.svg"));
-            },
-          },
-          cancel,
-        ],
-      );
-    },
-
-    async gallery() {
-      const { box } = open("Begin with an example", [make("p", { class: "note" }, "What is drawn now can be taken back with undo.")], [close]);
-      const list = make("ul", { class: "gallery" });
-      box.querySelector("footer")?.before(list);
-      const examples = await (await fetch("examples.json")).json();
-      for (const example of examples) {
-        list.append(
-          make(
-            "li",
-            {},
+    /**
+     * @param {string} title
+     * @param {Node[]} content
+     * @param {{label: string, first?: boolean, run?: () => unknown}[]} actions the last closes without doing anything
+     */
+    const open = (title, content, actions) => {
+        const said = make("p", { class: "error", role: "alert" });
+        const buttons = actions.map(({ label, first, run }) =>
             make(
-              "button",
-              {
-                type: "button",
-                onclick: () => {
-                  begin(example.design);
-                  box.close();
+                "button",
+                {
+                    type: "button",
+                    class: first ? "first" : "",
+                    onclick: async () => {
+                        try {
+                            await run?.();
+                            box.close();
+                        } catch (error) {
+                            said.textContent = error instanceof Error ? error.message : String(error);
+                        }
+                    },
                 },
-              },
-              make("strong", {}, example.group),
-              ` ${example.title ?? example.name}`,
+                label,
             ),
-          ),
         );
-      }
-    },
+        const heading = make("h2", { id: "dialog-title" }, title);
+        const box = make(
+            "dialog",
+            { "aria-labelledby": "dialog-title", onclose: () => box.remove() },
+            heading,
+            ...content,
+            said,
+            make("footer", {}, ...buttons),
+        );
+        home.replaceChildren(box);
+        box.showModal();
+        box.scrollTop = 0;
+        return { box, said };
+    };
 
-    open() {
-      const input = make("input", {
-        type: "file",
-        accept: ".svg,.svgz,.dxf,.pdf,.lbrn2",
-        onchange: () => input.closest("dialog").querySelector("button.first").click(),
-      });
-      const address = make("input", { type: "text", autocomplete: "off", spellcheck: "false" });
-      open(
-        "Open",
-        [
-          make("p", {}, "An SVG or DXF drawing becomes strokes of the site in hand. A file that was exported from here opens as the design and the job that it was made of."),
-          field("File", input),
-          field("Or a link from Share", address),
-        ],
-        [
-          {
-            label: "Open",
-            first: true,
-            run: async () => {
-              const file = input.files?.[0];
-              if (!file && !address.value) {
-                throw new Error("Choose a file, or paste a link.");
-              }
-              await (file ? take(file) : begin(sharedDesign(address.value, store.state.tables.limits)));
-            },
-          },
-          cancel,
-        ],
-      );
-    },
+    const close = { label: "Close" };
+    const cancel = { label: "Cancel" };
 
-    share() {
-      const address = make("textarea", { readonly: true, rows: 4, "aria-label": "Link", ".value": linkOf(store.settled) });
-      open(
-        "Share",
-        [make("p", {}, "The link holds the whole design after its #, which browsers do not send. In another studio it opens under Open, or pasted onto the drawing; the file suits everybody."), address],
-        [
-          { label: "Copy the link", first: true, run: () => navigator.clipboard.writeText(address.value) },
-          { label: "Download the file", run: () => this.saveAs() },
-          close,
-        ],
-      );
-      address.select();
-    },
+    /** @param {string} message @param {boolean} [quiet] */
+    const say = (message, quiet = false) => store.set({ trouble: { message, remedy: "", quiet } });
 
-    async saveAs() {
-      const answer = await post("toml", JSON.stringify({ design: store.settled }));
-      download(await answer.blob(), nameOf(answer, store.state.file || "design.toml"));
-    },
+    /** @param {any} design that takes the place of what is drawn; undo leads back */
+    const begin = (design) => {
+        store.edit("open", () => design, { selection: NOTHING });
+        store.set({ site: 0 });
+        stage.fit();
+    };
 
-    help() {
-      const columns = HELP.map(({ title, rows }) =>
-        make("section", {}, make("h3", {}, title), make("dl", { class: "keys" }, ...rows.flatMap(({ keys, does }) => [make("dt", {}, make("kbd", {}, keys)), make("dd", {}, does)]))),
-      );
-      open("Keys", [make("div", { class: "help" }, ...columns)], [close]);
-    },
+    /** Take what another program has made of the file. */
+    const reload = () => link.send({ type: "reload" });
 
-    /** @param {{design: any, at: string}} recovery */
-    recover({ design, at }) {
-      open(
-        "Something was not saved",
-        [make("p", {}, `A copy of what was drawn last, at ${new Date(at).toLocaleString()}, is newer than the file.`)],
-        [
-          { label: "Take the copy", first: true, run: () => begin(design) },
-          { label: "Stay with the file" },
-        ],
-      );
-    },
+    /** @param {File} file */
+    const take = async (file) => {
+        const { design } = store.state;
+        const units = encodeURIComponent(design.units ?? "mm");
+        const answer = await (
+            await post(`drop?name=${encodeURIComponent(file.name)}&units=${units}`, file, "application/octet-stream")
+        ).json();
+        if (answer.design) {
+            begin(answer.design);
+            store.set({ job: answer.job ?? {} });
+        } else {
+            paste(store, trueSize(answer.strokes), 0);
+        }
+        if (answer.notes?.length) {
+            say(answer.notes.join(" "), true);
+        }
+    };
 
-    /** @param {{design: any, note?: string}} message */
-    conflict({ design, note }) {
-      open(
-        "The file has changed",
-        [make("p", {}, note ?? "Another program has written the design's file."), make("p", {}, "What is drawn here takes its place if you keep it; what was there stays beside it as a backup.")],
-        [
-          {
-            label: "Keep mine",
-            first: true,
-            run: () => save(true),
-          },
-          ...(design ? [{ label: "Take theirs", run: reload }] : []),
-          cancel,
-        ],
-      );
-    },
+    /**
+     * Strokes of a drawing in its own size, in the middle of one asymmetric unit, where its copies are least in the way.
+     * @param {any[]} strokes in the design's units, before any placement
+     */
+    const trueSize = (strokes) => {
+        const { design, tables, site } = store.state;
+        const placement = placementOf(design.site[site], {});
+        const scale = Number((1 / ((design.scale ?? 1) * Math.hypot(...placement.a))).toPrecision(12));
+        const scaled = strokes.map((stroke) =>
+            scale === 1 ? stroke : { ...stroke, scale: (stroke.scale ?? 1) * scale },
+        );
+        const box = boxOf(entriesOf({ ...design, site: [{ ...design.site[site], strokes: scaled }] }));
+        if (!box) {
+            return scaled;
+        }
+        const region = regionOf(design, tables);
+        const middle = [0, 1].map((axis) => region.reduce((sum, at) => sum + at[axis], 0) / region.length);
+        const by = /** @type {[number, number]} */ (
+            rounded([middle[0] - (box[0] + box[2]) / 2, middle[1] - (box[1] + box[3]) / 2], 1 / stage.camera.scale)
+        );
+        const refs = scaled.map((_, stroke) => ({ site, stroke }));
+        const alone = design.site.map((one, i) => (i === site ? { ...one, strokes: scaled } : one));
+        return [...moveStrokes({ ...design, site: alone }, refs, by).site[site].strokes];
+    };
 
-    /** @param {{design: any, note?: string}} message */
-    changed({ design, note }) {
-      if (design && store.state.saved) {
-        reload();
-        return;
-      }
-      store.keep(null);
-      open(
-        "The file has changed outside",
-        [make("p", {}, note ?? "Another program has written the design's file."), make("p", { class: "note" }, "If you keep yours, the next save writes it there, and what is there now stays beside it as a backup.")],
-        [...(design ? [{ label: "Take theirs", first: true, run: reload }] : []), { label: "Keep mine", run: keepMine }],
-      );
-    },
-  };
+    /** @param {File | undefined} file */
+    const tryTake = (file) => {
+        if (file) {
+            take(file).catch((error) => say(error.message));
+        }
+    };
+    document.addEventListener("dragover", (event) => event.preventDefault());
+    document.addEventListener("drop", (event) => {
+        event.preventDefault();
+        tryTake(event.dataTransfer?.files[0]);
+    });
+    document.addEventListener("studio-drop", (event) => tryTake(/** @type {CustomEvent} */ (event).detail));
+
+    /**
+     * Open a link that holds a design.
+     * @param {string} text
+     */
+    const openLink = (text) => {
+        try {
+            begin(sharedDesign(text, store.state.tables.limits));
+        } catch (error) {
+            say(error instanceof Error ? error.message : String(error));
+        }
+    };
+    document.addEventListener("studio-link", (event) => openLink(/** @type {CustomEvent} */ (event).detail));
+
+    return {
+        openLink,
+
+        export() {
+            const { tables, job, file } = store.state;
+            const stem = file.replace(/\.[^.]*$/, "") || "tiles";
+            const name = make("input", { type: "text", ".value": stem, autocomplete: "off" });
+            const format = make(
+                "select",
+                {},
+                ...tables.formats.map((/** @type {string} */ one) => make("option", {}, one)),
+            );
+            const what = Object.keys(job).length
+                ? Object.entries(job)
+                      .map(([key, value]) => `${key} ${Array.isArray(value) ? value.join(" x ") : value}`)
+                      .join(", ")
+                : "no options: the exact tiles, one of each";
+            open(
+                "Export",
+                [field("Format", format), field("Name", name), make("p", { class: "note" }, `The job: ${what}.`)],
+                [
+                    {
+                        label: "Download",
+                        first: true,
+                        run: async () => {
+                            const answer = await post(
+                                "export",
+                                JSON.stringify({
+                                    design: store.settled,
+                                    job: { ...store.state.job, format: format.value },
+                                    name: name.value,
+                                }),
+                            );
+                            download(await answer.blob(), nameOf(answer, `${name.value}.${format.value}`));
+                        },
+                    },
+                    cancel,
+                ],
+            );
+        },
+
+        coupon() {
+            const thickness = make("input", { type: "text", ".value": "3mm" });
+            open(
+                "A test piece that shows the kerf",
+                [
+                    make(
+                        "p",
+                        {},
+                        "Cut it once in your material: how well its slots fit says how wide your laser cuts.",
+                    ),
+                    field("Thickness of the material", thickness),
+                ],
+                [
+                    {
+                        label: "Download",
+                        first: true,
+                        run: async () => {
+                            const answer = await post("coupon", JSON.stringify({ thickness: thickness.value }));
+                            download(await answer.blob(), nameOf(answer, "coupon.svg"));
+                        },
+                    },
+                    cancel,
+                ],
+            );
+        },
+
+        async gallery() {
+            const { box } = open(
+                "Begin with an example",
+                [make("p", { class: "note" }, "What is drawn now can be taken back with undo.")],
+                [close],
+            );
+            const list = make("ul", { class: "gallery" });
+            box.querySelector("footer")?.before(list);
+            const examples = await (await fetch("examples.json")).json();
+            for (const example of examples) {
+                list.append(
+                    make(
+                        "li",
+                        {},
+                        make(
+                            "button",
+                            {
+                                type: "button",
+                                onclick: () => {
+                                    begin(example.design);
+                                    box.close();
+                                },
+                            },
+                            make("strong", {}, example.group),
+                            ` ${example.title ?? example.name}`,
+                        ),
+                    ),
+                );
+            }
+        },
+
+        open() {
+            const input = make("input", {
+                type: "file",
+                accept: ".svg,.svgz,.dxf,.pdf,.lbrn2",
+                onchange: () => input.closest("dialog").querySelector("button.first").click(),
+            });
+            const address = make("input", { type: "text", autocomplete: "off", spellcheck: "false" });
+            open(
+                "Open",
+                [
+                    make(
+                        "p",
+                        {},
+                        "An SVG or DXF drawing becomes strokes of the site in hand. A file that was exported from here opens as the design and the job that it was made of.",
+                    ),
+                    field("File", input),
+                    field("Or a link from Share", address),
+                ],
+                [
+                    {
+                        label: "Open",
+                        first: true,
+                        run: async () => {
+                            const file = input.files?.[0];
+                            if (!file && !address.value) {
+                                throw new Error("Choose a file, or paste a link.");
+                            }
+                            await (file ? take(file) : begin(sharedDesign(address.value, store.state.tables.limits)));
+                        },
+                    },
+                    cancel,
+                ],
+            );
+        },
+
+        share() {
+            const address = make("textarea", {
+                readonly: true,
+                rows: 4,
+                "aria-label": "Link",
+                ".value": linkOf(store.settled),
+            });
+            open(
+                "Share",
+                [
+                    make(
+                        "p",
+                        {},
+                        "The link holds the whole design after its #, which browsers do not send. In another studio it opens under Open, or pasted onto the drawing; the file suits everybody.",
+                    ),
+                    address,
+                ],
+                [
+                    { label: "Copy the link", first: true, run: () => navigator.clipboard.writeText(address.value) },
+                    { label: "Download the file", run: () => this.saveAs() },
+                    close,
+                ],
+            );
+            address.select();
+        },
+
+        async saveAs() {
+            const answer = await post("toml", JSON.stringify({ design: store.settled }));
+            download(await answer.blob(), nameOf(answer, store.state.file || "design.toml"));
+        },
+
+        help() {
+            const columns = HELP.map(({ title, rows }) =>
+                make(
+                    "section",
+                    {},
+                    make("h3", {}, title),
+                    make(
+                        "dl",
+                        { class: "keys" },
+                        ...rows.flatMap(({ keys, does }) => [
+                            make("dt", {}, make("kbd", {}, keys)),
+                            make("dd", {}, does),
+                        ]),
+                    ),
+                ),
+            );
+            open("Keys", [make("div", { class: "help" }, ...columns)], [close]);
+        },
+
+        /** @param {{design: any, at: string}} recovery */
+        recover({ design, at }) {
+            open(
+                "Something was not saved",
+                [
+                    make(
+                        "p",
+                        {},
+                        `A copy of what was drawn last, at ${new Date(at).toLocaleString()}, is newer than the file.`,
+                    ),
+                ],
+                [{ label: "Take the copy", first: true, run: () => begin(design) }, { label: "Stay with the file" }],
+            );
+        },
+
+        /** @param {{design: any, note?: string}} message */
+        conflict({ design, note }) {
+            open(
+                "The file has changed",
+                [
+                    make("p", {}, note ?? "Another program has written the design's file."),
+                    make(
+                        "p",
+                        {},
+                        "What is drawn here takes its place if you keep it; what was there stays beside it as a backup.",
+                    ),
+                ],
+                [
+                    {
+                        label: "Keep mine",
+                        first: true,
+                        run: () => save(true),
+                    },
+                    ...(design ? [{ label: "Take theirs", run: reload }] : []),
+                    cancel,
+                ],
+            );
+        },
+
+        /** @param {{design: any, note?: string}} message */
+        changed({ design, note }) {
+            if (design && store.state.saved) {
+                reload();
+                return;
+            }
+            store.keep(null);
+            open(
+                "The file has changed outside",
+                [
+                    make("p", {}, note ?? "Another program has written the design's file."),
+                    make(
+                        "p",
+                        { class: "note" },
+                        "If you keep yours, the next save writes it there, and what is there now stays beside it as a backup.",
+                    ),
+                ],
+                [
+                    ...(design ? [{ label: "Take theirs", first: true, run: reload }] : []),
+                    { label: "Keep mine", run: keepMine },
+                ],
+            );
+        },
+    };
 }

@@ -11,20 +11,24 @@ import { evaluate, shown } from "../model/lengths.js";
  * @returns {any}
  */
 export function make(tag, attributes = {}, ...children) {
-  const element = document.createElement(tag);
-  for (const [name, value] of Object.entries(attributes)) {
-    if (name.startsWith("on")) {
-      element.addEventListener(name.slice(2), value);
-    } else if (name.startsWith(".")) {
-      /** @type {any} */ (element)[name.slice(1)] = value;
-    } else if (name.startsWith("aria-") && typeof value === "boolean") {
-      element.setAttribute(name, String(value));
-    } else if (value !== false && value !== null && value !== undefined) {
-      element.setAttribute(name, value === true ? "" : String(value));
+    const element = document.createElement(tag);
+    for (const [name, value] of Object.entries(attributes)) {
+        if (name.startsWith("on")) {
+            element.addEventListener(name.slice(2), value);
+        } else if (name.startsWith(".")) {
+            /** @type {any} */ (element)[name.slice(1)] = value;
+        } else if (name.startsWith("aria-") && typeof value === "boolean") {
+            element.setAttribute(name, String(value));
+        } else if (value !== false && value !== null && value !== undefined) {
+            element.setAttribute(name, value === true ? "" : String(value));
+        }
     }
-  }
-  element.append(...children.filter((child) => child !== null && child !== undefined && child !== false).map((child) => /** @type {Node | string} */ (child)));
-  return element;
+    element.append(
+        ...children
+            .filter((child) => child !== null && child !== undefined && child !== false)
+            .map((child) => /** @type {Node | string} */ (child)),
+    );
+    return element;
 }
 
 let count = 0;
@@ -36,8 +40,8 @@ let count = 0;
  * @param {string} [title]
  */
 export function field(label, control, title) {
-  control.id ||= `field-${++count}`;
-  return make("div", { class: "field", title }, make("label", { for: control.id }, label), control);
+    control.id ||= `field-${++count}`;
+    return make("div", { class: "field", title }, make("label", { for: control.id }, label), control);
 }
 
 /**
@@ -49,36 +53,36 @@ export function field(label, control, title) {
  * @returns {HTMLInputElement}
  */
 export function lengthField(value, unit, change, attributes = {}) {
-  const input = make("input", {
-    type: "text",
-    inputmode: "decimal",
-    spellcheck: "false",
-    autocomplete: "off",
-    ...attributes,
-    // What is typed differs from it: undo is the field's own until then, the drawing's else.
-    ".defaultValue": value === null ? "" : shown(value, unit),
-  });
-  const old = input.value;
-  const read = () => {
-    if (input.value === old) {
-      return;
-    }
-    try {
-      change(evaluate(input.value, unit));
-      input.setCustomValidity("");
-    } catch (error) {
-      input.setCustomValidity(error instanceof Error ? error.message : String(error));
-      input.reportValidity();
-    }
-  };
-  input.addEventListener("change", read);
-  input.addEventListener("keydown", (/** @type {KeyboardEvent} */ event) => {
-    if (event.key === "Escape") {
-      input.value = old;
-      input.setCustomValidity("");
-    }
-  });
-  return input;
+    const input = make("input", {
+        type: "text",
+        inputmode: "decimal",
+        spellcheck: "false",
+        autocomplete: "off",
+        ...attributes,
+        // What is typed differs from it: undo is the field's own until then, the drawing's else.
+        ".defaultValue": value === null ? "" : shown(value, unit),
+    });
+    const old = input.value;
+    const read = () => {
+        if (input.value === old) {
+            return;
+        }
+        try {
+            change(evaluate(input.value, unit));
+            input.setCustomValidity("");
+        } catch (error) {
+            input.setCustomValidity(error instanceof Error ? error.message : String(error));
+            input.reportValidity();
+        }
+    };
+    input.addEventListener("change", read);
+    input.addEventListener("keydown", (/** @type {KeyboardEvent} */ event) => {
+        if (event.key === "Escape") {
+            input.value = old;
+            input.setCustomValidity("");
+        }
+    });
+    return input;
 }
 
 /**
@@ -87,13 +91,13 @@ export function lengthField(value, unit, change, attributes = {}) {
  * @param {() => void} run
  */
 export function deferred(run) {
-  let timer = 0;
-  return () => {
-    timer ||= window.setTimeout(() => {
-      timer = 0;
-      run();
-    });
-  };
+    let timer = 0;
+    return () => {
+        timer ||= window.setTimeout(() => {
+            timer = 0;
+            run();
+        });
+    };
 }
 
 /**
@@ -102,18 +106,18 @@ export function deferred(run) {
  * @param {Node[]} children
  */
 export function refill(parent, children) {
-  const active = document.activeElement;
-  const key = active instanceof HTMLElement && parent.contains(active) ? active.dataset.key : undefined;
-  const scroll = parent.parentElement?.scrollTop ?? 0;
-  parent.replaceChildren(...children);
-  if (key) {
-    const again = /** @type {HTMLElement | null} */ (parent.querySelector(`[data-key="${CSS.escape(key)}"]`));
-    again?.focus();
-    if (again instanceof HTMLInputElement && again.type === "text") {
-      again.select();
+    const active = document.activeElement;
+    const key = active instanceof HTMLElement && parent.contains(active) ? active.dataset.key : undefined;
+    const scroll = parent.parentElement?.scrollTop ?? 0;
+    parent.replaceChildren(...children);
+    if (key) {
+        const again = /** @type {HTMLElement | null} */ (parent.querySelector(`[data-key="${CSS.escape(key)}"]`));
+        again?.focus();
+        if (again instanceof HTMLInputElement && again.type === "text") {
+            again.select();
+        }
     }
-  }
-  if (parent.parentElement) {
-    parent.parentElement.scrollTop = scroll;
-  }
+    if (parent.parentElement) {
+        parent.parentElement.scrollTop = scroll;
+    }
 }

@@ -11,125 +11,186 @@ import { deferred, field, lengthField, make, refill } from "./elements.js";
 
 /** @type {[string, string[]][]} the options under headings; those that no heading names stand under the last */
 const HEADINGS = [
-  ["Sheet", ["sheet", "margin", "fit", "pieces"]],
-  ["Cut", ["kerf", "edges", "gap", "tabs", "fillet"]],
-  ["Target", ["preset", "curves", "accuracy", "stroke"]],
-  ["Place", ["rotate", "offset", "frame"]],
-  ["Engrave", ["labels", "label_height", "art", "marks", "bar"]],
-  ["Colours", ["colours", "into", "pack", "stock", "only_colour"]],
-  ["More", []],
+    ["Sheet", ["sheet", "margin", "fit", "pieces"]],
+    ["Cut", ["kerf", "edges", "gap", "tabs", "fillet"]],
+    ["Target", ["preset", "curves", "accuracy", "stroke"]],
+    ["Place", ["rotate", "offset", "frame"]],
+    ["Engrave", ["labels", "label_height", "art", "marks", "bar"]],
+    ["Colours", ["colours", "into", "pack", "stock", "only_colour"]],
+    ["More", []],
 ];
 
 const KEY = "job-";
 
 export class JobPanel extends HTMLElement {
-  /** @type {Context} */
-  // @ts-expect-error set by connect, before anything else
-  #context;
-  /** @type {Set<string>} headings that are open */
-  #open = new Set(["Sheet", "Cut", "Target"]);
+    /** @type {Context} */
+    // @ts-expect-error set by connect, before anything else
+    #context;
+    /** @type {Set<string>} headings that are open */
+    #open = new Set(["Sheet", "Cut", "Target"]);
 
-  /** @param {Context} context */
-  connect(context) {
-    this.#context = context;
-    context.store.subscribe(["tables", "job", "jobRefusal", "unit"], deferred(() => this.#fill(context.store.state)));
-  }
+    /** @param {Context} context */
+    connect(context) {
+        this.#context = context;
+        context.store.subscribe(
+            ["tables", "job", "jobRefusal", "unit"],
+            deferred(() => this.#fill(context.store.state)),
+        );
+    }
 
-  /** @param {State} state */
-  #fill(state) {
-    const { tables, job, jobRefusal } = state;
-    if (!tables) {
-      return;
+    /** @param {State} state */
+    #fill(state) {
+        const { tables, job, jobRefusal } = state;
+        if (!tables) {
+            return;
+        }
+        const named = new Set(HEADINGS.flatMap(([, names]) => names));
+        const options = /** @type {Option[]} */ (tables.job);
+        const bad = jobRefusal?.error;
+        refill(
+            this,
+            [
+                make(
+                    "p",
+                    { class: "note" },
+                    "What is made of the tiles. Without a sheet one of each tile is cut, as a closed contour.",
+                ),
+                bad && make("p", { class: "error", role: "alert" }, `${bad.message} ${bad.remedy}`),
+                ...HEADINGS.map(([title, names]) => {
+                    const own = names.length
+                        ? names.map((name) => options.find((option) => option.name === name))
+                        : options.filter((option) => !named.has(option.name));
+                    const fields = own
+                        .filter((option) => option !== undefined)
+                        .map((option) => this.#field(option, job[option.name], state));
+                    return fields.length
+                        ? make(
+                              "details",
+                              {
+                                  ".open": this.#open.has(title),
+                                  ontoggle: (/** @type {Event} */ event) => {
+                                      this.#open[
+                                          /** @type {HTMLDetailsElement} */ (event.target).open ? "add" : "delete"
+                                      ](title);
+                                  },
+                              },
+                              make("summary", { "data-key": `heading ${title}` }, title),
+                              ...fields,
+                          )
+                        : null;
+                }).filter((node) => node !== null),
+                make(
+                    "p",
+                    { class: "group" },
+                    make(
+                        "button",
+                        {
+                            type: "button",
+                            class: "first",
+                            "data-key": "export",
+                            onclick: () => this.#context.run("export"),
+                        },
+                        "Export",
+                    ),
+                    make(
+                        "button",
+                        { type: "button", "data-key": "coupon", onclick: () => this.#context.run("coupon") },
+                        "Test piece for the kerf",
+                    ),
+                    Object.keys(job).length > 0 &&
+                        make(
+                            "button",
+                            {
+                                type: "button",
+                                class: "quiet",
+                                "data-key": "reset",
+                                onclick: () => this.#context.store.set({ job: {} }),
+                            },
+                            "Reset",
+                        ),
+                ),
+            ].filter(Boolean),
+        );
     }
-    const named = new Set(HEADINGS.flatMap(([, names]) => names));
-    const options = /** @type {Option[]} */ (tables.job);
-    const bad = jobRefusal?.error;
-    refill(this, [
-      make("p", { class: "note" }, "What is made of the tiles. Without a sheet one of each tile is cut, as a closed contour."),
-      bad && make("p", { class: "error", role: "alert" }, `${bad.message} ${bad.remedy}`),
-      ...HEADINGS.map(([title, names]) => {
-        const own = names.length ? names.map((name) => options.find((option) => option.name === name)) : options.filter((option) => !named.has(option.name));
-        const fields = own.filter((option) => option !== undefined).map((option) => this.#field(option, job[option.name], state));
-        return fields.length
-          ? make(
-              "details",
-              {
-                ".open": this.#open.has(title),
-                ontoggle: (/** @type {Event} */ event) => {
-                  this.#open[/** @type {HTMLDetailsElement} */ (event.target).open ? "add" : "delete"](title);
-                },
-              },
-              make("summary", { "data-key": `heading ${title}` }, title),
-              ...fields,
-            )
-          : null;
-      }).filter((node) => node !== null),
-      make(
-        "p",
-        { class: "group" },
-        make("button", { type: "button", class: "first", "data-key": "export", onclick: () => this.#context.run("export") }, "Export"),
-        make("button", { type: "button", "data-key": "coupon", onclick: () => this.#context.run("coupon") }, "Test piece for the kerf"),
-        Object.keys(job).length > 0 && make("button", { type: "button", class: "quiet", "data-key": "reset", onclick: () => this.#context.store.set({ job: {} }) }, "Reset"),
-      ),
-    ].filter(Boolean));
-  }
 
-  /**
-   * @param {string} name
-   * @param {any} value undefined: the default
-   */
-  #set(name, value) {
-    const { store } = this.#context;
-    const { [name]: _, ...rest } = store.state.job;
-    store.set({ job: value === undefined ? rest : { ...rest, [name]: value } });
-  }
+    /**
+     * @param {string} name
+     * @param {any} value undefined: the default
+     */
+    #set(name, value) {
+        const { store } = this.#context;
+        const { [name]: _, ...rest } = store.state.job;
+        store.set({ job: value === undefined ? rest : { ...rest, [name]: value } });
+    }
 
-  /**
-   * @param {Option} option
-   * @param {any} value
-   * @param {State} state
-   */
-  #field(option, value, { tables, unit }) {
-    const { name, kind, words } = option;
-    const label = name.replaceAll("_", " ").replace(/^./, (letter) => letter.toUpperCase());
-    const key = KEY + name;
-    const now = value ?? option.default;
-    const choices = name === "preset" ? tables.presets.map((/** @type {any} */ preset) => preset.name) : words;
-    if (kind === "flag") {
-      const input = make("input", {
-        type: "checkbox",
-        "data-key": key,
-        ".checked": Boolean(now),
-        onchange: (/** @type {Event} */ event) => this.#set(name, /** @type {HTMLInputElement} */ (event.target).checked || undefined),
-      });
-      return make("label", { class: "check", title: option.help }, input, label);
+    /**
+     * @param {Option} option
+     * @param {any} value
+     * @param {State} state
+     */
+    #field(option, value, { tables, unit }) {
+        const { name, kind, words } = option;
+        const label = name.replaceAll("_", " ").replace(/^./, (letter) => letter.toUpperCase());
+        const key = KEY + name;
+        const now = value ?? option.default;
+        const choices = name === "preset" ? tables.presets.map((/** @type {any} */ preset) => preset.name) : words;
+        if (kind === "flag") {
+            const input = make("input", {
+                type: "checkbox",
+                "data-key": key,
+                ".checked": Boolean(now),
+                onchange: (/** @type {Event} */ event) =>
+                    this.#set(name, /** @type {HTMLInputElement} */ (event.target).checked || undefined),
+            });
+            return make("label", { class: "check", title: option.help }, input, label);
+        }
+        if (choices?.length) {
+            const select = make("select", {
+                "data-key": key,
+                onchange: (/** @type {Event} */ event) =>
+                    this.#set(name, /** @type {HTMLSelectElement} */ (event.target).value || undefined),
+            });
+            const shown = option.default === null ? ["", ...choices] : choices;
+            select.append(
+                ...shown.map((/** @type {string} */ word) =>
+                    make(
+                        "option",
+                        { value: word === option.default ? "" : word, ".selected": word === (now ?? "") },
+                        word || "automatic",
+                    ),
+                ),
+            );
+            return field(label, select, option.help);
+        }
+        if (kind === "length") {
+            const mm = tables.units[unit];
+            const input = lengthField(
+                now === null ? null : Number(now) / mm,
+                unit,
+                (length) => this.#set(name, length * mm),
+                { "data-key": key, placeholder: "automatic" },
+            );
+            input.addEventListener("change", () => input.value.trim() || this.#set(name, undefined));
+            return field(`${label}, ${unit}`, input, option.help);
+        }
+        const input = make("input", {
+            type: "text",
+            spellcheck: "false",
+            "data-key": key,
+            ".value": now === null || now === undefined ? "" : Array.isArray(now) ? now.join(" x ") : String(now),
+            placeholder: option.shown || "automatic",
+            onchange: (/** @type {Event} */ event) => {
+                const text = /** @type {HTMLInputElement} */ (event.target).value.trim();
+                this.#set(
+                    name,
+                    text === ""
+                        ? undefined
+                        : kind === "angle" || (kind === "number" && /^-?\d+$/.test(text))
+                          ? Number(text)
+                          : text,
+                );
+            },
+        });
+        return field(label, input, option.help);
     }
-    if (choices?.length) {
-      const select = make("select", {
-        "data-key": key,
-        onchange: (/** @type {Event} */ event) => this.#set(name, /** @type {HTMLSelectElement} */ (event.target).value || undefined),
-      });
-      const shown = option.default === null ? ["", ...choices] : choices;
-      select.append(...shown.map((/** @type {string} */ word) => make("option", { value: word === option.default ? "" : word, ".selected": word === (now ?? "") }, word || "automatic")));
-      return field(label, select, option.help);
-    }
-    if (kind === "length") {
-      const mm = tables.units[unit];
-      const input = lengthField(now === null ? null : Number(now) / mm, unit, (length) => this.#set(name, length * mm), { "data-key": key, placeholder: "automatic" });
-      input.addEventListener("change", () => input.value.trim() || this.#set(name, undefined));
-      return field(`${label}, ${unit}`, input, option.help);
-    }
-    const input = make("input", {
-      type: "text",
-      spellcheck: "false",
-      "data-key": key,
-      ".value": now === null || now === undefined ? "" : Array.isArray(now) ? now.join(" x ") : String(now),
-      placeholder: option.shown || "automatic",
-      onchange: (/** @type {Event} */ event) => {
-        const text = /** @type {HTMLInputElement} */ (event.target).value.trim();
-        this.#set(name, text === "" ? undefined : kind === "angle" || (kind === "number" && /^-?\d+$/.test(text)) ? Number(text) : text);
-      },
-    });
-    return field(label, input, option.help);
-  }
 }

@@ -17,18 +17,18 @@ import { ReportPanel } from "./report.js";
 
 /** @type {[string, new () => HTMLElement & {connect: (context: Context) => void}][]} */
 const PANELS = [
-  ["stroke-panel", StrokePanel],
-  ["symmetry-panel", SymmetryPanel],
-  ["job-panel", JobPanel],
-  ["report-panel", ReportPanel],
+    ["stroke-panel", StrokePanel],
+    ["symmetry-panel", SymmetryPanel],
+    ["job-panel", JobPanel],
+    ["report-panel", ReportPanel],
 ];
 
 /** @param {Context} context */
 export function connectPanels(context) {
-  for (const [name, panel] of PANELS) {
-    customElements.define(name, panel);
-    for (const element of document.querySelectorAll(name)) {
-      /** @type {InstanceType<typeof panel>} */ (element).connect(context);
+    for (const [name, panel] of PANELS) {
+        customElements.define(name, panel);
+        for (const element of document.querySelectorAll(name)) {
+            /** @type {InstanceType<typeof panel>} */ (element).connect(context);
+        }
     }
-  }
 }

@@ -1,7 +1,16 @@
 // @ts-check
 // The list of sites, strokes and points, as numbers: all that can be done by dragging can be done here.
 
-import { addSite, addStroke, moveStrokes, nameProblem, removeSite, removeStrokes, renameSite, replaceStroke } from "../model/design.js";
+import {
+    addSite,
+    addStroke,
+    moveStrokes,
+    nameProblem,
+    removeSite,
+    removeStrokes,
+    renameSite,
+    replaceStroke,
+} from "../model/design.js";
 import { moveNodes } from "../model/nodes.js";
 import { NOTHING } from "../store.js";
 import { lengthField, make, refill } from "./elements.js";
@@ -14,16 +23,16 @@ import { lengthField, make, refill } from "./elements.js";
 
 /** @type {Record<string, string>} what kinds of strokes are called */
 const NAMES = {
-  point: "Point",
-  segment: "Line",
-  polyline: "Line",
-  bezier: "Pen curve",
-  hermite: "Pen curve",
-  catmull_rom: "Curve through points",
-  bspline: "B-spline",
-  circle: "Circle",
-  path: "SVG path",
-  file: "Drawing",
+    point: "Point",
+    segment: "Line",
+    polyline: "Line",
+    bezier: "Pen curve",
+    hermite: "Pen curve",
+    catmull_rom: "Curve through points",
+    bspline: "B-spline",
+    circle: "Circle",
+    path: "SVG path",
+    file: "Drawing",
 };
 
 /** @type {Record<string, string>} what roles of nodes are called */
@@ -32,238 +41,293 @@ const ROLES = { anchor: "Point", in: "Handle before", out: "Handle after", centr
 const NODES_MAX = 60;
 
 export class StrokePanel extends HTMLElement {
-  /** @type {Context} */
-  // @ts-expect-error set by connect, before anything else
-  #context;
-  #shown = { design: /** @type {any} */ (null), selection: /** @type {any} */ (null), unit: "", site: -1 };
+    /** @type {Context} */
+    // @ts-expect-error set by connect, before anything else
+    #context;
+    #shown = { design: /** @type {any} */ (null), selection: /** @type {any} */ (null), unit: "", site: -1 };
 
-  /** @param {Context} context */
-  connect(context) {
-    this.#context = context;
-    context.store.subscribe(["design", "selection", "unit", "site", "tables", "dragging"], (state) => this.#fill(state));
-  }
-
-  /** @param {State} state */
-  #fill(state) {
-    const { design, selection, unit, site, tables, dragging } = state;
-    const old = this.#shown;
-    // While something is dragged the list stays: it would be made anew for each frame.
-    if (!tables || dragging || (old.design === design && old.selection === selection && old.unit === unit && old.site === site)) {
-      return;
+    /** @param {Context} context */
+    connect(context) {
+        this.#context = context;
+        context.store.subscribe(["design", "selection", "unit", "site", "tables", "dragging"], (state) =>
+            this.#fill(state),
+        );
     }
-    this.#shown = { design, selection, unit, site };
-    const entries = this.#context.stage.entries();
-    refill(this, [
-      ...design.site.flatMap((_, i) => this.#site(state, entries, i)),
-      make("p", {}, make("button", { type: "button", "data-key": "add site", onclick: () => this.#addSite() }, "Add a site")),
-      make("p", { class: "note" }, "A site is one tile; its strokes may cross and branch. The tools at the left draw into the site that is marked."),
-    ]);
-  }
 
-  /** The factor from the drawing's units to those that are shown. */
-  get #factor() {
-    const { design, tables, unit } = this.#context.store.state;
-    return (tables.units[design.units ?? "mm"] * (design.scale ?? 1)) / tables.units[unit];
-  }
-
-  #addSite() {
-    const { store } = this.#context;
-    store.edit("add site", (design) => addSite(design), { selection: NOTHING });
-    store.set({ site: store.state.design.site.length - 1 });
-  }
-
-  /**
-   * @param {State} state
-   * @param {Entry[]} entries
-   * @param {number} i
-   * @returns {Node[]}
-   */
-  #site(state, entries, i) {
-    const { store } = this.#context;
-    const site = state.design.site[i];
-    const name = make("input", {
-      type: "text",
-      "aria-label": `Name of site ${i + 1}`,
-      "data-key": `name ${i}`,
-      ".value": site.name ?? `site${i + 1}`,
-      oninput: () => name.setCustomValidity(""),
-      onchange: () => {
-        const problem = nameProblem(state.design, i, name.value);
-        if (problem) {
-          name.setCustomValidity(problem);
-          name.reportValidity();
-        } else {
-          store.edit("rename", (design) => renameSite(design, i, name.value));
+    /** @param {State} state */
+    #fill(state) {
+        const { design, selection, unit, site, tables, dragging } = state;
+        const old = this.#shown;
+        // While something is dragged the list stays: it would be made anew for each frame.
+        if (
+            !tables ||
+            dragging ||
+            (old.design === design && old.selection === selection && old.unit === unit && old.site === site)
+        ) {
+            return;
         }
-      },
-    });
-    const draw = make("input", {
-      type: "radio",
-      name: "site",
-      "aria-label": `Draw into site ${site.name ?? `site${i + 1}`}`,
-      "data-key": `draw ${i}`,
-      ".checked": state.site === i,
-      onchange: () => store.set({ site: i }),
-    });
-    const remove = make(
-      "button",
-      {
-        type: "button",
-        class: "quiet",
-        "data-key": `remove site ${i}`,
-        "aria-label": `Take out site ${site.name ?? `site${i + 1}`}`,
-        ".disabled": state.design.site.length < 2,
-        onclick: () => {
-          store.set({ site: 0 });
-          store.edit("take out site", (design) => removeSite(design, i), { selection: NOTHING });
-        },
-      },
-      "Take out",
-    );
-    const own = entries.filter((entry) => entry.ref.site === i);
-    return [
-      make("div", { class: "site" }, draw, name, remove),
-      own.length
-        ? make("ul", { class: "strokes" }, ...own.map((entry) => this.#stroke(state, entry)))
-        : make("p", { class: "note" }, "No stroke yet: take the pen (P) and draw."),
-    ];
-  }
+        this.#shown = { design, selection, unit, site };
+        const entries = this.#context.stage.entries();
+        refill(this, [
+            ...design.site.flatMap((_, i) => this.#site(state, entries, i)),
+            make(
+                "p",
+                {},
+                make(
+                    "button",
+                    { type: "button", "data-key": "add site", onclick: () => this.#addSite() },
+                    "Add a site",
+                ),
+            ),
+            make(
+                "p",
+                { class: "note" },
+                "A site is one tile; its strokes may cross and branch. The tools at the left draw into the site that is marked.",
+            ),
+        ]);
+    }
 
-  /**
-   * @param {State} state
-   * @param {Entry} entry
-   */
-  #stroke(state, entry) {
-    const { store } = this.#context;
-    const { ref } = entry;
-    const chosen = state.selection.strokes.some((other) => other.site === ref.site && other.stroke === ref.stroke);
-    const label = `${NAMES[entry.kind] ?? "Stroke"} ${ref.stroke + 1}`;
-    const button = make(
-      "button",
-      {
-        type: "button",
-        class: "stroke",
-        "aria-expanded": chosen,
-        "data-key": `stroke ${ref.site} ${ref.stroke}`,
-        onclick: (/** @type {MouseEvent} */ event) => {
-          const others = event.shiftKey ? state.selection.strokes.filter((other) => other.site !== ref.site || other.stroke !== ref.stroke) : [];
-          store.set({ selection: { strokes: chosen ? others : [...others, ref], nodes: [] }, site: ref.site, tool: "select" });
-        },
-      },
-      label,
-    );
-    return make("li", {}, button, chosen ? this.#points(state, entry, label) : null);
-  }
+    /** The factor from the drawing's units to those that are shown. */
+    get #factor() {
+        const { design, tables, unit } = this.#context.store.state;
+        return (tables.units[design.units ?? "mm"] * (design.scale ?? 1)) / tables.units[unit];
+    }
 
-  /**
-   * @param {State} state
-   * @param {Entry} entry
-   * @param {string} label
-   */
-  #points(state, entry, label) {
-    const { store } = this.#context;
-    const { ref } = entry;
-    const nodes = entry.nodes.slice(0, NODES_MAX);
-    const shown = nodes.map((node, k) => {
-      const at = /** @type {[number, number]} */ (node.at);
-      const coordinate = (/** @type {0 | 1} */ axis) =>
-        lengthField(
-          at[axis] * this.#factor,
-          state.unit,
-          (value) => {
-            const to = /** @type {[number, number]} */ ([...at]);
-            to[axis] = value / this.#factor;
-            store.edit("move point", (design) =>
-              replaceStroke(design, ref, moveNodes(design.site[ref.site].strokes[ref.stroke], entry.placement, [{ node: node.node, to }], { alone: false })),
+    #addSite() {
+        const { store } = this.#context;
+        store.edit("add site", (design) => addSite(design), { selection: NOTHING });
+        store.set({ site: store.state.design.site.length - 1 });
+    }
+
+    /**
+     * @param {State} state
+     * @param {Entry[]} entries
+     * @param {number} i
+     * @returns {Node[]}
+     */
+    #site(state, entries, i) {
+        const { store } = this.#context;
+        const site = state.design.site[i];
+        const name = make("input", {
+            type: "text",
+            "aria-label": `Name of site ${i + 1}`,
+            "data-key": `name ${i}`,
+            ".value": site.name ?? `site${i + 1}`,
+            oninput: () => name.setCustomValidity(""),
+            onchange: () => {
+                const problem = nameProblem(state.design, i, name.value);
+                if (problem) {
+                    name.setCustomValidity(problem);
+                    name.reportValidity();
+                } else {
+                    store.edit("rename", (design) => renameSite(design, i, name.value));
+                }
+            },
+        });
+        const draw = make("input", {
+            type: "radio",
+            name: "site",
+            "aria-label": `Draw into site ${site.name ?? `site${i + 1}`}`,
+            "data-key": `draw ${i}`,
+            ".checked": state.site === i,
+            onchange: () => store.set({ site: i }),
+        });
+        const remove = make(
+            "button",
+            {
+                type: "button",
+                class: "quiet",
+                "data-key": `remove site ${i}`,
+                "aria-label": `Take out site ${site.name ?? `site${i + 1}`}`,
+                ".disabled": state.design.site.length < 2,
+                onclick: () => {
+                    store.set({ site: 0 });
+                    store.edit("take out site", (design) => removeSite(design, i), { selection: NOTHING });
+                },
+            },
+            "Take out",
+        );
+        const own = entries.filter((entry) => entry.ref.site === i);
+        return [
+            make("div", { class: "site" }, draw, name, remove),
+            own.length
+                ? make("ul", { class: "strokes" }, ...own.map((entry) => this.#stroke(state, entry)))
+                : make("p", { class: "note" }, "No stroke yet: take the pen (P) and draw."),
+        ];
+    }
+
+    /**
+     * @param {State} state
+     * @param {Entry} entry
+     */
+    #stroke(state, entry) {
+        const { store } = this.#context;
+        const { ref } = entry;
+        const chosen = state.selection.strokes.some((other) => other.site === ref.site && other.stroke === ref.stroke);
+        const label = `${NAMES[entry.kind] ?? "Stroke"} ${ref.stroke + 1}`;
+        const button = make(
+            "button",
+            {
+                type: "button",
+                class: "stroke",
+                "aria-expanded": chosen,
+                "data-key": `stroke ${ref.site} ${ref.stroke}`,
+                onclick: (/** @type {MouseEvent} */ event) => {
+                    const others = event.shiftKey
+                        ? state.selection.strokes.filter(
+                              (other) => other.site !== ref.site || other.stroke !== ref.stroke,
+                          )
+                        : [];
+                    store.set({
+                        selection: { strokes: chosen ? others : [...others, ref], nodes: [] },
+                        site: ref.site,
+                        tool: "select",
+                    });
+                },
+            },
+            label,
+        );
+        return make("li", {}, button, chosen ? this.#points(state, entry, label) : null);
+    }
+
+    /**
+     * @param {State} state
+     * @param {Entry} entry
+     * @param {string} label
+     */
+    #points(state, entry, label) {
+        const { store } = this.#context;
+        const { ref } = entry;
+        const nodes = entry.nodes.slice(0, NODES_MAX);
+        const shown = nodes.map((node, k) => {
+            const at = /** @type {[number, number]} */ (node.at);
+            const coordinate = (/** @type {0 | 1} */ axis) =>
+                lengthField(
+                    at[axis] * this.#factor,
+                    state.unit,
+                    (value) => {
+                        const to = /** @type {[number, number]} */ ([...at]);
+                        to[axis] = value / this.#factor;
+                        store.edit("move point", (design) =>
+                            replaceStroke(
+                                design,
+                                ref,
+                                moveNodes(
+                                    design.site[ref.site].strokes[ref.stroke],
+                                    entry.placement,
+                                    [{ node: node.node, to }],
+                                    { alone: false },
+                                ),
+                            ),
+                        );
+                    },
+                    {
+                        "aria-label": `${label}, ${ROLES[node.role] ?? node.role} ${k + 1}, ${"xy"[axis]}`,
+                        "data-key": `${ref.site} ${ref.stroke} ${node.node} ${axis}`,
+                    },
+                );
+            const has = state.selection.nodes.some(
+                (other) => other.site === ref.site && other.stroke === ref.stroke && other.node === node.node,
             );
-          },
-          { "aria-label": `${label}, ${ROLES[node.role] ?? node.role} ${k + 1}, ${"xy"[axis]}`, "data-key": `${ref.site} ${ref.stroke} ${node.node} ${axis}` },
+            return make(
+                "li",
+                { class: has ? "point chosen" : "point" },
+                make("span", { class: node.role === "anchor" ? "" : "note" }, ROLES[node.role] ?? node.role),
+                coordinate(0),
+                coordinate(1),
+            );
+        });
+        return make(
+            "div",
+            { class: "points" },
+            make("ol", {}, ...shown),
+            entry.nodes.length > NODES_MAX &&
+                make("p", { class: "note" }, `and ${entry.nodes.length - NODES_MAX} more`),
+            this.#move(state, entry),
+            make(
+                "p",
+                { class: "group" },
+                make(
+                    "button",
+                    {
+                        type: "button",
+                        "data-key": `double ${ref.site} ${ref.stroke}`,
+                        onclick: () => this.#double(entry),
+                    },
+                    "Double",
+                ),
+                make(
+                    "button",
+                    {
+                        type: "button",
+                        "data-key": `delete ${ref.site} ${ref.stroke}`,
+                        onclick: () =>
+                            store.edit("delete", (design) => removeStrokes(design, [ref]), { selection: NOTHING }),
+                    },
+                    "Take out",
+                ),
+                state.design.site.length > 1 && this.#otherSite(state, entry),
+            ),
         );
-      const has = state.selection.nodes.some((other) => other.site === ref.site && other.stroke === ref.stroke && other.node === node.node);
-      return make(
-        "li",
-        { class: has ? "point chosen" : "point" },
-        make("span", { class: node.role === "anchor" ? "" : "note" }, ROLES[node.role] ?? node.role),
-        coordinate(0),
-        coordinate(1),
-      );
-    });
-    return make(
-      "div",
-      { class: "points" },
-      make("ol", {}, ...shown),
-      entry.nodes.length > NODES_MAX && make("p", { class: "note" }, `and ${entry.nodes.length - NODES_MAX} more`),
-      this.#move(state, entry),
-      make(
-        "p",
-        { class: "group" },
-        make("button", { type: "button", "data-key": `double ${ref.site} ${ref.stroke}`, onclick: () => this.#double(entry) }, "Double"),
-        make(
-          "button",
-          {
-            type: "button",
-            "data-key": `delete ${ref.site} ${ref.stroke}`,
-            onclick: () => store.edit("delete", (design) => removeStrokes(design, [ref]), { selection: NOTHING }),
-          },
-          "Take out",
-        ),
-        state.design.site.length > 1 && this.#otherSite(state, entry),
-      ),
-    );
-  }
+    }
 
-  /**
-   * Fields that move the whole stroke.
-   * @param {State} state
-   * @param {Entry} entry
-   */
-  #move(state, entry) {
-    const by = (/** @type {0 | 1} */ axis) =>
-      lengthField(
-        0,
-        state.unit,
-        (value) => {
-          const step = /** @type {[number, number]} */ ([0, 0]);
-          step[axis] = value / this.#factor;
-          this.#context.store.edit("move", (design) => moveStrokes(design, [entry.ref], step));
-        },
-        { "aria-label": `Move by ${"xy"[axis]}`, "data-key": `by ${entry.ref.site} ${entry.ref.stroke} ${axis}` },
-      );
-    return make("div", { class: "point" }, make("span", {}, "Move by"), by(0), by(1));
-  }
+    /**
+     * Fields that move the whole stroke.
+     * @param {State} state
+     * @param {Entry} entry
+     */
+    #move(state, entry) {
+        const by = (/** @type {0 | 1} */ axis) =>
+            lengthField(
+                0,
+                state.unit,
+                (value) => {
+                    const step = /** @type {[number, number]} */ ([0, 0]);
+                    step[axis] = value / this.#factor;
+                    this.#context.store.edit("move", (design) => moveStrokes(design, [entry.ref], step));
+                },
+                {
+                    "aria-label": `Move by ${"xy"[axis]}`,
+                    "data-key": `by ${entry.ref.site} ${entry.ref.stroke} ${axis}`,
+                },
+            );
+        return make("div", { class: "point" }, make("span", {}, "Move by"), by(0), by(1));
+    }
 
-  /** @param {Entry} entry */
-  #double({ ref }) {
-    const { store, stage } = this.#context;
-    const by = 12 / stage.camera.scale;
-    const copy = { site: ref.site, stroke: store.settled.site[ref.site].strokes.length };
-    store.edit(
-      "double",
-      (design) => moveStrokes(addStroke(design, ref.site, design.site[ref.site].strokes[ref.stroke]), [copy], [by, -by]),
-      { selection: { strokes: [copy], nodes: [] } },
-    );
-  }
-
-  /**
-   * Where the stroke goes: another site.
-   * @param {State} state
-   * @param {Entry} entry
-   */
-  #otherSite(state, { ref }) {
-    const options = state.design.site.map((site, i) => make("option", { value: i, ".selected": i === ref.site }, site.name ?? `site${i + 1}`));
-    const choose = make("select", {
-      "aria-label": "Site of the stroke",
-      onchange: (/** @type {Event} */ event) => {
-        const to = Number(/** @type {HTMLSelectElement} */ (event.target).value);
-        this.#context.store.edit(
-          "to another site",
-          (design) => removeStrokes(addStroke(design, to, design.site[ref.site].strokes[ref.stroke]), [ref]),
-          { selection: NOTHING },
+    /** @param {Entry} entry */
+    #double({ ref }) {
+        const { store, stage } = this.#context;
+        const by = 12 / stage.camera.scale;
+        const copy = { site: ref.site, stroke: store.settled.site[ref.site].strokes.length };
+        store.edit(
+            "double",
+            (design) =>
+                moveStrokes(addStroke(design, ref.site, design.site[ref.site].strokes[ref.stroke]), [copy], [by, -by]),
+            { selection: { strokes: [copy], nodes: [] } },
         );
-      },
-    });
-    choose.append(...options);
-    return choose;
-  }
+    }
+
+    /**
+     * Where the stroke goes: another site.
+     * @param {State} state
+     * @param {Entry} entry
+     */
+    #otherSite(state, { ref }) {
+        const options = state.design.site.map((site, i) =>
+            make("option", { value: i, ".selected": i === ref.site }, site.name ?? `site${i + 1}`),
+        );
+        const choose = make("select", {
+            "aria-label": "Site of the stroke",
+            onchange: (/** @type {Event} */ event) => {
+                const to = Number(/** @type {HTMLSelectElement} */ (event.target).value);
+                this.#context.store.edit(
+                    "to another site",
+                    (design) => removeStrokes(addStroke(design, to, design.site[ref.site].strokes[ref.stroke]), [ref]),
+                    { selection: NOTHING },
+                );
+            },
+        });
+        choose.append(...options);
+        return choose;
+    }
 }
-

@@ -15,268 +15,329 @@ import { deferred, field, lengthField, make, refill } from "./elements.js";
 
 /** @type {[keyof State["shown"], string][]} */
 const SHOWN = [
-  ["colours", "Coloured tiles"],
-  ["edges", "Exact edges"],
-  ["copies", "Copies of the strokes (K)"],
-  ["elements", "Mirrors, glides, centres (E)"],
-  ["cell", "Cell"],
-  ["region", "One asymmetric unit"],
-  ["grid", "Grid (G)"],
+    ["colours", "Coloured tiles"],
+    ["edges", "Exact edges"],
+    ["copies", "Copies of the strokes (K)"],
+    ["elements", "Mirrors, glides, centres (E)"],
+    ["cell", "Cell"],
+    ["region", "One asymmetric unit"],
+    ["grid", "Grid (G)"],
 ];
 
 const THUMBNAIL = 72;
 const ASK_MS = 400;
 
 export class SymmetryPanel extends HTMLElement {
-  /** @type {Context} */
-  // @ts-expect-error set by connect, before anything else
-  #context;
-  #groups = make("div", { class: "groups", role: "radiogroup", "aria-label": "Wallpaper group" });
-  #cell = make("div");
-  #shown = make("div");
-  #note = make("p", { class: "note", role: "status" });
-  #timer = 0;
-  /** @type {any} the design that the thumbnails are of */
-  #asked = null;
-  /** @type {{from: any, made: any} | null} the design before groups were tried, and what the last one made of it */
-  #tried = null;
+    /** @type {Context} */
+    // @ts-expect-error set by connect, before anything else
+    #context;
+    #groups = make("div", { class: "groups", role: "radiogroup", "aria-label": "Wallpaper group" });
+    #cell = make("div");
+    #shown = make("div");
+    #note = make("p", { class: "note", role: "status" });
+    #timer = 0;
+    /** @type {any} the design that the thumbnails are of */
+    #asked = null;
+    /** @type {{from: any, made: any} | null} the design before groups were tried, and what the last one made of it */
+    #tried = null;
 
-  /** @param {Context} context */
-  connect(context) {
-    this.#context = context;
-    const { store, link } = context;
-    this.replaceChildren(
-      make("h2", {}, "Group"),
-      this.#groups,
-      this.#note,
-      make("h2", {}, "Cell"),
-      this.#cell,
-      make("h2", {}, "Show"),
-      this.#shown,
-      make("h2", {}, "Picture to trace"),
-      this.#trace(),
-    );
-    store.subscribe(["tables", "design", "unit", "dragging", "exact", "site"], deferred(() => this.#fill(store.state)));
-    store.subscribe(["shown"], (state) => this.#fillShown(state));
-    link.on("group", (message) => this.#draw(message));
-    new IntersectionObserver(() => this.#ask()).observe(this);
-  }
+    /** @param {Context} context */
+    connect(context) {
+        this.#context = context;
+        const { store, link } = context;
+        this.replaceChildren(
+            make("h2", {}, "Group"),
+            this.#groups,
+            this.#note,
+            make("h2", {}, "Cell"),
+            this.#cell,
+            make("h2", {}, "Show"),
+            this.#shown,
+            make("h2", {}, "Picture to trace"),
+            this.#trace(),
+        );
+        store.subscribe(
+            ["tables", "design", "unit", "dragging", "exact", "site"],
+            deferred(() => this.#fill(store.state)),
+        );
+        store.subscribe(["shown"], (state) => this.#fillShown(state));
+        link.on("group", (message) => this.#draw(message));
+        new IntersectionObserver(() => this.#ask()).observe(this);
+    }
 
-  /** @param {State} state */
-  #fill(state) {
-    if (!state.tables || state.dragging) {
-      return;
-    }
-    if (!this.#groups.children.length) {
-      this.#groups.append(...state.tables.groups.map((/** @type {any} */ group) => this.#thumbnail(group)));
-    }
-    for (const button of this.#groups.children) {
-      const on = button.dataset.group === state.design.group;
-      button.setAttribute("aria-checked", String(on));
-      button.tabIndex = on ? 0 : -1;
-    }
-    refill(this.#cell, this.#cellFields(state));
-    clearTimeout(this.#timer);
-    this.#timer = window.setTimeout(() => this.#ask(), ASK_MS);
-  }
-
-  /** @param {any} group */
-  #thumbnail(group) {
-    return make(
-      "button",
-      {
-        type: "button",
-        role: "radio",
-        "data-group": group.name,
-        title: `${group.name}: ${group.order} copies in a cell`,
-        onclick: () => this.#choose(group.name),
-        onkeydown: (/** @type {KeyboardEvent} */ event) => this.#step(event),
-      },
-      make("canvas", { width: THUMBNAIL, height: THUMBNAIL, "aria-hidden": "true" }),
-      make("span", {}, group.name),
-    );
-  }
-
-  /** @param {KeyboardEvent} event */
-  #step(event) {
-    const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
-    if (step) {
-      const all = [...this.#groups.children];
-      const next = all[(all.indexOf(event.currentTarget) + step + all.length) % all.length];
-      all.forEach((one) => {
-        one.tabIndex = one === next ? 0 : -1;
-      });
-      next.focus();
-      event.preventDefault();
-      event.stopPropagation();
-    }
-  }
-
-  /** @param {string} name */
-  #choose(name) {
-    const { store } = this.#context;
-    // Who looks at several groups sees each made of the design before the first: what one had to move is not kept.
-    const from = this.#tried && this.#tried.made === store.settled ? this.#tried.from : store.settled;
-    const { design, note } =
-      name === from.group ? { design: from, note: "" } : setGroup(from, name, store.state.tables, store.state.exact?.resolved);
-    store.edit("group", () => design);
-    this.#tried = { from, made: store.settled };
-    this.#note.textContent = note;
-  }
-
-  /** Ask for this drawing in all groups, where they are looked at. */
-  #ask() {
-    const { store, link } = this.#context;
-    const { design, revision, tables, dragging } = store.state;
-    if (tables && !dragging && this.checkVisibility() && this.#asked !== design && link.send({ type: "groups", rev: revision, design })) {
-      this.#asked = design;
-    }
-  }
-
-  /** @param {any} message */
-  #draw({ group, design, tiles, error }) {
-    const button = [...this.#groups.children].find((one) => one.dataset.group === group);
-    if (!button) {
-      return;
-    }
-    const canvas = /** @type {HTMLCanvasElement} */ (button.querySelector("canvas"));
-    const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-    const ratio = devicePixelRatio;
-    Object.assign(canvas, { width: THUMBNAIL * ratio, height: THUMBNAIL * ratio });
-    button.classList.toggle("refused", !tiles);
-    button.title = error ? `${group}: ${error.message ?? error}` : group;
-    if (!tiles) {
-      return;
-    }
-    const { tables } = this.#context.store.state;
-    const lattice = latticeOf(design, tables);
-    const camera = new Camera();
-    Object.assign(camera, { size: [THUMBNAIL, THUMBNAIL], ratio });
-    const size = 1.7 * Math.sqrt(Math.abs(lattice.a[0] * lattice.b[1] - lattice.a[1] * lattice.b[0]));
-    camera.fit([0, 0, size, size], 1);
-    drawOutlines(context, camera, lattice, motionsOf(design, tables), tiles, {
-      scale: design.scale ?? 1,
-      fill: true,
-      dark: this.#context.stage.dark,
-      line: 0.7,
-    });
-  }
-
-  /** @param {State} state */
-  #cellFields({ design, tables, unit }) {
-    const { store } = this.#context;
-    const group = groupOf(design, tables);
-    const factor = (tables.units[design.units ?? "mm"] * (design.scale ?? 1)) / tables.units[unit];
-    /** @type {Node[]} */
-    const fields = [];
-    for (const name of /** @type {const} */ (["a", "b"])) {
-      if (name === "a" || group.free.includes("b")) {
-        const input = lengthField(/** @type {any} */ (design.cell)[name] * factor, unit, (value) => store.edit("cell", (old) => setCell(old, { [name]: value / factor })), { "data-key": name });
-        fields.push(field(`Side ${name}, ${unit}`, input));
-      }
-    }
-    if (group.free.includes("angle")) {
-      const input = make("input", {
-        type: "number",
-        step: "any",
-        "data-key": "angle",
-        ".value": design.cell.angle ?? 90,
-        onchange: (/** @type {Event} */ event) => store.edit("cell", (old) => setCell(old, { angle: /** @type {HTMLInputElement} */ (event.target).valueAsNumber })),
-      });
-      fields.push(field("Angle, degrees", input));
-    }
-    fields.push(...this.#sizeFields(factor));
-    const units = make("select", {
-      "data-key": "units",
-      onchange: (/** @type {Event} */ event) => store.edit("units", (old) => setUnits(old, /** @type {any} */ (event.target).value, true)),
-    });
-    units.append(...Object.keys(tables.units).map((name) => make("option", { ".selected": name === (design.units ?? "mm") }, name)));
-    fields.push(field("Units of the file", units, "The design's numbers are converted: its size stays."));
-    return fields;
-  }
-
-  /**
-   * The tile's width and height: what is given scales the whole design.
-   * @param {number} factor from the drawing's units to those that are shown
-   * @returns {Node[]}
-   */
-  #sizeFields(factor) {
-    const { store } = this.#context;
-    const { exact, design, unit, site } = store.state;
-    const tile = exact?.tiles[site];
-    if (!exact || !tile || exact.design !== design) {
-      return [];
-    }
-    const scale = factor / (design.scale ?? 1);
-    return /** @type {const} */ (["width", "height"]).map((name) =>
-      field(
-        `Tile ${name}, ${unit}`,
-        lengthField(
-          tile[name] * scale,
-          unit,
-          (wanted) => {
-            if (wanted > 0) {
-              const times = Number((((design.scale ?? 1) * wanted) / (tile[name] * scale)).toPrecision(12));
-              store.edit("size", (old) => ({ ...old, scale: times }));
-            }
-          },
-          { "data-key": name },
-        ),
-        "The whole design is scaled, cell and strokes.",
-      ),
-    );
-  }
-
-  /** A picture under the drawing: it stays in the page, and in no file. */
-  #trace() {
-    const { stage } = this.#context;
-    const strength = make("input", { type: "range", min: 0, max: 1, step: 0.05, ".value": 0.4, oninput: () => stage.setTrace({ opacity: strength.valueAsNumber }) });
-    const size = make("input", { type: "range", min: -2, max: 2, step: 0.01, ".value": 0, oninput: () => stage.setTrace({ size: 2 ** size.valueAsNumber }) });
-    const more = make("div", { hidden: true }, field("Strength", strength), field("Size", size), make("button", {
-      type: "button",
-      onclick: () => {
-        stage.setTrace({ image: null });
-        more.hidden = true;
-        file.value = "";
-      },
-    }, "Take out"));
-    const file = make("input", {
-      type: "file",
-      accept: "image/png,image/jpeg,image/webp,image/gif,image/svg+xml",
-      "aria-label": "Picture to trace",
-      onchange: async () => {
-        const chosen = file.files?.[0];
-        if (chosen) {
-          try {
-            stage.setTrace({ image: await createImageBitmap(chosen) });
-            more.hidden = false;
-          } catch {
-            this.#context.store.set({ trouble: { message: `${chosen.name} is no picture that this browser reads.`, remedy: "Take a PNG or JPEG." } });
-          }
+    /** @param {State} state */
+    #fill(state) {
+        if (!state.tables || state.dragging) {
+            return;
         }
-      },
-    });
-    return make("div", {}, file, more);
-  }
+        if (!this.#groups.children.length) {
+            this.#groups.append(...state.tables.groups.map((/** @type {any} */ group) => this.#thumbnail(group)));
+        }
+        for (const button of this.#groups.children) {
+            const on = button.dataset.group === state.design.group;
+            button.setAttribute("aria-checked", String(on));
+            button.tabIndex = on ? 0 : -1;
+        }
+        refill(this.#cell, this.#cellFields(state));
+        clearTimeout(this.#timer);
+        this.#timer = window.setTimeout(() => this.#ask(), ASK_MS);
+    }
 
-  /** @param {State} state */
-  #fillShown({ shown }) {
-    const { store } = this.#context;
-    refill(
-      this.#shown,
-      SHOWN.map(([name, label]) =>
-        make(
-          "label",
-          { class: "check" },
-          make("input", {
-            type: "checkbox",
-            "data-key": name,
-            ".checked": shown[name],
-            onchange: (/** @type {Event} */ event) => store.set({ shown: { ...store.state.shown, [name]: /** @type {HTMLInputElement} */ (event.target).checked } }),
-          }),
-          label,
-        ),
-      ),
-    );
-  }
+    /** @param {any} group */
+    #thumbnail(group) {
+        return make(
+            "button",
+            {
+                type: "button",
+                role: "radio",
+                "data-group": group.name,
+                title: `${group.name}: ${group.order} copies in a cell`,
+                onclick: () => this.#choose(group.name),
+                onkeydown: (/** @type {KeyboardEvent} */ event) => this.#step(event),
+            },
+            make("canvas", { width: THUMBNAIL, height: THUMBNAIL, "aria-hidden": "true" }),
+            make("span", {}, group.name),
+        );
+    }
+
+    /** @param {KeyboardEvent} event */
+    #step(event) {
+        const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+        if (step) {
+            const all = [...this.#groups.children];
+            const next = all[(all.indexOf(event.currentTarget) + step + all.length) % all.length];
+            all.forEach((one) => {
+                one.tabIndex = one === next ? 0 : -1;
+            });
+            next.focus();
+            event.preventDefault();
+            event.stopPropagation();
+        }
+    }
+
+    /** @param {string} name */
+    #choose(name) {
+        const { store } = this.#context;
+        // Who looks at several groups sees each made of the design before the first: what one had to move is not kept.
+        const from = this.#tried && this.#tried.made === store.settled ? this.#tried.from : store.settled;
+        const { design, note } =
+            name === from.group
+                ? { design: from, note: "" }
+                : setGroup(from, name, store.state.tables, store.state.exact?.resolved);
+        store.edit("group", () => design);
+        this.#tried = { from, made: store.settled };
+        this.#note.textContent = note;
+    }
+
+    /** Ask for this drawing in all groups, where they are looked at. */
+    #ask() {
+        const { store, link } = this.#context;
+        const { design, revision, tables, dragging } = store.state;
+        if (
+            tables &&
+            !dragging &&
+            this.checkVisibility() &&
+            this.#asked !== design &&
+            link.send({ type: "groups", rev: revision, design })
+        ) {
+            this.#asked = design;
+        }
+    }
+
+    /** @param {any} message */
+    #draw({ group, design, tiles, error }) {
+        const button = [...this.#groups.children].find((one) => one.dataset.group === group);
+        if (!button) {
+            return;
+        }
+        const canvas = /** @type {HTMLCanvasElement} */ (button.querySelector("canvas"));
+        const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+        const ratio = devicePixelRatio;
+        Object.assign(canvas, { width: THUMBNAIL * ratio, height: THUMBNAIL * ratio });
+        button.classList.toggle("refused", !tiles);
+        button.title = error ? `${group}: ${error.message ?? error}` : group;
+        if (!tiles) {
+            return;
+        }
+        const { tables } = this.#context.store.state;
+        const lattice = latticeOf(design, tables);
+        const camera = new Camera();
+        Object.assign(camera, { size: [THUMBNAIL, THUMBNAIL], ratio });
+        const size = 1.7 * Math.sqrt(Math.abs(lattice.a[0] * lattice.b[1] - lattice.a[1] * lattice.b[0]));
+        camera.fit([0, 0, size, size], 1);
+        drawOutlines(context, camera, lattice, motionsOf(design, tables), tiles, {
+            scale: design.scale ?? 1,
+            fill: true,
+            dark: this.#context.stage.dark,
+            line: 0.7,
+        });
+    }
+
+    /** @param {State} state */
+    #cellFields({ design, tables, unit }) {
+        const { store } = this.#context;
+        const group = groupOf(design, tables);
+        const factor = (tables.units[design.units ?? "mm"] * (design.scale ?? 1)) / tables.units[unit];
+        /** @type {Node[]} */
+        const fields = [];
+        for (const name of /** @type {const} */ (["a", "b"])) {
+            if (name === "a" || group.free.includes("b")) {
+                const input = lengthField(
+                    /** @type {any} */ (design.cell)[name] * factor,
+                    unit,
+                    (value) => store.edit("cell", (old) => setCell(old, { [name]: value / factor })),
+                    { "data-key": name },
+                );
+                fields.push(field(`Side ${name}, ${unit}`, input));
+            }
+        }
+        if (group.free.includes("angle")) {
+            const input = make("input", {
+                type: "number",
+                step: "any",
+                "data-key": "angle",
+                ".value": design.cell.angle ?? 90,
+                onchange: (/** @type {Event} */ event) =>
+                    store.edit("cell", (old) =>
+                        setCell(old, { angle: /** @type {HTMLInputElement} */ (event.target).valueAsNumber }),
+                    ),
+            });
+            fields.push(field("Angle, degrees", input));
+        }
+        fields.push(...this.#sizeFields(factor));
+        const units = make("select", {
+            "data-key": "units",
+            onchange: (/** @type {Event} */ event) =>
+                store.edit("units", (old) => setUnits(old, /** @type {any} */ (event.target).value, true)),
+        });
+        units.append(
+            ...Object.keys(tables.units).map((name) =>
+                make("option", { ".selected": name === (design.units ?? "mm") }, name),
+            ),
+        );
+        fields.push(field("Units of the file", units, "The design's numbers are converted: its size stays."));
+        return fields;
+    }
+
+    /**
+     * The tile's width and height: what is given scales the whole design.
+     * @param {number} factor from the drawing's units to those that are shown
+     * @returns {Node[]}
+     */
+    #sizeFields(factor) {
+        const { store } = this.#context;
+        const { exact, design, unit, site } = store.state;
+        const tile = exact?.tiles[site];
+        if (!exact || !tile || exact.design !== design) {
+            return [];
+        }
+        const scale = factor / (design.scale ?? 1);
+        return /** @type {const} */ (["width", "height"]).map((name) =>
+            field(
+                `Tile ${name}, ${unit}`,
+                lengthField(
+                    tile[name] * scale,
+                    unit,
+                    (wanted) => {
+                        if (wanted > 0) {
+                            const times = Number(
+                                (((design.scale ?? 1) * wanted) / (tile[name] * scale)).toPrecision(12),
+                            );
+                            store.edit("size", (old) => ({ ...old, scale: times }));
+                        }
+                    },
+                    { "data-key": name },
+                ),
+                "The whole design is scaled, cell and strokes.",
+            ),
+        );
+    }
+
+    /** A picture under the drawing: it stays in the page, and in no file. */
+    #trace() {
+        const { stage } = this.#context;
+        const strength = make("input", {
+            type: "range",
+            min: 0,
+            max: 1,
+            step: 0.05,
+            ".value": 0.4,
+            oninput: () => stage.setTrace({ opacity: strength.valueAsNumber }),
+        });
+        const size = make("input", {
+            type: "range",
+            min: -2,
+            max: 2,
+            step: 0.01,
+            ".value": 0,
+            oninput: () => stage.setTrace({ size: 2 ** size.valueAsNumber }),
+        });
+        const more = make(
+            "div",
+            { hidden: true },
+            field("Strength", strength),
+            field("Size", size),
+            make(
+                "button",
+                {
+                    type: "button",
+                    onclick: () => {
+                        stage.setTrace({ image: null });
+                        more.hidden = true;
+                        file.value = "";
+                    },
+                },
+                "Take out",
+            ),
+        );
+        const file = make("input", {
+            type: "file",
+            accept: "image/png,image/jpeg,image/webp,image/gif,image/svg+xml",
+            "aria-label": "Picture to trace",
+            onchange: async () => {
+                const chosen = file.files?.[0];
+                if (chosen) {
+                    try {
+                        stage.setTrace({ image: await createImageBitmap(chosen) });
+                        more.hidden = false;
+                    } catch {
+                        this.#context.store.set({
+                            trouble: {
+                                message: `${chosen.name} is no picture that this browser reads.`,
+                                remedy: "Take a PNG or JPEG.",
+                            },
+                        });
+                    }
+                }
+            },
+        });
+        return make("div", {}, file, more);
+    }
+
+    /** @param {State} state */
+    #fillShown({ shown }) {
+        const { store } = this.#context;
+        refill(
+            this.#shown,
+            SHOWN.map(([name, label]) =>
+                make(
+                    "label",
+                    { class: "check" },
+                    make("input", {
+                        type: "checkbox",
+                        "data-key": name,
+                        ".checked": shown[name],
+                        onchange: (/** @type {Event} */ event) =>
+                            store.set({
+                                shown: {
+                                    ...store.state.shown,
+                                    [name]: /** @type {HTMLInputElement} */ (event.target).checked,
+                                },
+                            }),
+                    }),
+                    label,
+                ),
+            ),
+        );
+    }
 }

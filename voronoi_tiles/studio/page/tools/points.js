@@ -27,8 +27,8 @@ const STEP = Math.PI / 12;
  * @returns {Point}
  */
 function onAngle([x, y]) {
-  const [size, turn] = [Math.hypot(x, y), Math.round(Math.atan2(y, x) / STEP) * STEP];
-  return [size * Math.cos(turn), size * Math.sin(turn)];
+    const [size, turn] = [Math.hypot(x, y), Math.round(Math.atan2(y, x) / STEP) * STEP];
+    return [size * Math.cos(turn), size * Math.sin(turn)];
 }
 
 /**
@@ -39,27 +39,27 @@ function onAngle([x, y]) {
  * @returns {Maker}
  */
 function listed(key, least, leastClosed) {
-  return (points, closed, placement) => {
-    if (points.length < (closed ? leastClosed : least)) {
-      return null;
-    }
-    const at = points.map((point) => unplace(placement, point.at));
-    return closed ? { [key]: at, closed: true } : { [key]: at };
-  };
+    return (points, closed, placement) => {
+        if (points.length < (closed ? leastClosed : least)) {
+            return null;
+        }
+        const at = points.map((point) => unplace(placement, point.at));
+        return closed ? { [key]: at, closed: true } : { [key]: at };
+    };
 }
 
 /** @type {Maker} */
 function line(points, closed, placement) {
-  if (!closed && points.length === 2) {
-    return { segment: points.map((point) => unplace(placement, point.at)) };
-  }
-  return listed("polyline", 3, 3)(points, closed, placement);
+    if (!closed && points.length === 2) {
+        return { segment: points.map((point) => unplace(placement, point.at)) };
+    }
+    return listed("polyline", 3, 3)(points, closed, placement);
 }
 
 /** @type {Maker} */
 function pen(points, closed, placement) {
-  const all = closed ? [...points, points[0]] : points;
-  return all.length < 2 ? null : penStroke(all, placement);
+    const all = closed ? [...points, points[0]] : points;
+    return all.length < 2 ? null : penStroke(all, placement);
 }
 
 /**
@@ -67,287 +67,311 @@ function pen(points, closed, placement) {
  * @returns {Tool}
  */
 function pointTool({ make, handles = false, ...what }) {
-  /** @type {Placed[]} */
-  let points = [];
-  let closed = false;
-  /** @type {any} the design with the stroke as far as it is drawn; another one: somebody else has edited */
-  let expected = null;
-  /** @type {import("../model/design.js").Ref | null} */
-  let ref = null;
-  /** @type {Point | null} where the pointer is */
-  let pointer = null;
-  let broken = false;
-  let pulling = false;
-  let grabbed = NONE;
-  let reach = 0;
+    /** @type {Placed[]} */
+    let points = [];
+    let closed = false;
+    /** @type {any} the design with the stroke as far as it is drawn; another one: somebody else has edited */
+    let expected = null;
+    /** @type {import("../model/design.js").Ref | null} */
+    let ref = null;
+    /** @type {Point | null} where the pointer is */
+    let pointer = null;
+    let broken = false;
+    let pulling = false;
+    let grabbed = NONE;
+    let reach = 0;
 
-  /**
-   * Where a pointer places the next point: with Shift at a multiple of 15 degrees from the last.
-   * @param {Touch} touch
-   * @returns {Point}
-   */
-  const placeOf = (touch) => {
-    const last = points.at(-1);
-    if (!touch.shift || !last) {
-      return touch.at;
-    }
-    const [dx, dy] = onAngle([touch.raw[0] - last.at[0], touch.raw[1] - last.at[1]]);
-    return rounded([last.at[0] + dx, last.at[1] + dy], touch.reach / 1000);
-  };
-
-  /** @param {Hands} hands */
-  const forget = (hands) => {
-    hands.store.cancel();
-    points = [];
-    closed = false;
-    ref = null;
-    expected = null;
-    pulling = false;
-    hands.redraw();
-  };
-
-  /** @param {Hands} hands */
-  const check = (hands) => {
-    if (points.length && hands.store.settled !== expected) {
-      points = [];
-      ref = null;
-      pulling = false;
-    }
-  };
-
-  /**
-   * The design with the stroke through some points.
-   * @param {any} design
-   * @param {Placed[]} through
-   * @param {Hands} hands
-   */
-  const withStroke = (design, through, hands) => {
-    const site = ref ? ref.site : hands.store.state.site;
-    const stroke = make(through, closed, placementOf(design.site[site], {}));
-    if (!stroke) {
-      return design;
-    }
-    return ref ? replaceStroke(design, ref, stroke) : addStroke(design, site, stroke);
-  };
-
-  /** @param {Hands} hands */
-  const commit = (hands) => {
-    const { store } = hands;
-    const site = ref ? ref.site : store.state.site;
-    const before = store.settled;
-    store.edit(ref ? "point" : what.title.toLowerCase(), (design) => withStroke(design, points, hands));
-    if (!ref && store.settled !== before) {
-      ref = { site, stroke: store.settled.site[site].strokes.length - 1 };
-    }
-    expected = store.settled;
-  };
-
-  /** @param {Hands} hands */
-  const finish = (hands) => {
-    const done = ref;
-    forget(hands);
-    if (done) {
-      hands.store.set({ selection: { strokes: [done], nodes: [] } });
-    }
-  };
-
-  return {
-    ...what,
-    cursor: "crosshair",
-    draws: true,
-    down(touch, hands) {
-      check(hands);
-      reach = touch.reach;
-      const first = points[0];
-      const closes = points.length > 1 && Math.hypot(touch.raw[0] - first.at[0], touch.raw[1] - first.at[1]) <= touch.reach;
-      if (closes && make(points, true, placementOf(hands.store.settled.site[hands.store.state.site], {}))) {
-        closed = true;
-        commit(hands);
-        finish(hands);
-        return;
-      }
-      const last = points.at(-1);
-      if (closes || (last && Math.hypot(touch.raw[0] - last.at[0], touch.raw[1] - last.at[1]) <= touch.reach / 3)) {
-        return;
-      }
-      const at = placeOf(touch);
-      grabbed = touch.raw;
-      hands.store.cancel();
-      if (!points.length) {
-        hands.store.set({ selection: NOTHING });
-        expected = hands.store.settled;
-      }
-      points = [...points, { at, in: NONE, out: NONE }];
-      pulling = true;
-      broken = false;
-      if (!handles) {
-        commit(hands);
-      }
-    },
-    move(touch, hands, held) {
-      check(hands);
-      pointer = placeOf(touch);
-      if (held && pulling && handles) {
-        let last = points[points.length - 1];
-        if (touch.space) {
-          const at = rounded([last.at[0] + touch.raw[0] - grabbed[0], last.at[1] + touch.raw[1] - grabbed[1]], 1 / hands.camera.scale);
-          last = { ...last, at };
-          points = [...points.slice(0, -1), last];
-          grabbed = touch.raw;
-          hands.store.preview((design) => withStroke(design, points, hands));
-          hands.redraw();
-          return;
+    /**
+     * Where a pointer places the next point: with Shift at a multiple of 15 degrees from the last.
+     * @param {Touch} touch
+     * @returns {Point}
+     */
+    const placeOf = (touch) => {
+        const last = points.at(-1);
+        if (!touch.shift || !last) {
+            return touch.at;
         }
-        grabbed = touch.raw;
-        let pull = /** @type {Point} */ ([touch.raw[0] - last.at[0], touch.raw[1] - last.at[1]]);
-        if (Math.hypot(...pull) < touch.reach / 3) {
-          return;
+        const [dx, dy] = onAngle([touch.raw[0] - last.at[0], touch.raw[1] - last.at[1]]);
+        return rounded([last.at[0] + dx, last.at[1] + dy], touch.reach / 1000);
+    };
+
+    /** @param {Hands} hands */
+    const forget = (hands) => {
+        hands.store.cancel();
+        points = [];
+        closed = false;
+        ref = null;
+        expected = null;
+        pulling = false;
+        hands.redraw();
+    };
+
+    /** @param {Hands} hands */
+    const check = (hands) => {
+        if (points.length && hands.store.settled !== expected) {
+            points = [];
+            ref = null;
+            pulling = false;
         }
-        if (touch.shift) {
-          pull = onAngle(pull);
+    };
+
+    /**
+     * The design with the stroke through some points.
+     * @param {any} design
+     * @param {Placed[]} through
+     * @param {Hands} hands
+     */
+    const withStroke = (design, through, hands) => {
+        const site = ref ? ref.site : hands.store.state.site;
+        const stroke = make(through, closed, placementOf(design.site[site], {}));
+        if (!stroke) {
+            return design;
         }
-        pull = rounded(pull, 1 / hands.camera.scale);
-        broken ||= touch.alt;
-        const placed = { at: last.at, in: broken ? last.in : /** @type {Point} */ ([-pull[0], -pull[1]]), out: pull };
-        points = [...points.slice(0, -1), placed];
-        hands.store.preview((design) => withStroke(design, points, hands));
-      } else if (points.length) {
-        const [last, at] = [points[points.length - 1], pointer];
-        if (Math.hypot(at[0] - last.at[0], at[1] - last.at[1]) > touch.reach / 4) {
-          hands.store.preview((design) => withStroke(design, [...points, { at, in: NONE, out: NONE }], hands));
+        return ref ? replaceStroke(design, ref, stroke) : addStroke(design, site, stroke);
+    };
+
+    /** @param {Hands} hands */
+    const commit = (hands) => {
+        const { store } = hands;
+        const site = ref ? ref.site : store.state.site;
+        const before = store.settled;
+        store.edit(ref ? "point" : what.title.toLowerCase(), (design) => withStroke(design, points, hands));
+        if (!ref && store.settled !== before) {
+            ref = { site, stroke: store.settled.site[site].strokes.length - 1 };
         }
-      }
-      hands.redraw();
-    },
-    up(touch, hands) {
-      const last = points.at(-1);
-      if (pulling && handles && last) {
-        commit(hands);
-      } else if (pulling && last && Math.hypot(touch.raw[0] - last.at[0], touch.raw[1] - last.at[1]) > touch.reach) {
-        // Who drags has drawn from one point to the next.
-        points = [...points, { at: placeOf(touch), in: NONE, out: NONE }];
-        commit(hands);
-      }
-      pulling = false;
-    },
-    twice(_touch, hands) {
-      finish(hands);
-    },
-    key_down(key, _event, hands) {
-      if (!points.length) {
-        return false;
-      }
-      if (key === "Enter") {
-        finish(hands);
-        return true;
-      }
-      if (key === "Backspace" || key === "Delete") {
-        this.undo?.(hands);
-        return true;
-      }
-      return false;
-    },
-    undo(hands) {
-      check(hands);
-      if (!points.length) {
-        return false;
-      }
-      hands.store.cancel();
-      const through = points.slice(0, -1);
-      const site = hands.store.settled.site[ref ? ref.site : hands.store.state.site];
-      // The point that the pen still pulls at is no step yet.
-      const had = ref !== null && !(pulling && handles);
-      pulling = false;
-      const has = make(through, false, placementOf(site, {})) !== null;
-      points = through;
-      if (had) {
-        hands.store.undo();
-        if (!has) {
-          ref = null;
+        expected = store.settled;
+    };
+
+    /** @param {Hands} hands */
+    const finish = (hands) => {
+        const done = ref;
+        forget(hands);
+        if (done) {
+            hands.store.set({ selection: { strokes: [done], nodes: [] } });
         }
-      }
-      expected = hands.store.settled;
-      hands.redraw();
-      return true;
-    },
-    cancel(hands) {
-      if (!points.length) {
-        return false;
-      }
-      finish(hands);
-      return true;
-    },
-    leave(hands) {
-      if (points.length) {
-        finish(hands);
-      }
-    },
-    draw(context, { camera, store }) {
-      if (!points.length || (store.settled !== expected && expected)) {
-        return;
-      }
-      const style = getComputedStyle(document.documentElement);
-      const ends = pointer ? [...points.map((p) => p.at), pointer] : points.map((p) => p.at);
-      context.setLineDash([3, 3]);
-      context.strokeStyle = style.getPropertyValue("--quiet");
-      context.beginPath();
-      ends.slice(-2).forEach((at, k) => context[k ? "lineTo" : "moveTo"](...camera.toScreen(at)));
-      context.stroke();
-      context.setLineDash([]);
-      for (const [k, point] of points.entries()) {
-        const [x, y] = camera.toScreen(point.at);
-        context.fillStyle = k ? style.getPropertyValue("--panel") : style.getPropertyValue("--accent");
-        context.strokeStyle = style.getPropertyValue("--accent");
-        if (Math.hypot(...point.out) > 0 && k === points.length - 1) {
-          const [a, b] = [camera.toScreen([point.at[0] + point.in[0], point.at[1] + point.in[1]]), camera.toScreen([point.at[0] + point.out[0], point.at[1] + point.out[1]])];
-          context.beginPath();
-          context.moveTo(...a);
-          context.lineTo(...b);
-          context.stroke();
-        }
-        context.beginPath();
-        const near = k === 0 && points.length > 1 && pointer && Math.hypot(pointer[0] - point.at[0], pointer[1] - point.at[1]) <= reach;
-        context.arc(x, y, near ? 7 : 4, 0, 2 * Math.PI);
-        context.fill();
-        context.stroke();
-      }
-    },
-  };
+    };
+
+    return {
+        ...what,
+        cursor: "crosshair",
+        draws: true,
+        down(touch, hands) {
+            check(hands);
+            reach = touch.reach;
+            const first = points[0];
+            const closes =
+                points.length > 1 && Math.hypot(touch.raw[0] - first.at[0], touch.raw[1] - first.at[1]) <= touch.reach;
+            if (closes && make(points, true, placementOf(hands.store.settled.site[hands.store.state.site], {}))) {
+                closed = true;
+                commit(hands);
+                finish(hands);
+                return;
+            }
+            const last = points.at(-1);
+            if (
+                closes ||
+                (last && Math.hypot(touch.raw[0] - last.at[0], touch.raw[1] - last.at[1]) <= touch.reach / 3)
+            ) {
+                return;
+            }
+            const at = placeOf(touch);
+            grabbed = touch.raw;
+            hands.store.cancel();
+            if (!points.length) {
+                hands.store.set({ selection: NOTHING });
+                expected = hands.store.settled;
+            }
+            points = [...points, { at, in: NONE, out: NONE }];
+            pulling = true;
+            broken = false;
+            if (!handles) {
+                commit(hands);
+            }
+        },
+        move(touch, hands, held) {
+            check(hands);
+            pointer = placeOf(touch);
+            if (held && pulling && handles) {
+                let last = points[points.length - 1];
+                if (touch.space) {
+                    const at = rounded(
+                        [last.at[0] + touch.raw[0] - grabbed[0], last.at[1] + touch.raw[1] - grabbed[1]],
+                        1 / hands.camera.scale,
+                    );
+                    last = { ...last, at };
+                    points = [...points.slice(0, -1), last];
+                    grabbed = touch.raw;
+                    hands.store.preview((design) => withStroke(design, points, hands));
+                    hands.redraw();
+                    return;
+                }
+                grabbed = touch.raw;
+                let pull = /** @type {Point} */ ([touch.raw[0] - last.at[0], touch.raw[1] - last.at[1]]);
+                if (Math.hypot(...pull) < touch.reach / 3) {
+                    return;
+                }
+                if (touch.shift) {
+                    pull = onAngle(pull);
+                }
+                pull = rounded(pull, 1 / hands.camera.scale);
+                broken ||= touch.alt;
+                const placed = {
+                    at: last.at,
+                    in: broken ? last.in : /** @type {Point} */ ([-pull[0], -pull[1]]),
+                    out: pull,
+                };
+                points = [...points.slice(0, -1), placed];
+                hands.store.preview((design) => withStroke(design, points, hands));
+            } else if (points.length) {
+                const [last, at] = [points[points.length - 1], pointer];
+                if (Math.hypot(at[0] - last.at[0], at[1] - last.at[1]) > touch.reach / 4) {
+                    hands.store.preview((design) =>
+                        withStroke(design, [...points, { at, in: NONE, out: NONE }], hands),
+                    );
+                }
+            }
+            hands.redraw();
+        },
+        up(touch, hands) {
+            const last = points.at(-1);
+            if (pulling && handles && last) {
+                commit(hands);
+            } else if (
+                pulling &&
+                last &&
+                Math.hypot(touch.raw[0] - last.at[0], touch.raw[1] - last.at[1]) > touch.reach
+            ) {
+                // Who drags has drawn from one point to the next.
+                points = [...points, { at: placeOf(touch), in: NONE, out: NONE }];
+                commit(hands);
+            }
+            pulling = false;
+        },
+        twice(_touch, hands) {
+            finish(hands);
+        },
+        key_down(key, _event, hands) {
+            if (!points.length) {
+                return false;
+            }
+            if (key === "Enter") {
+                finish(hands);
+                return true;
+            }
+            if (key === "Backspace" || key === "Delete") {
+                this.undo?.(hands);
+                return true;
+            }
+            return false;
+        },
+        undo(hands) {
+            check(hands);
+            if (!points.length) {
+                return false;
+            }
+            hands.store.cancel();
+            const through = points.slice(0, -1);
+            const site = hands.store.settled.site[ref ? ref.site : hands.store.state.site];
+            // The point that the pen still pulls at is no step yet.
+            const had = ref !== null && !(pulling && handles);
+            pulling = false;
+            const has = make(through, false, placementOf(site, {})) !== null;
+            points = through;
+            if (had) {
+                hands.store.undo();
+                if (!has) {
+                    ref = null;
+                }
+            }
+            expected = hands.store.settled;
+            hands.redraw();
+            return true;
+        },
+        cancel(hands) {
+            if (!points.length) {
+                return false;
+            }
+            finish(hands);
+            return true;
+        },
+        leave(hands) {
+            if (points.length) {
+                finish(hands);
+            }
+        },
+        draw(context, { camera, store }) {
+            if (!points.length || (store.settled !== expected && expected)) {
+                return;
+            }
+            const style = getComputedStyle(document.documentElement);
+            const ends = pointer ? [...points.map((p) => p.at), pointer] : points.map((p) => p.at);
+            context.setLineDash([3, 3]);
+            context.strokeStyle = style.getPropertyValue("--quiet");
+            context.beginPath();
+            ends.slice(-2).forEach((at, k) => context[k ? "lineTo" : "moveTo"](...camera.toScreen(at)));
+            context.stroke();
+            context.setLineDash([]);
+            for (const [k, point] of points.entries()) {
+                const [x, y] = camera.toScreen(point.at);
+                context.fillStyle = k ? style.getPropertyValue("--panel") : style.getPropertyValue("--accent");
+                context.strokeStyle = style.getPropertyValue("--accent");
+                if (Math.hypot(...point.out) > 0 && k === points.length - 1) {
+                    const [a, b] = [
+                        camera.toScreen([point.at[0] + point.in[0], point.at[1] + point.in[1]]),
+                        camera.toScreen([point.at[0] + point.out[0], point.at[1] + point.out[1]]),
+                    ];
+                    context.beginPath();
+                    context.moveTo(...a);
+                    context.lineTo(...b);
+                    context.stroke();
+                }
+                context.beginPath();
+                const near =
+                    k === 0 &&
+                    points.length > 1 &&
+                    pointer &&
+                    Math.hypot(pointer[0] - point.at[0], pointer[1] - point.at[1]) <= reach;
+                context.arc(x, y, near ? 7 : 4, 0, 2 * Math.PI);
+                context.fill();
+                context.stroke();
+            }
+        },
+    };
 }
 
 /** @type {Tool[]} */
 export const POINT_TOOLS = [
-  pointTool({
-    name: "pen",
-    key: "p",
-    title: "Pen",
-    icon: "pen",
-    help: "Click for a corner, drag for a smooth point with a tangent. Enter ends the curve, a click on its first point closes it.",
-    make: pen,
-    handles: true,
-  }),
-  pointTool({
-    name: "curve",
-    key: "c",
-    title: "Curve through points",
-    icon: "curve",
-    help: "Click the points that a smooth curve (Catmull-Rom) runs through. Enter ends it, a click on the first point closes it.",
-    make: listed("catmull_rom", 2, 3),
-  }),
-  pointTool({
-    name: "spline",
-    key: "s",
-    title: "B-spline",
-    icon: "spline",
-    help: "Click the control points of a B-spline, four or more. Enter ends it, a click on the first point closes it.",
-    make: listed("bspline", 4, 3),
-  }),
-  pointTool({
-    name: "line",
-    key: "l",
-    title: "Line",
-    icon: "line",
-    help: "Click the corners of a line. Enter ends it, a click on the first point closes it.",
-    make: line,
-  }),
+    pointTool({
+        name: "pen",
+        key: "p",
+        title: "Pen",
+        icon: "pen",
+        help: "Click for a corner, drag for a smooth point with a tangent. Enter ends the curve, a click on its first point closes it.",
+        make: pen,
+        handles: true,
+    }),
+    pointTool({
+        name: "curve",
+        key: "c",
+        title: "Curve through points",
+        icon: "curve",
+        help: "Click the points that a smooth curve (Catmull-Rom) runs through. Enter ends it, a click on the first point closes it.",
+        make: listed("catmull_rom", 2, 3),
+    }),
+    pointTool({
+        name: "spline",
+        key: "s",
+        title: "B-spline",
+        icon: "spline",
+        help: "Click the control points of a B-spline, four or more. Enter ends it, a click on the first point closes it.",
+        make: listed("bspline", 4, 3),
+    }),
+    pointTool({
+        name: "line",
+        key: "l",
+        title: "Line",
+        icon: "line",
+        help: "Click the corners of a line. Enter ends it, a click on the first point closes it.",
+        make: line,
+    }),
 ];

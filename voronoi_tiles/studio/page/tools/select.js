@@ -33,13 +33,17 @@ const bare = ({ site, stroke }) => ({ site, stroke });
  * @returns {Design}
  */
 function changeNodes(design, nodes, change) {
-  for (const entry of entriesOf(design)) {
-    const own = nodes.filter((node) => same(node, entry.ref)).map((node) => node.node);
-    if (own.length) {
-      design = replaceStroke(design, entry.ref, change(design.site[entry.ref.site].strokes[entry.ref.stroke], entry, own));
+    for (const entry of entriesOf(design)) {
+        const own = nodes.filter((node) => same(node, entry.ref)).map((node) => node.node);
+        if (own.length) {
+            design = replaceStroke(
+                design,
+                entry.ref,
+                change(design.site[entry.ref.site].strokes[entry.ref.stroke], entry, own),
+            );
+        }
     }
-  }
-  return design;
+    return design;
 }
 
 /**
@@ -51,15 +55,15 @@ function changeNodes(design, nodes, change) {
  * @returns {Design}
  */
 export function moved(design, { strokes, nodes }, [dx, dy], alone = false) {
-  if (!nodes.length) {
-    return moveStrokes(design, strokes, [dx, dy]);
-  }
-  return changeNodes(design, nodes, (stroke, entry, own) => {
-    const moves = entry.nodes
-      .filter((node) => own.includes(node.node))
-      .map((node) => ({ node: node.node, to: /** @type {Point} */ ([node.at[0] + dx, node.at[1] + dy]) }));
-    return moveNodes(stroke, entry.placement, moves, { alone });
-  });
+    if (!nodes.length) {
+        return moveStrokes(design, strokes, [dx, dy]);
+    }
+    return changeNodes(design, nodes, (stroke, entry, own) => {
+        const moves = entry.nodes
+            .filter((node) => own.includes(node.node))
+            .map((node) => ({ node: node.node, to: /** @type {Point} */ ([node.at[0] + dx, node.at[1] + dy]) }));
+        return moveNodes(stroke, entry.placement, moves, { alone });
+    });
 }
 
 /**
@@ -70,26 +74,26 @@ export function moved(design, { strokes, nodes }, [dx, dy], alone = false) {
  * @returns {Design}
  */
 export function without(design, { strokes, nodes }, cut = false) {
-  if (!nodes.length) {
-    return removeStrokes(design, strokes);
-  }
-  /** @type {Ref[]} */
-  const gone = [];
-  for (const entry of entriesOf(design)) {
-    const own = nodes.filter((node) => same(node, entry.ref)).map((node) => node.node);
-    if (own.length) {
-      const [first, ...rest] = deleteNodes(design.site[entry.ref.site].strokes[entry.ref.stroke], own, { cut });
-      if (first) {
-        design = replaceStroke(design, entry.ref, first);
-      } else {
-        gone.push(entry.ref);
-      }
-      for (const part of rest) {
-        design = addStroke(design, entry.ref.site, part);
-      }
+    if (!nodes.length) {
+        return removeStrokes(design, strokes);
     }
-  }
-  return gone.length ? removeStrokes(design, gone) : design;
+    /** @type {Ref[]} */
+    const gone = [];
+    for (const entry of entriesOf(design)) {
+        const own = nodes.filter((node) => same(node, entry.ref)).map((node) => node.node);
+        if (own.length) {
+            const [first, ...rest] = deleteNodes(design.site[entry.ref.site].strokes[entry.ref.stroke], own, { cut });
+            if (first) {
+                design = replaceStroke(design, entry.ref, first);
+            } else {
+                gone.push(entry.ref);
+            }
+            for (const part of rest) {
+                design = addStroke(design, entry.ref.site, part);
+            }
+        }
+    }
+    return gone.length ? removeStrokes(design, gone) : design;
 }
 
 /**
@@ -97,10 +101,10 @@ export function without(design, { strokes, nodes }, cut = false) {
  * @param {Hands} hands
  */
 export function shownNodes({ entries, store }) {
-  const { strokes } = store.state.selection;
-  return entries()
-    .filter((entry) => strokes.some((ref) => same(ref, entry.ref)))
-    .flatMap((entry) => entry.nodes.map((node) => ({ ...node, ref: entry.ref })));
+    const { strokes } = store.state.selection;
+    return entries()
+        .filter((entry) => strokes.some((ref) => same(ref, entry.ref)))
+        .flatMap((entry) => entry.nodes.map((node) => ({ ...node, ref: entry.ref })));
 }
 
 /** @type {{kind: "" | "nodes" | "strokes" | "box" | "pull", from: Point, to: Point, moved: boolean, node: any, add: boolean}} */
@@ -116,129 +120,161 @@ const onAxis = ([dx, dy]) => (Math.abs(dx) > Math.abs(dy) ? [dx, 0] : [0, dy]);
 
 /** @type {Tool} */
 export const select = {
-  name: "select",
-  key: "v",
-  title: "Select",
-  icon: "select",
-  cursor: "default",
-  help: "Click a stroke, drag its points. Double click puts a point onto a stroke, or makes a corner smooth.",
-  down(touch, hands) {
-    const { store } = hands;
-    const { selection } = store.state;
-    const node = nearestNode(shownNodes(hands), touch.raw, touch.reach);
-    if (node) {
-      const ref = { ...bare(node.ref), node: node.node };
-      const has = selection.nodes.some((other) => same(other, ref) && other.node === ref.node);
-      const nodes = touch.shift ? (has ? selection.nodes.filter((o) => !(same(o, ref) && o.node === ref.node)) : [...selection.nodes, ref]) : has ? selection.nodes : [ref];
-      store.set({ selection: { strokes: selection.strokes, nodes } });
-      drag = { ...still, kind: touch.alt && node.role === "anchor" ? "pull" : "nodes", from: node.at, node };
-      return;
-    }
-    const { motions, lattice } = hands.symmetry();
-    const own = nearestStroke(hands.entries(), touch.raw, touch.reach);
-    const hit = own ?? nearestCopy(hands.entries(), motions, lattice, touch.raw, touch.reach);
-    if (hit) {
-      const ref = bare(hit.ref);
-      const has = selection.strokes.some((other) => same(other, ref));
-      const strokes = touch.shift ? (has ? selection.strokes.filter((other) => !same(other, ref)) : [...selection.strokes, ref]) : has ? selection.strokes : [ref];
-      store.set({ selection: { strokes, nodes: [] }, site: ref.site });
-      // A copy leads to its stroke, which is dragged by itself.
-      drag = own ? { ...still, kind: "strokes", from: touch.raw } : still;
-      return;
-    }
-    if (!touch.shift) {
-      store.set({ selection: NOTHING });
-    }
-    drag = { ...still, kind: "box", from: touch.raw, to: touch.raw, add: touch.shift };
-  },
-  move(touch, hands, held) {
-    if (!held || !drag.kind) {
-      return;
-    }
-    const { store } = hands;
-    const place = drag.kind === "strokes" ? touch.raw : touch.at;
-    drag = { ...drag, to: drag.kind === "box" ? touch.raw : place };
-    const far = Math.hypot(drag.to[0] - drag.from[0], drag.to[1] - drag.from[1]) > touch.reach / 4;
-    if (!drag.moved && !far) {
-      return;
-    }
-    drag.moved = true;
-    if (drag.kind === "box") {
-      hands.redraw();
-      return;
-    }
-    let by = /** @type {Point} */ ([drag.to[0] - drag.from[0], drag.to[1] - drag.from[1]]);
-    if (touch.shift) {
-      by = onAxis(by);
-    }
-    by = rounded(by, 1 / hands.camera.scale);
-    if (drag.kind === "pull") {
-      const { node } = drag;
-      store.preview((design) =>
-        changeNodes(design, [{ ...bare(node.ref), node: node.node }], (stroke, entry) => pullHandles(stroke, entry.placement, node.node, touch.raw)),
-      );
-    } else {
-      store.preview((design) => moved(design, store.state.selection, by, touch.alt));
-    }
-  },
-  up(touch, hands) {
-    const { store } = hands;
-    const { kind, moved: far } = drag;
-    if (kind === "box" && far) {
-      const [x, y] = [drag.from, touch.raw];
-      const box = /** @type {import("../model/plane.js").Box} */ ([Math.min(x[0], y[0]), Math.min(x[1], y[1]), Math.max(x[0], y[0]), Math.max(x[1], y[1])]);
-      const old = drag.add ? store.state.selection : NOTHING;
-      const nodes = nodesIn(shownNodes(hands), box);
-      const strokes = strokesIn(hands.entries(), box).filter((ref) => !old.strokes.some((other) => same(other, ref)));
-      store.set({
-        selection: nodes.length && old.strokes.length ? { strokes: old.strokes, nodes: [...old.nodes, ...nodes] } : { strokes: [...old.strokes, ...strokes], nodes: [] },
-      });
-    } else if (far && store.state.dragging) {
-      const design = store.state.design;
-      store.edit(kind === "strokes" ? "move" : "move point", () => design);
-    }
-    drag = still;
-    hands.redraw();
-  },
-  twice(touch, hands) {
-    const { store } = hands;
-    const node = nearestNode(shownNodes(hands), touch.raw, touch.reach);
-    if (node && node.role === "anchor") {
-      store.edit("smooth or corner", (design) =>
-        changeNodes(design, [{ ...bare(node.ref), node: node.node }], (stroke) => toggleSmooth(stroke, node.node)),
-      );
-      return;
-    }
-    const hit = nearestStroke(hands.entries(), touch.raw, touch.reach);
-    if (hit) {
-      store.edit("insert point", (design) =>
-        replaceStroke(design, bare(hit.ref), insertNode(design.site[hit.ref.site].strokes[hit.ref.stroke], hit.piece, hit.t)),
-        { selection: { strokes: [bare(hit.ref)], nodes: [] } },
-      );
-    }
-  },
-  cancel(hands) {
-    const { store } = hands;
-    if (drag.kind && drag.moved) {
-      drag = still;
-      store.cancel();
-      return true;
-    }
-    const { selection } = store.state;
-    if (selection.nodes.length || selection.strokes.length) {
-      store.set({ selection: selection.nodes.length ? { strokes: selection.strokes, nodes: [] } : NOTHING });
-      return true;
-    }
-    return false;
-  },
-  draw(context, { camera }) {
-    if (drag.kind === "box" && drag.moved) {
-      const [a, b] = [camera.toScreen(drag.from), camera.toScreen(drag.to)];
-      const style = getComputedStyle(document.documentElement);
-      context.strokeStyle = style.getPropertyValue("--accent");
-      context.setLineDash([4, 3]);
-      context.strokeRect(a[0], a[1], b[0] - a[0], b[1] - a[1]);
-      context.setLineDash([]);
-    }
-  },
+    name: "select",
+    key: "v",
+    title: "Select",
+    icon: "select",
+    cursor: "default",
+    help: "Click a stroke, drag its points. Double click puts a point onto a stroke, or makes a corner smooth.",
+    down(touch, hands) {
+        const { store } = hands;
+        const { selection } = store.state;
+        const node = nearestNode(shownNodes(hands), touch.raw, touch.reach);
+        if (node) {
+            const ref = { ...bare(node.ref), node: node.node };
+            const has = selection.nodes.some((other) => same(other, ref) && other.node === ref.node);
+            const nodes = touch.shift
+                ? has
+                    ? selection.nodes.filter((o) => !(same(o, ref) && o.node === ref.node))
+                    : [...selection.nodes, ref]
+                : has
+                  ? selection.nodes
+                  : [ref];
+            store.set({ selection: { strokes: selection.strokes, nodes } });
+            drag = { ...still, kind: touch.alt && node.role === "anchor" ? "pull" : "nodes", from: node.at, node };
+            return;
+        }
+        const { motions, lattice } = hands.symmetry();
+        const own = nearestStroke(hands.entries(), touch.raw, touch.reach);
+        const hit = own ?? nearestCopy(hands.entries(), motions, lattice, touch.raw, touch.reach);
+        if (hit) {
+            const ref = bare(hit.ref);
+            const has = selection.strokes.some((other) => same(other, ref));
+            const strokes = touch.shift
+                ? has
+                    ? selection.strokes.filter((other) => !same(other, ref))
+                    : [...selection.strokes, ref]
+                : has
+                  ? selection.strokes
+                  : [ref];
+            store.set({ selection: { strokes, nodes: [] }, site: ref.site });
+            // A copy leads to its stroke, which is dragged by itself.
+            drag = own ? { ...still, kind: "strokes", from: touch.raw } : still;
+            return;
+        }
+        if (!touch.shift) {
+            store.set({ selection: NOTHING });
+        }
+        drag = { ...still, kind: "box", from: touch.raw, to: touch.raw, add: touch.shift };
+    },
+    move(touch, hands, held) {
+        if (!held || !drag.kind) {
+            return;
+        }
+        const { store } = hands;
+        const place = drag.kind === "strokes" ? touch.raw : touch.at;
+        drag = { ...drag, to: drag.kind === "box" ? touch.raw : place };
+        const far = Math.hypot(drag.to[0] - drag.from[0], drag.to[1] - drag.from[1]) > touch.reach / 4;
+        if (!drag.moved && !far) {
+            return;
+        }
+        drag.moved = true;
+        if (drag.kind === "box") {
+            hands.redraw();
+            return;
+        }
+        let by = /** @type {Point} */ ([drag.to[0] - drag.from[0], drag.to[1] - drag.from[1]]);
+        if (touch.shift) {
+            by = onAxis(by);
+        }
+        by = rounded(by, 1 / hands.camera.scale);
+        if (drag.kind === "pull") {
+            const { node } = drag;
+            store.preview((design) =>
+                changeNodes(design, [{ ...bare(node.ref), node: node.node }], (stroke, entry) =>
+                    pullHandles(stroke, entry.placement, node.node, touch.raw),
+                ),
+            );
+        } else {
+            store.preview((design) => moved(design, store.state.selection, by, touch.alt));
+        }
+    },
+    up(touch, hands) {
+        const { store } = hands;
+        const { kind, moved: far } = drag;
+        if (kind === "box" && far) {
+            const [x, y] = [drag.from, touch.raw];
+            const box = /** @type {import("../model/plane.js").Box} */ ([
+                Math.min(x[0], y[0]),
+                Math.min(x[1], y[1]),
+                Math.max(x[0], y[0]),
+                Math.max(x[1], y[1]),
+            ]);
+            const old = drag.add ? store.state.selection : NOTHING;
+            const nodes = nodesIn(shownNodes(hands), box);
+            const strokes = strokesIn(hands.entries(), box).filter(
+                (ref) => !old.strokes.some((other) => same(other, ref)),
+            );
+            store.set({
+                selection:
+                    nodes.length && old.strokes.length
+                        ? { strokes: old.strokes, nodes: [...old.nodes, ...nodes] }
+                        : { strokes: [...old.strokes, ...strokes], nodes: [] },
+            });
+        } else if (far && store.state.dragging) {
+            const design = store.state.design;
+            store.edit(kind === "strokes" ? "move" : "move point", () => design);
+        }
+        drag = still;
+        hands.redraw();
+    },
+    twice(touch, hands) {
+        const { store } = hands;
+        const node = nearestNode(shownNodes(hands), touch.raw, touch.reach);
+        if (node && node.role === "anchor") {
+            store.edit("smooth or corner", (design) =>
+                changeNodes(design, [{ ...bare(node.ref), node: node.node }], (stroke) =>
+                    toggleSmooth(stroke, node.node),
+                ),
+            );
+            return;
+        }
+        const hit = nearestStroke(hands.entries(), touch.raw, touch.reach);
+        if (hit) {
+            store.edit(
+                "insert point",
+                (design) =>
+                    replaceStroke(
+                        design,
+                        bare(hit.ref),
+                        insertNode(design.site[hit.ref.site].strokes[hit.ref.stroke], hit.piece, hit.t),
+                    ),
+                { selection: { strokes: [bare(hit.ref)], nodes: [] } },
+            );
+        }
+    },
+    cancel(hands) {
+        const { store } = hands;
+        if (drag.kind && drag.moved) {
+            drag = still;
+            store.cancel();
+            return true;
+        }
+        const { selection } = store.state;
+        if (selection.nodes.length || selection.strokes.length) {
+            store.set({ selection: selection.nodes.length ? { strokes: selection.strokes, nodes: [] } : NOTHING });
+            return true;
+        }
+        return false;
+    },
+    draw(context, { camera }) {
+        if (drag.kind === "box" && drag.moved) {
+            const [a, b] = [camera.toScreen(drag.from), camera.toScreen(drag.to)];
+            const style = getComputedStyle(document.documentElement);
+            context.strokeStyle = style.getPropertyValue("--accent");
+            context.setLineDash([4, 3]);
+            context.strokeRect(a[0], a[1], b[0] - a[0], b[1] - a[1]);
+            context.setLineDash([]);
+        }
+    },
 };

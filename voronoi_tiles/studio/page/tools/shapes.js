@@ -19,35 +19,35 @@ import { placementOf, unplace } from "../model/strokes.js";
  * @param {"edit" | "preview"} [how]
  */
 function add(hands, label, make, how = "edit") {
-  const { store } = hands;
-  const { site } = store.state;
-  const change = (/** @type {any} */ design) => {
-    const placement = placementOf(design.site[site], {});
-    const stroke = make((at) => unplace(placement, at), 1 / Math.hypot(...placement.a));
-    return stroke ? addStroke(design, site, stroke) : design;
-  };
-  if (how === "preview") {
-    store.preview(change);
-  } else {
-    store.edit(label, change);
-    const count = store.settled.site[site].strokes.length;
-    store.set({ selection: { strokes: [{ site, stroke: count - 1 }], nodes: [] } });
-  }
+    const { store } = hands;
+    const { site } = store.state;
+    const change = (/** @type {any} */ design) => {
+        const placement = placementOf(design.site[site], {});
+        const stroke = make((at) => unplace(placement, at), 1 / Math.hypot(...placement.a));
+        return stroke ? addStroke(design, site, stroke) : design;
+    };
+    if (how === "preview") {
+        store.preview(change);
+    } else {
+        store.edit(label, change);
+        const count = store.settled.site[site].strokes.length;
+        store.set({ selection: { strokes: [{ site, stroke: count - 1 }], nodes: [] } });
+    }
 }
 
 /** @type {Tool} */
 export const point = {
-  name: "point",
-  key: "d",
-  other: ".",
-  title: "Point",
-  icon: "point",
-  cursor: "crosshair",
-  draws: true,
-  help: "Click where an isolated point shall be.",
-  up(touch, hands) {
-    add(hands, "point", (unplaced) => ({ point: unplaced(touch.at) }));
-  },
+    name: "point",
+    key: "d",
+    other: ".",
+    title: "Point",
+    icon: "point",
+    cursor: "crosshair",
+    draws: true,
+    help: "Click where an isolated point shall be.",
+    up(touch, hands) {
+        add(hands, "point", (unplaced) => ({ point: unplaced(touch.at) }));
+    },
 };
 
 /** @type {Point | null} */
@@ -55,49 +55,54 @@ let middle = null;
 
 /** @type {Tool} */
 export const circle = {
-  name: "circle",
-  key: "o",
-  title: "Circle",
-  icon: "circle",
-  cursor: "crosshair",
-  draws: true,
-  help: "Drag from the middle to the rim, or click both.",
-  down(touch, hands) {
-    if (middle) {
-      this.up?.(touch, hands);
-      middle = null;
-      return;
-    }
-    middle = touch.at;
-  },
-  move(touch, hands) {
-    if (!middle) {
-      return;
-    }
-    const centre = middle;
-    const radius = Math.hypot(touch.at[0] - centre[0], touch.at[1] - centre[1]);
-    if (radius > touch.reach / 4) {
-      add(hands, "circle", (unplaced, factor) => ({ circle: unplaced(centre), radius: radius * factor }), "preview");
-    }
-  },
-  up(touch, hands) {
-    // A click without a drag: the rim is clicked next.
-    const centre = middle;
-    const radius = centre ? Math.hypot(touch.at[0] - centre[0], touch.at[1] - centre[1]) : 0;
-    if (centre && radius > touch.reach / 2) {
-      middle = null;
-      add(hands, "circle", (unplaced, factor) => ({ circle: unplaced(centre), radius: radius * factor }));
-    }
-  },
-  cancel(hands) {
-    const had = middle !== null;
-    middle = null;
-    hands.store.cancel();
-    return had;
-  },
-  leave() {
-    middle = null;
-  },
+    name: "circle",
+    key: "o",
+    title: "Circle",
+    icon: "circle",
+    cursor: "crosshair",
+    draws: true,
+    help: "Drag from the middle to the rim, or click both.",
+    down(touch, hands) {
+        if (middle) {
+            this.up?.(touch, hands);
+            middle = null;
+            return;
+        }
+        middle = touch.at;
+    },
+    move(touch, hands) {
+        if (!middle) {
+            return;
+        }
+        const centre = middle;
+        const radius = Math.hypot(touch.at[0] - centre[0], touch.at[1] - centre[1]);
+        if (radius > touch.reach / 4) {
+            add(
+                hands,
+                "circle",
+                (unplaced, factor) => ({ circle: unplaced(centre), radius: radius * factor }),
+                "preview",
+            );
+        }
+    },
+    up(touch, hands) {
+        // A click without a drag: the rim is clicked next.
+        const centre = middle;
+        const radius = centre ? Math.hypot(touch.at[0] - centre[0], touch.at[1] - centre[1]) : 0;
+        if (centre && radius > touch.reach / 2) {
+            middle = null;
+            add(hands, "circle", (unplaced, factor) => ({ circle: unplaced(centre), radius: radius * factor }));
+        }
+    },
+    cancel(hands) {
+        const had = middle !== null;
+        middle = null;
+        hands.store.cancel();
+        return had;
+    },
+    leave() {
+        middle = null;
+    },
 };
 
 /** @type {Point[]} */
@@ -105,43 +110,46 @@ let trail = [];
 
 /** @type {Tool} */
 export const freehand = {
-  name: "freehand",
-  key: "b",
-  title: "Freehand",
-  icon: "freehand",
-  cursor: "crosshair",
-  help: "Draw while the button is held: what is drawn becomes few smooth curves.",
-  down(touch) {
-    trail = [touch.raw];
-  },
-  move(touch, hands, held) {
-    if (held && trail.length) {
-      trail = [...trail, ...touch.trail];
-      hands.redraw();
-    }
-  },
-  up(touch, hands) {
-    const drawn = trail;
-    trail = [];
-    const length = drawn.reduce((sum, at, k) => sum + (k ? Math.hypot(at[0] - drawn[k - 1][0], at[1] - drawn[k - 1][1]) : 0), 0);
-    if (length > touch.reach) {
-      add(hands, "freehand", (unplaced, factor) => fit(drawn.map(unplaced), (2 / hands.camera.scale) * factor));
-    }
-    hands.redraw();
-  },
-  cancel() {
-    const had = trail.length > 0;
-    trail = [];
-    return had;
-  },
-  draw(context, { camera }) {
-    if (trail.length > 1) {
-      context.strokeStyle = getComputedStyle(document.documentElement).getPropertyValue("--accent");
-      context.lineWidth = 2;
-      context.beginPath();
-      trail.forEach((at, k) => context[k ? "lineTo" : "moveTo"](...camera.toScreen(at)));
-      context.stroke();
-      context.lineWidth = 1;
-    }
-  },
+    name: "freehand",
+    key: "b",
+    title: "Freehand",
+    icon: "freehand",
+    cursor: "crosshair",
+    help: "Draw while the button is held: what is drawn becomes few smooth curves.",
+    down(touch) {
+        trail = [touch.raw];
+    },
+    move(touch, hands, held) {
+        if (held && trail.length) {
+            trail = [...trail, ...touch.trail];
+            hands.redraw();
+        }
+    },
+    up(touch, hands) {
+        const drawn = trail;
+        trail = [];
+        const length = drawn.reduce(
+            (sum, at, k) => sum + (k ? Math.hypot(at[0] - drawn[k - 1][0], at[1] - drawn[k - 1][1]) : 0),
+            0,
+        );
+        if (length > touch.reach) {
+            add(hands, "freehand", (unplaced, factor) => fit(drawn.map(unplaced), (2 / hands.camera.scale) * factor));
+        }
+        hands.redraw();
+    },
+    cancel() {
+        const had = trail.length > 0;
+        trail = [];
+        return had;
+    },
+    draw(context, { camera }) {
+        if (trail.length > 1) {
+            context.strokeStyle = getComputedStyle(document.documentElement).getPropertyValue("--accent");
+            context.lineWidth = 2;
+            context.beginPath();
+            trail.forEach((at, k) => context[k ? "lineTo" : "moveTo"](...camera.toScreen(at)));
+            context.stroke();
+            context.lineWidth = 1;
+        }
+    },
 };

@@ -16,9 +16,16 @@ const COPIES_MAX = 600;
 
 /** The colours, as the style sheet has them. */
 function colours() {
-  const style = getComputedStyle(document.documentElement);
-  const of = (/** @type {string} */ name) => style.getPropertyValue(name).trim();
-  return { accent: of("--accent"), text: of("--text"), quiet: of("--quiet"), panel: of("--panel"), line: of("--line"), bad: of("--bad") };
+    const style = getComputedStyle(document.documentElement);
+    const of = (/** @type {string} */ name) => style.getPropertyValue(name).trim();
+    return {
+        accent: of("--accent"),
+        text: of("--text"),
+        quiet: of("--quiet"),
+        panel: of("--panel"),
+        line: of("--line"),
+        bad: of("--bad"),
+    };
 }
 
 /**
@@ -26,22 +33,22 @@ function colours() {
  * @param {readonly Entry[]} entries
  */
 export function pathOf(entries) {
-  const path = new Path2D();
-  for (const { kind, cubics } of entries) {
-    for (let k = 0; k < cubics.length; k += 8) {
-      const c = cubics.subarray(k, k + 8);
-      if (kind === "point") {
-        path.moveTo(c[0], c[1]);
-        path.lineTo(c[0], c[1]);
-        continue;
-      }
-      if (k === 0 || c[0] !== cubics[k - 2] || c[1] !== cubics[k - 1]) {
-        path.moveTo(c[0], c[1]);
-      }
-      path.bezierCurveTo(c[2], c[3], c[4], c[5], c[6], c[7]);
+    const path = new Path2D();
+    for (const { kind, cubics } of entries) {
+        for (let k = 0; k < cubics.length; k += 8) {
+            const c = cubics.subarray(k, k + 8);
+            if (kind === "point") {
+                path.moveTo(c[0], c[1]);
+                path.lineTo(c[0], c[1]);
+                continue;
+            }
+            if (k === 0 || c[0] !== cubics[k - 2] || c[1] !== cubics[k - 1]) {
+                path.moveTo(c[0], c[1]);
+            }
+            path.bezierCurveTo(c[2], c[3], c[4], c[5], c[6], c[7]);
+        }
     }
-  }
-  return path;
+    return path;
 }
 
 /**
@@ -51,19 +58,19 @@ export function pathOf(entries) {
  * @param {number} order
  */
 function centre(context, [x, y], order) {
-  const r = order === 2 ? 5 : 6;
-  context.beginPath();
-  if (order === 2) {
-    context.ellipse(x, y, 3, r, 0, 0, 2 * Math.PI);
-  } else {
-    for (let k = 0; k < order; ++k) {
-      const turn = (2 * Math.PI * k) / order - Math.PI / 2 + (order === 4 ? Math.PI / 4 : 0);
-      context[k ? "lineTo" : "moveTo"](x + r * Math.cos(turn), y + r * Math.sin(turn));
+    const r = order === 2 ? 5 : 6;
+    context.beginPath();
+    if (order === 2) {
+        context.ellipse(x, y, 3, r, 0, 0, 2 * Math.PI);
+    } else {
+        for (let k = 0; k < order; ++k) {
+            const turn = (2 * Math.PI * k) / order - Math.PI / 2 + (order === 4 ? Math.PI / 4 : 0);
+            context[k ? "lineTo" : "moveTo"](x + r * Math.cos(turn), y + r * Math.sin(turn));
+        }
+        context.closePath();
     }
-    context.closePath();
-  }
-  context.fill();
-  context.stroke();
+    context.fill();
+    context.stroke();
 }
 
 /**
@@ -72,39 +79,42 @@ function centre(context, [x, y], order) {
  * @param {ReturnType<typeof colours>} colour
  */
 function symmetry(context, { store, camera }, colour) {
-  const { design, tables, shown } = store.state;
-  const { centres, mirrors, glides } = elementsIn(design, tables, camera.box);
-  const strips = mirrors.length + glides.length;
-  if (strips > 400 || centres.length > 1500) {
-    return;
-  }
-  if (shown.region) {
-    const region = regionOf(design, tables);
-    context.globalAlpha = 0.1;
-    context.fillStyle = colour.accent;
-    context.beginPath();
-    region.forEach((at, k) => context[k ? "lineTo" : "moveTo"](...camera.toScreen(at)));
-    context.fill();
-    context.globalAlpha = 1;
-  }
-  context.strokeStyle = colour.accent;
-  context.globalAlpha = 0.75;
-  for (const [lines, dash] of /** @type {[(readonly [Point, Point])[], number[]][]} */ ([[mirrors, []], [glides, [7, 5]]])) {
-    context.setLineDash(dash);
-    context.beginPath();
-    for (const [from, to] of lines) {
-      context.moveTo(...camera.toScreen(from));
-      context.lineTo(...camera.toScreen(to));
+    const { design, tables, shown } = store.state;
+    const { centres, mirrors, glides } = elementsIn(design, tables, camera.box);
+    const strips = mirrors.length + glides.length;
+    if (strips > 400 || centres.length > 1500) {
+        return;
     }
-    context.stroke();
-  }
-  context.setLineDash([]);
-  context.globalAlpha = 1;
-  context.fillStyle = colour.accent;
-  context.strokeStyle = colour.panel;
-  for (const { at, order } of centres) {
-    centre(context, camera.toScreen(at), order);
-  }
+    if (shown.region) {
+        const region = regionOf(design, tables);
+        context.globalAlpha = 0.1;
+        context.fillStyle = colour.accent;
+        context.beginPath();
+        region.forEach((at, k) => context[k ? "lineTo" : "moveTo"](...camera.toScreen(at)));
+        context.fill();
+        context.globalAlpha = 1;
+    }
+    context.strokeStyle = colour.accent;
+    context.globalAlpha = 0.75;
+    for (const [lines, dash] of /** @type {[(readonly [Point, Point])[], number[]][]} */ ([
+        [mirrors, []],
+        [glides, [7, 5]],
+    ])) {
+        context.setLineDash(dash);
+        context.beginPath();
+        for (const [from, to] of lines) {
+            context.moveTo(...camera.toScreen(from));
+            context.lineTo(...camera.toScreen(to));
+        }
+        context.stroke();
+    }
+    context.setLineDash([]);
+    context.globalAlpha = 1;
+    context.fillStyle = colour.accent;
+    context.strokeStyle = colour.panel;
+    for (const { at, order } of centres) {
+        centre(context, camera.toScreen(at), order);
+    }
 }
 
 /**
@@ -113,22 +123,25 @@ function symmetry(context, { store, camera }, colour) {
  * @param {ReturnType<typeof colours>} colour
  */
 function grid(context, { camera }, colour) {
-  let step = 1;
-  while (step * camera.scale < 12) {
-    step *= 10;
-  }
-  const [x0, y0, x1, y1] = camera.box;
-  context.strokeStyle = colour.line;
-  for (const [first, last, axis] of [[x0, x1, 0], [y0, y1, 1]]) {
-    for (let k = Math.ceil(first / step); k <= last / step; ++k) {
-      context.globalAlpha = k % 10 ? 0.35 : 0.9;
-      context.beginPath();
-      context.moveTo(...camera.toScreen(axis ? [x0, k * step] : [k * step, y0]));
-      context.lineTo(...camera.toScreen(axis ? [x1, k * step] : [k * step, y1]));
-      context.stroke();
+    let step = 1;
+    while (step * camera.scale < 12) {
+        step *= 10;
     }
-  }
-  context.globalAlpha = 1;
+    const [x0, y0, x1, y1] = camera.box;
+    context.strokeStyle = colour.line;
+    for (const [first, last, axis] of [
+        [x0, x1, 0],
+        [y0, y1, 1],
+    ]) {
+        for (let k = Math.ceil(first / step); k <= last / step; ++k) {
+            context.globalAlpha = k % 10 ? 0.35 : 0.9;
+            context.beginPath();
+            context.moveTo(...camera.toScreen(axis ? [x0, k * step] : [k * step, y0]));
+            context.lineTo(...camera.toScreen(axis ? [x1, k * step] : [k * step, y1]));
+            context.stroke();
+        }
+    }
+    context.globalAlpha = 1;
 }
 
 /**
@@ -140,44 +153,47 @@ function grid(context, { camera }, colour) {
  * @param {ReturnType<typeof colours>} colour
  */
 function strokes(context, hands, motions, lattice, colour) {
-  const { camera, store, entries } = hands;
-  const { selection, shown, site } = store.state;
-  const all = entries();
-  const path = pathOf(all);
-  const pixel = 1 / camera.scale;
-  context.save();
-  context.lineCap = context.lineJoin = "round";
-  if (shown.copies) {
-    const cells = cellsIn(lattice, camera.box);
-    if (cells.length * motions.length <= COPIES_MAX) {
-      context.globalAlpha = 0.3;
-      context.strokeStyle = colour.text;
-      for (const [i, j] of cells) {
-        for (const { a, b, conj } of motions) {
-          camera.apply(context);
-          const [x, y] = [b[0] + i * lattice.a[0] + j * lattice.b[0], b[1] + i * lattice.a[1] + j * lattice.b[1]];
-          context.transform(a[0], a[1], conj ? a[1] : -a[1], conj ? -a[0] : a[0], x, y);
-          context.lineWidth = 1.2 * pixel;
-          context.stroke(path);
+    const { camera, store, entries } = hands;
+    const { selection, shown, site } = store.state;
+    const all = entries();
+    const path = pathOf(all);
+    const pixel = 1 / camera.scale;
+    context.save();
+    context.lineCap = context.lineJoin = "round";
+    if (shown.copies) {
+        const cells = cellsIn(lattice, camera.box);
+        if (cells.length * motions.length <= COPIES_MAX) {
+            context.globalAlpha = 0.3;
+            context.strokeStyle = colour.text;
+            for (const [i, j] of cells) {
+                for (const { a, b, conj } of motions) {
+                    camera.apply(context);
+                    const [x, y] = [
+                        b[0] + i * lattice.a[0] + j * lattice.b[0],
+                        b[1] + i * lattice.a[1] + j * lattice.b[1],
+                    ];
+                    context.transform(a[0], a[1], conj ? a[1] : -a[1], conj ? -a[0] : a[0], x, y);
+                    context.lineWidth = 1.2 * pixel;
+                    context.stroke(path);
+                }
+            }
+            context.globalAlpha = 1;
         }
-      }
-      context.globalAlpha = 1;
     }
-  }
-  camera.apply(context);
-  for (const entry of all) {
-    const own = pathOf([entry]);
-    const chosen = selection.strokes.some((ref) => ref.site === entry.ref.site && ref.stroke === entry.ref.stroke);
-    context.strokeStyle = colour.panel;
-    context.lineWidth = (entry.kind === "point" ? 8 : 4.5) * pixel;
-    context.stroke(own);
-    context.globalAlpha = entry.ref.site === site || all.length < 2 ? 1 : 0.8;
-    context.strokeStyle = chosen ? colour.accent : colour.text;
-    context.lineWidth = (entry.kind === "point" ? 6 : chosen ? 2.6 : 2) * pixel;
-    context.stroke(own);
-    context.globalAlpha = 1;
-  }
-  context.restore();
+    camera.apply(context);
+    for (const entry of all) {
+        const own = pathOf([entry]);
+        const chosen = selection.strokes.some((ref) => ref.site === entry.ref.site && ref.stroke === entry.ref.stroke);
+        context.strokeStyle = colour.panel;
+        context.lineWidth = (entry.kind === "point" ? 8 : 4.5) * pixel;
+        context.stroke(own);
+        context.globalAlpha = entry.ref.site === site || all.length < 2 ? 1 : 0.8;
+        context.strokeStyle = chosen ? colour.accent : colour.text;
+        context.lineWidth = (entry.kind === "point" ? 6 : chosen ? 2.6 : 2) * pixel;
+        context.stroke(own);
+        context.globalAlpha = 1;
+    }
+    context.restore();
 }
 
 /**
@@ -186,34 +202,36 @@ function strokes(context, hands, motions, lattice, colour) {
  * @param {ReturnType<typeof colours>} colour
  */
 function nodes(context, hands, colour) {
-  const { camera, store } = hands;
-  const { selection } = store.state;
-  const shown = shownNodes(hands);
-  context.strokeStyle = colour.accent;
-  context.beginPath();
-  for (const node of shown) {
-    if (node.role === "in" || node.role === "out" || node.role === "radius") {
-      const anchor = shown.find((other) => other.node === node.of && other.ref === node.ref);
-      if (anchor) {
-        context.moveTo(...camera.toScreen(anchor.at));
-        context.lineTo(...camera.toScreen(node.at));
-      }
-    }
-  }
-  context.stroke();
-  for (const node of shown) {
-    const [x, y] = camera.toScreen(node.at);
-    const chosen = selection.nodes.some((ref) => ref.site === node.ref.site && ref.stroke === node.ref.stroke && ref.node === node.node);
-    context.fillStyle = chosen ? colour.accent : colour.panel;
+    const { camera, store } = hands;
+    const { selection } = store.state;
+    const shown = shownNodes(hands);
+    context.strokeStyle = colour.accent;
     context.beginPath();
-    if (node.role === "anchor" && !node.smooth) {
-      context.rect(x - 4, y - 4, 8, 8);
-    } else {
-      context.arc(x, y, node.role === "anchor" || node.role === "centre" ? 4.5 : 3.5, 0, 2 * Math.PI);
+    for (const node of shown) {
+        if (node.role === "in" || node.role === "out" || node.role === "radius") {
+            const anchor = shown.find((other) => other.node === node.of && other.ref === node.ref);
+            if (anchor) {
+                context.moveTo(...camera.toScreen(anchor.at));
+                context.lineTo(...camera.toScreen(node.at));
+            }
+        }
     }
-    context.fill();
     context.stroke();
-  }
+    for (const node of shown) {
+        const [x, y] = camera.toScreen(node.at);
+        const chosen = selection.nodes.some(
+            (ref) => ref.site === node.ref.site && ref.stroke === node.ref.stroke && ref.node === node.node,
+        );
+        context.fillStyle = chosen ? colour.accent : colour.panel;
+        context.beginPath();
+        if (node.role === "anchor" && !node.smooth) {
+            context.rect(x - 4, y - 4, 8, 8);
+        } else {
+            context.arc(x, y, node.role === "anchor" || node.role === "centre" ? 4.5 : 3.5, 0, 2 * Math.PI);
+        }
+        context.fill();
+        context.stroke();
+    }
 }
 
 /**
@@ -225,54 +243,55 @@ function nodes(context, hands, colour) {
  * @param {import("../model/symmetry.js").Lattice} lattice
  */
 export function drawOverlay(context, hands, toolbox, motions, lattice) {
-  const { camera, store } = hands;
-  const { shown, refusal } = store.state;
-  const colour = colours();
-  context.setTransform(camera.ratio, 0, 0, camera.ratio, 0, 0);
-  context.lineWidth = 1;
-  if (shown.grid) {
-    grid(context, hands, colour);
-  }
-  if (shown.cell) {
-    const { a, b } = lattice;
-    context.strokeStyle = colour.quiet;
-    context.beginPath();
-    [[0, 0], a, [a[0] + b[0], a[1] + b[1]], b].forEach((at, k) => context[k ? "lineTo" : "moveTo"](...camera.toScreen(/** @type {Point} */ (at))));
-    context.closePath();
-    context.stroke();
-  }
-  if (shown.elements) {
-    symmetry(context, hands, colour);
-  }
-  strokes(context, hands, motions, lattice, colour);
-  nodes(context, hands, colour);
-  if (refusal?.error.at) {
-    const [x, y] = camera.toScreen(refusal.error.at);
-    context.strokeStyle = colour.bad;
-    context.lineWidth = 2.5;
-    context.beginPath();
-    context.arc(x, y, 12, 0, 2 * Math.PI);
-    context.stroke();
+    const { camera, store } = hands;
+    const { shown, refusal } = store.state;
+    const colour = colours();
+    context.setTransform(camera.ratio, 0, 0, camera.ratio, 0, 0);
     context.lineWidth = 1;
-  }
-  toolbox.tool.draw?.(context, hands);
-  if (toolbox.snapped && toolbox.tool.draws) {
-    const [x, y] = camera.toScreen(toolbox.snapped.at);
-    context.strokeStyle = colour.accent;
-    context.strokeRect(x - 6, y - 6, 12, 12);
-    context.fillStyle = colour.text;
-    context.font = "12px system-ui, sans-serif";
-    context.fillText(toolbox.snapped.label, x + 11, y - 9);
-  }
-  if (toolbox.cross) {
-    const [x, y] = camera.toScreen(toolbox.cross);
-    context.strokeStyle = colour.text;
-    context.beginPath();
-    context.moveTo(x - 12, y);
-    context.lineTo(x + 12, y);
-    context.moveTo(x, y - 12);
-    context.lineTo(x, y + 12);
-    context.stroke();
-  }
+    if (shown.grid) {
+        grid(context, hands, colour);
+    }
+    if (shown.cell) {
+        const { a, b } = lattice;
+        context.strokeStyle = colour.quiet;
+        context.beginPath();
+        [[0, 0], a, [a[0] + b[0], a[1] + b[1]], b].forEach((at, k) =>
+            context[k ? "lineTo" : "moveTo"](...camera.toScreen(/** @type {Point} */ (at))),
+        );
+        context.closePath();
+        context.stroke();
+    }
+    if (shown.elements) {
+        symmetry(context, hands, colour);
+    }
+    strokes(context, hands, motions, lattice, colour);
+    nodes(context, hands, colour);
+    if (refusal?.error.at) {
+        const [x, y] = camera.toScreen(refusal.error.at);
+        context.strokeStyle = colour.bad;
+        context.lineWidth = 2.5;
+        context.beginPath();
+        context.arc(x, y, 12, 0, 2 * Math.PI);
+        context.stroke();
+        context.lineWidth = 1;
+    }
+    toolbox.tool.draw?.(context, hands);
+    if (toolbox.snapped && toolbox.tool.draws) {
+        const [x, y] = camera.toScreen(toolbox.snapped.at);
+        context.strokeStyle = colour.accent;
+        context.strokeRect(x - 6, y - 6, 12, 12);
+        context.fillStyle = colour.text;
+        context.font = "12px system-ui, sans-serif";
+        context.fillText(toolbox.snapped.label, x + 11, y - 9);
+    }
+    if (toolbox.cross) {
+        const [x, y] = camera.toScreen(toolbox.cross);
+        context.strokeStyle = colour.text;
+        context.beginPath();
+        context.moveTo(x - 12, y);
+        context.lineTo(x + 12, y);
+        context.moveTo(x, y - 12);
+        context.lineTo(x, y + 12);
+        context.stroke();
+    }
 }
-

@@ -18,227 +18,238 @@ import { drawOverlay } from "./overlay.js";
 const FLAT = 0.25;
 
 export class Stage {
-  camera = new Camera();
-  #store;
-  #overlay;
-  #context;
-  /** @type {Preview | null} */
-  #preview = null;
-  #frame = 0;
-  #fitted = false;
-  /** @type {Toolbox | null} */
-  toolbox = null;
-  /** @type {import("../tools/tool.js").Hands | null} */
-  hands = null;
-  /** @type {Map<string, {lattice: import("../model/symmetry.js").Lattice, motions: import("../model/symmetry.js").Motion[]}>} */
-  #symmetries = new Map();
-  /** @type {{design: any, resolved: any, scale: number, sites: any[]} | null} */
-  #sites = null;
-  /** @type {any} what the preview has drawn last */
-  #drawn = null;
-  /** @type {any} the sites that the preview could not draw */
-  #tooMuch = null;
-  /** @type {any} the last colouring that came */
-  #colouring = null;
-  /** @type {{image: ImageBitmap | null, opacity: number, size: number}} a picture that is traced, in the middle of the cell */
-  #trace = { image: null, opacity: 0.4, size: 1 };
+    camera = new Camera();
+    #store;
+    #overlay;
+    #context;
+    /** @type {Preview | null} */
+    #preview = null;
+    #frame = 0;
+    #fitted = false;
+    /** @type {Toolbox | null} */
+    toolbox = null;
+    /** @type {import("../tools/tool.js").Hands | null} */
+    hands = null;
+    /** @type {Map<string, {lattice: import("../model/symmetry.js").Lattice, motions: import("../model/symmetry.js").Motion[]}>} */
+    #symmetries = new Map();
+    /** @type {{design: any, resolved: any, scale: number, sites: any[]} | null} */
+    #sites = null;
+    /** @type {any} what the preview has drawn last */
+    #drawn = null;
+    /** @type {any} the sites that the preview could not draw */
+    #tooMuch = null;
+    /** @type {any} the last colouring that came */
+    #colouring = null;
+    /** @type {{image: ImageBitmap | null, opacity: number, size: number}} a picture that is traced, in the middle of the cell */
+    #trace = { image: null, opacity: 0.4, size: 1 };
 
-  /**
-   * @param {HTMLCanvasElement} picture
-   * @param {HTMLCanvasElement} overlay
-   * @param {Store} store
-   */
-  constructor(picture, overlay, store) {
-    this.#store = store;
-    this.#overlay = overlay;
-    this.#context = /** @type {CanvasRenderingContext2D} */ (overlay.getContext("2d"));
-    watchSize(overlay, ({ size, ratio, pixels }) => {
-      Object.assign(this.camera, { size, ratio, pixels });
-      if (!this.#fitted) {
-        this.fit();
-      }
-      this.redraw();
-    });
-    store.subscribe(["design", "exact", "refusal", "selection", "shown", "tables", "theme", "dragging"], () => this.redraw());
-    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.redraw());
-    this.#picture = picture;
-  }
-
-  #picture;
-
-  /**
-   * Draw the picture by WebGL, with the raster stage's shader.
-   * @param {string} shader
-   */
-  usePreview(shader) {
-    if (Preview.available) {
-      this.#preview = new Preview(this.#picture, shader, { changed: (state) => state === "restored" && this.redraw() });
+    /**
+     * @param {HTMLCanvasElement} picture
+     * @param {HTMLCanvasElement} overlay
+     * @param {Store} store
+     */
+    constructor(picture, overlay, store) {
+        this.#store = store;
+        this.#overlay = overlay;
+        this.#context = /** @type {CanvasRenderingContext2D} */ (overlay.getContext("2d"));
+        watchSize(overlay, ({ size, ratio, pixels }) => {
+            Object.assign(this.camera, { size, ratio, pixels });
+            if (!this.#fitted) {
+                this.fit();
+            }
+            this.redraw();
+        });
+        store.subscribe(["design", "exact", "refusal", "selection", "shown", "tables", "theme", "dragging"], () =>
+            this.redraw(),
+        );
+        matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.redraw());
+        this.#picture = picture;
     }
-    this.#picture.hidden = !this.#preview;
-    this.redraw();
-  }
 
-  /** The frame times of the preview, and what draws it; null without WebGL. */
-  bench() {
-    return this.#preview?.bench(this.#drawn) ?? null;
-  }
+    #picture;
 
-  get dark() {
-    const { theme } = this.#store.state;
-    return theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
-  }
-
-  /** The strokes as they are drawn. */
-  entries() {
-    const { design, exact } = this.#store.state;
-    return entriesOf(design, exact?.resolved);
-  }
-
-  /**
-   * The lattice and the motions of a design's group, the same objects while group and cell are.
-   * @param {import("../model/design.js").Design} [design] the one that is drawn
-   */
-  symmetry(design = this.#store.state.design) {
-    const { tables } = this.#store.state;
-    const key = JSON.stringify([design.group, design.cell]);
-    const found = this.#symmetries.get(key) ?? { lattice: latticeOf(design, tables), motions: motionsOf(design, tables) };
-    // The last two are kept: what is drawn, and what the exact outlines on the screen are of.
-    this.#symmetries.delete(key);
-    this.#symmetries.set(key, found);
-    if (this.#symmetries.size > 2) {
-      this.#symmetries.delete([...this.#symmetries.keys()][0]);
+    /**
+     * Draw the picture by WebGL, with the raster stage's shader.
+     * @param {string} shader
+     */
+    usePreview(shader) {
+        if (Preview.available) {
+            this.#preview = new Preview(this.#picture, shader, {
+                changed: (state) => state === "restored" && this.redraw(),
+            });
+        }
+        this.#picture.hidden = !this.#preview;
+        this.redraw();
     }
-    return found;
-  }
 
-  /** What the preview draws of each site, the same objects while strokes, symmetry and the scale of the window are. */
-  #scene() {
-    const { design, exact } = this.#store.state;
-    const { lattice, motions } = this.symmetry();
-    const old = this.#sites;
-    const scale = 2 ** Math.round(Math.log2(this.camera.scale));
-    if (!old || old.design !== design || old.resolved !== exact?.resolved || old.scale !== scale) {
-      const segments = segmentsOf(design, this.entries(), FLAT / scale);
-      const sites = segments.map((part) => ({ segments: part, cosets: cosets(motions, lattice, part) })).filter((site) => site.segments.length);
-      this.#sites = { design, resolved: exact?.resolved, scale, sites };
+    /** The frame times of the preview, and what draws it; null without WebGL. */
+    bench() {
+        return this.#preview?.bench(this.#drawn) ?? null;
     }
-    return this.#sites?.sites ?? [];
-  }
 
-  /** @param {Partial<{image: ImageBitmap | null, opacity: number, size: number}>} patch */
-  setTrace(patch) {
-    this.#trace = { ...this.#trace, ...patch };
-    this.redraw();
-  }
+    get dark() {
+        const { theme } = this.#store.state;
+        return theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+    }
 
-  /**
-   * @param {CanvasRenderingContext2D} context
-   * @param {any} lattice
-   */
-  #drawTrace(context, { a, b }) {
-    const { image, opacity, size } = this.#trace;
-    if (image) {
-      const width = size * Math.hypot(...a);
-      const height = (width * image.height) / image.width;
-      const [x, y] = this.camera.toScreen([(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]);
-      const { scale, ratio } = this.camera;
-      context.setTransform(ratio, 0, 0, ratio, 0, 0);
-      context.globalAlpha = opacity;
-      context.drawImage(image, x - (width * scale) / 2, y - (height * scale) / 2, width * scale, height * scale);
-      context.globalAlpha = 1;
+    /** The strokes as they are drawn. */
+    entries() {
+        const { design, exact } = this.#store.state;
+        return entriesOf(design, exact?.resolved);
     }
-  }
 
-  redraw() {
-    this.#frame ||= requestAnimationFrame(() => {
-      this.#frame = 0;
-      this.#draw();
-    });
-  }
+    /**
+     * The lattice and the motions of a design's group, the same objects while group and cell are.
+     * @param {import("../model/design.js").Design} [design] the one that is drawn
+     */
+    symmetry(design = this.#store.state.design) {
+        const { tables } = this.#store.state;
+        const key = JSON.stringify([design.group, design.cell]);
+        const found = this.#symmetries.get(key) ?? {
+            lattice: latticeOf(design, tables),
+            motions: motionsOf(design, tables),
+        };
+        // The last two are kept: what is drawn, and what the exact outlines on the screen are of.
+        this.#symmetries.delete(key);
+        this.#symmetries.set(key, found);
+        if (this.#symmetries.size > 2) {
+            this.#symmetries.delete([...this.#symmetries.keys()][0]);
+        }
+        return found;
+    }
 
-  #draw() {
-    const state = this.#store.state;
-    if (!state.tables || !state.design || !this.hands || !this.toolbox || this.camera.size[0] < 2) {
-      return;
+    /** What the preview draws of each site, the same objects while strokes, symmetry and the scale of the window are. */
+    #scene() {
+        const { design, exact } = this.#store.state;
+        const { lattice, motions } = this.symmetry();
+        const old = this.#sites;
+        const scale = 2 ** Math.round(Math.log2(this.camera.scale));
+        if (!old || old.design !== design || old.resolved !== exact?.resolved || old.scale !== scale) {
+            const segments = segmentsOf(design, this.entries(), FLAT / scale);
+            const sites = segments
+                .map((part) => ({ segments: part, cosets: cosets(motions, lattice, part) }))
+                .filter((site) => site.segments.length);
+            this.#sites = { design, resolved: exact?.resolved, scale, sites };
+        }
+        return this.#sites?.sites ?? [];
     }
-    const { camera } = this;
-    const [width, height] = camera.size.map((side) => Math.round(side * camera.ratio));
-    if (this.#overlay.width !== width || this.#overlay.height !== height) {
-      Object.assign(this.#overlay, { width, height });
-    }
-    const context = this.#context;
-    context.setTransform(1, 0, 0, 1, 0, 0);
-    context.clearRect(0, 0, width, height);
-    const { lattice, motions } = this.symmetry();
-    this.#colouring = state.exact?.colouring ?? this.#colouring;
-    const sites = this.#scene();
-    const hasPicture = state.shown.colours && sites.length > 0 && this.#drawPicture(lattice, motions, sites);
-    this.#picture.hidden = !hasPicture;
-    this.#drawTrace(context, lattice);
-    this.#outlines(context, state, state.shown.colours && !hasPicture);
-    drawOverlay(context, this.hands, this.toolbox, motions, lattice);
-  }
 
-  /**
-   * Draw the live picture; false where there is no WebGL, or more than it can draw: the outlines are the picture then.
-   * @param {import("../model/symmetry.js").Lattice} lattice
-   * @param {import("../model/symmetry.js").Motion[]} motions
-   * @param {any[]} sites
-   */
-  #drawPicture(lattice, motions, sites) {
-    if (!this.#preview || this.#tooMuch === sites) {
-      return false;
+    /** @param {Partial<{image: ImageBitmap | null, opacity: number, size: number}>} patch */
+    setTrace(patch) {
+        this.#trace = { ...this.#trace, ...patch };
+        this.redraw();
     }
-    const style = { dark: this.dark, border: 0, strokes: 0 };
-    this.#drawn = { lattice, motions, sites, camera: this.camera, colouring: this.#colouring, style };
-    try {
-      this.#preview.draw(this.#drawn);
-    } catch (error) {
-      console.warn(error);
-      this.#tooMuch = sites;
-      return false;
-    }
-    return true;
-  }
 
-  /**
-   * The exact outlines: whole lines where they are of what is drawn, grey and dashed where that has none.
-   * @param {CanvasRenderingContext2D} context
-   * @param {State} state
-   * @param {boolean} filled whether they are the picture
-   */
-  #outlines(context, { exact, refusal, shown }, filled) {
-    if (!exact || !shown.edges) {
-      return;
+    /**
+     * @param {CanvasRenderingContext2D} context
+     * @param {any} lattice
+     */
+    #drawTrace(context, { a, b }) {
+        const { image, opacity, size } = this.#trace;
+        if (image) {
+            const width = size * Math.hypot(...a);
+            const height = (width * image.height) / image.width;
+            const [x, y] = this.camera.toScreen([(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]);
+            const { scale, ratio } = this.camera;
+            context.setTransform(ratio, 0, 0, ratio, 0, 0);
+            context.globalAlpha = opacity;
+            context.drawImage(image, x - (width * scale) / 2, y - (height * scale) / 2, width * scale, height * scale);
+            context.globalAlpha = 1;
+        }
     }
-    const { lattice, motions } = this.symmetry(exact.design);
-    const style = getComputedStyle(document.documentElement);
-    drawOutlines(context, this.camera, lattice, motions, exact.tiles, {
-      scale: exact.scale,
-      dark: this.dark,
-      line: refusal ? 1 : 1.6,
-      colour: style.getPropertyValue(refusal ? "--quiet" : "--text").trim(),
-      ...(refusal ? { dash: [5, 4], opacity: 0.7 } : {}),
-      ...(filled ? { fill: exact.colouring ?? true } : {}),
-    });
-  }
 
-  /** @param {"cell" | "all" | "selection"} what */
-  fit(what = "cell") {
-    const { design, tables, selection } = this.#store.state;
-    if (!design || !tables || this.camera.size[0] < 2) {
-      return;
+    redraw() {
+        this.#frame ||= requestAnimationFrame(() => {
+            this.#frame = 0;
+            this.#draw();
+        });
     }
-    this.#fitted = true;
-    const { a, b } = this.symmetry().lattice;
-    const corners = [[0, 0], a, b, [a[0] + b[0], a[1] + b[1]]];
-    const xs = corners.map((at) => at[0]);
-    const ys = corners.map((at) => at[1]);
-    const cell = [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
-    const entries = this.entries().filter(
-      ({ ref }) => what !== "selection" || selection.strokes.some((other) => other.site === ref.site && other.stroke === ref.stroke),
-    );
-    this.camera.fit((what === "cell" ? null : boxOf(entries)) ?? cell, what === "cell" ? 0.55 : 0.72);
-    this.redraw();
-  }
+
+    #draw() {
+        const state = this.#store.state;
+        if (!state.tables || !state.design || !this.hands || !this.toolbox || this.camera.size[0] < 2) {
+            return;
+        }
+        const { camera } = this;
+        const [width, height] = camera.size.map((side) => Math.round(side * camera.ratio));
+        if (this.#overlay.width !== width || this.#overlay.height !== height) {
+            Object.assign(this.#overlay, { width, height });
+        }
+        const context = this.#context;
+        context.setTransform(1, 0, 0, 1, 0, 0);
+        context.clearRect(0, 0, width, height);
+        const { lattice, motions } = this.symmetry();
+        this.#colouring = state.exact?.colouring ?? this.#colouring;
+        const sites = this.#scene();
+        const hasPicture = state.shown.colours && sites.length > 0 && this.#drawPicture(lattice, motions, sites);
+        this.#picture.hidden = !hasPicture;
+        this.#drawTrace(context, lattice);
+        this.#outlines(context, state, state.shown.colours && !hasPicture);
+        drawOverlay(context, this.hands, this.toolbox, motions, lattice);
+    }
+
+    /**
+     * Draw the live picture; false where there is no WebGL, or more than it can draw: the outlines are the picture then.
+     * @param {import("../model/symmetry.js").Lattice} lattice
+     * @param {import("../model/symmetry.js").Motion[]} motions
+     * @param {any[]} sites
+     */
+    #drawPicture(lattice, motions, sites) {
+        if (!this.#preview || this.#tooMuch === sites) {
+            return false;
+        }
+        const style = { dark: this.dark, border: 0, strokes: 0 };
+        this.#drawn = { lattice, motions, sites, camera: this.camera, colouring: this.#colouring, style };
+        try {
+            this.#preview.draw(this.#drawn);
+        } catch (error) {
+            console.warn(error);
+            this.#tooMuch = sites;
+            return false;
+        }
+        return true;
+    }
+
+    /**
+     * The exact outlines: whole lines where they are of what is drawn, grey and dashed where that has none.
+     * @param {CanvasRenderingContext2D} context
+     * @param {State} state
+     * @param {boolean} filled whether they are the picture
+     */
+    #outlines(context, { exact, refusal, shown }, filled) {
+        if (!exact || !shown.edges) {
+            return;
+        }
+        const { lattice, motions } = this.symmetry(exact.design);
+        const style = getComputedStyle(document.documentElement);
+        drawOutlines(context, this.camera, lattice, motions, exact.tiles, {
+            scale: exact.scale,
+            dark: this.dark,
+            line: refusal ? 1 : 1.6,
+            colour: style.getPropertyValue(refusal ? "--quiet" : "--text").trim(),
+            ...(refusal ? { dash: [5, 4], opacity: 0.7 } : {}),
+            ...(filled ? { fill: exact.colouring ?? true } : {}),
+        });
+    }
+
+    /** @param {"cell" | "all" | "selection"} what */
+    fit(what = "cell") {
+        const { design, tables, selection } = this.#store.state;
+        if (!design || !tables || this.camera.size[0] < 2) {
+            return;
+        }
+        this.#fitted = true;
+        const { a, b } = this.symmetry().lattice;
+        const corners = [[0, 0], a, b, [a[0] + b[0], a[1] + b[1]]];
+        const xs = corners.map((at) => at[0]);
+        const ys = corners.map((at) => at[1]);
+        const cell = [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
+        const entries = this.entries().filter(
+            ({ ref }) =>
+                what !== "selection" ||
+                selection.strokes.some((other) => other.site === ref.site && other.stroke === ref.stroke),
+        );
+        this.camera.fit((what === "cell" ? null : boxOf(entries)) ?? cell, what === "cell" ? 0.55 : 0.72);
+        this.redraw();
+    }
 }
