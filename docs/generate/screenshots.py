@@ -16,7 +16,7 @@ sys.path.append(str(DOCS.parent / "tests"))
 from helpers.page import SOFTWARE_GL  # noqa: E402 - from the tests
 from helpers.studio import Window, opened, running  # noqa: E402 - from the tests
 
-COLOURS = 26
+COLOURS = 24
 """How many colours the pictures have."""
 
 DESIGN = DOCS.parent / "examples" / "p4-hook.toml"
@@ -37,7 +37,7 @@ def main() -> None:
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
         chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=SOFTWARE_GL)
         shutil.copy(DESIGN, folder)
-        size = {"width": 1000, "height": 600}
+        size = {"width": 960, "height": 560}
         with (
             running(Path(folder), DESIGN.name) as studio,
             opened(chromium, studio, viewport=size, color_scheme="light") as window,
