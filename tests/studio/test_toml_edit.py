@@ -509,7 +509,7 @@ def test_comments_that_are_lost_are_said() -> None:
     assert "comments within it are gone" in result.notes[0]
 
 
-@pytest.mark.parametrize("value", [None, {"a": None}, [{1: 2}], "\ud800", object()], ids=repr)
+@pytest.mark.parametrize("value", [None, {"a": None}, [{1: 2}], "\ud800", b"bytes"], ids=repr)
 def test_what_toml_does_not_have_is_refused(value: object) -> None:
     """Nothing is written in its place."""
     with pytest.raises(DesignError):
