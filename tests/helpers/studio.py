@@ -48,7 +48,9 @@ def running(folder: Path, *arguments: str) -> Iterator[Studio]:
         try:
             assert url.startswith("http://127.0.0.1:"), url + (process.stderr.read() if process.stderr else "")
             yield Studio(process, url, folder)
-            assert process.poll() in (None, -signal.SIGKILL), f"it has ended by itself: {process.communicate()}"
+            assert process.poll() in (None, -signal.SIGKILL), (
+                f"it has ended by itself, {process.poll()}: {process.communicate()}"
+            )
         finally:
             process.terminate()
             process.communicate(timeout=20)

@@ -301,7 +301,7 @@ def test_links(chromium: Any, window: Window, tmp_path: Path) -> None:
         second.page.get_by_label("Or a link").fill(link)
         second.page.get_by_role("dialog").get_by_role("button", name="Open").click()
         second.page.wait_for_function("text => JSON.stringify(window.studio.design()) === text", arg=shared)
-        for cut in (fragment[:40], link_of({"site": 3})):  # type: ignore[dict-item]
+        for cut in (fragment[:40], link_of({"site": 3})):
             second.page.evaluate("link => { location.hash = link; }", cut)
             second.page.get_by_role("alert").get_by_text("It may have been cut off").wait_for()
             assert second.text == shared

@@ -20,7 +20,7 @@ cell = { a = 60 }
 name = "bird"
 strokes = [{ polyline = [[6.0, 9.0], [20.0, 4.0], [25.0, 18.0]] }]
 """
-JOB = {"sheet": "300x200mm", "kerf": 0.15, "preset": "lightburn", "edges": "pieces"}
+JOB: dict[str, Any] = {"sheet": "300x200mm", "kerf": 0.15, "preset": "lightburn", "edges": "pieces"}
 
 
 @pytest.fixture(scope="module")

@@ -280,6 +280,16 @@ def test_signals_end_it_in_good_order(
         assert all(map(is_gone, workers))
 
 
+@pytest.mark.skipif(not hasattr(signal, "SIGPIPE"), reason="no such signal here")
+def test_connections_that_break_end_nothing(tmp_path: Path) -> None:
+    """What tells a command that its reader has hung up tells the studio of one connection of many."""
+    with running(tmp_path) as studio:
+        studio.process.send_signal(signal.SIGPIPE)
+        with studio.page() as page:
+            assert told(page)["type"] == "opened"
+        assert studio.process.poll() is None
+
+
 @linux
 @pytest.mark.slow
 def test_a_worker_that_is_killed_is_replaced(studio: RunningStudio) -> None:

@@ -123,7 +123,13 @@ class _Server(uvicorn.Server):
 
 
 def _catch(loop: asyncio.AbstractEventLoop, end: Callable[[int], None]) -> None:
-    """Have signals end the studio, but those that it was started to ignore, as nohup does."""
+    """Have signals end the studio, but those that it was started to ignore, as nohup does.
+
+    SIGPIPE, which ends a command whose reader has seen enough, would end the studio where a browser hangs up while
+    something is written to it: that is an error of one connection alone.
+    """
+    if hasattr(signal, "SIGPIPE"):
+        signal.signal(signal.SIGPIPE, signal.SIG_IGN)
 
     def caught(number: int, _frame: Any = None) -> None:
         with suppress(RuntimeError):  # it has ended already
