@@ -69,6 +69,7 @@ export function lengthField(value, unit, change, attributes = {}) {
         }
         try {
             change(evaluate(input.value, unit));
+            input.defaultValue = input.value;
             input.setCustomValidity("");
         } catch (error) {
             input.setCustomValidity(error instanceof Error ? error.message : String(error));
