@@ -111,4 +111,4 @@ def test_a_monkey(chromium: Any, tmp_path: Path) -> None:
 @pytest.mark.parametrize("seed", [2, 3])
 def test_monkeys(chromium: Any, tmp_path: Path, seed: int) -> None:
     """Many steps."""
-    play(chromium, tmp_path, seed=seed, steps=150)
+    play(chromium, tmp_path, seed=seed, steps=60)
