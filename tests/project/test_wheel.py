@@ -152,7 +152,8 @@ USED = """
 import voronoi_tiles as vt
 from voronoi_tiles.base import kernels
 vt.Design("p4", cell=60, sites=[vt.Site([vt.segment(5 + 3j, 25 + 11j)])]).tessellate().check(samples=64, renderer="cpu")
-print(kernels.in_use(), kernels._bound.cache_info().currsize > 0, kernels.__file__)
+loaded = kernels._load.cache_info().currsize > 0  # by whoever asked for a kernel
+print(kernels.in_use(), loaded, kernels.__file__)
 """
 
 
