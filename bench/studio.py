@@ -193,6 +193,7 @@ def reports(window: Window) -> None:
     for k in range(6):
         page.get_by_role("tab", name="Drawing").click()
         page.locator("#overlay").focus()
+        page.keyboard.press("Control+a")
         page.keyboard.press("ArrowLeft" if k % 2 else "ArrowRight")
         page.get_by_role("tab", name="Report").click()
         page.wait_for_timeout(2500)
