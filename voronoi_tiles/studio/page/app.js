@@ -2,9 +2,9 @@
 // The page's wiring: the store, the connection, the stage, the tools and the panels know of each other here alone.
 
 import { Link } from "./link.js";
-import { addStroke, moveStrokes } from "./model/design.js";
+import { copied, siteNames } from "./model/design.js";
 import { shown } from "./model/lengths.js";
-import { NOTHING, Store } from "./store.js";
+import { NOTHING, Store, shownFactor } from "./store.js";
 import { BREAKS, TOOLS, Toolbox } from "./tools/toolbox.js";
 import { listen } from "./tools/keys.js";
 import { SheetView } from "./view/sheet.js";
@@ -171,14 +171,7 @@ const COMMANDS = {
         }));
         if (strokes.length) {
             const by = 12 / stage.camera.scale;
-            store.edit("double", (design) => {
-                const before = design.site.map((site) => site.strokes.length);
-                design = strokes.reduce((made, { site, stroke }) => addStroke(made, site, stroke), design);
-                const refs = design.site.flatMap((site, i) =>
-                    site.strokes.map((_, k) => ({ site: i, stroke: k })).slice(before[i]),
-                );
-                return moveStrokes(design, refs, [by, -by]);
-            });
+            store.edit("double", (design) => copied(design, strokes, by).design);
         }
     },
 };
@@ -306,8 +299,8 @@ store.subscribe(["exact", "refusal", "unit", "tables", "design"], ({ exact, unit
 });
 
 toolbox.pointed = (at) => {
-    const { unit, tables, design } = store.state;
-    const factor = tables ? (tables.units[design.units ?? "mm"] * (design.scale ?? 1)) / tables.units[unit] : 1;
+    const { unit, tables } = store.state;
+    const factor = tables ? shownFactor(store.state) : 1;
     element("pointer").textContent = at ? `${shown(at[0] * factor, unit)}, ${shown(at[1] * factor, unit)} ${unit}` : "";
 };
 
@@ -326,10 +319,7 @@ function whyNoTile({ design, refusal }) {
     if (!refusal || bare < 0) {
         return refusal?.error ?? null;
     }
-    const what =
-        design.site.length > 1
-            ? `${design.site[bare].name ?? `site${bare + 1}`} has no stroke yet`
-            : "Nothing is drawn yet";
+    const what = design.site.length > 1 ? `${siteNames(design)[bare]} has no stroke yet` : "Nothing is drawn yet";
     return { message: what, remedy: "Take the pen (P) or another tool and draw.", quiet: true };
 }
 

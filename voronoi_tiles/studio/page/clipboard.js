@@ -1,7 +1,7 @@
 // @ts-check
 // Strokes go to the clipboard as an SVG drawing, and come from it as SVG of any program.
 
-import { addStroke, moveStrokes } from "./model/design.js";
+import { copied, isSameStroke } from "./model/design.js";
 import { without } from "./tools/select.js";
 import { NOTHING } from "./store.js";
 
@@ -63,9 +63,7 @@ export function clipboard({ store, entries, camera }) {
             if (typing() || !selection.strokes.length || !event.clipboardData) {
                 return;
             }
-            const chosen = entries().filter(({ ref }) =>
-                selection.strokes.some((other) => other.site === ref.site && other.stroke === ref.stroke),
-            );
+            const chosen = entries().filter(({ ref }) => selection.strokes.some((other) => isSameStroke(other, ref)));
             const strokes = chosen.map(({ ref }) => store.settled.site[ref.site].strokes[ref.stroke]);
             const svg = svgOf(chosen, strokes);
             event.clipboardData.setData("image/svg+xml", svg);
@@ -113,16 +111,7 @@ export function clipboard({ store, entries, camera }) {
  */
 export function paste(store, strokes, by) {
     const { site } = store.state;
-    const first = store.settled.site[site].strokes.length;
-    const refs = strokes.map((_, k) => ({ site, stroke: first + k }));
-    store.edit(
-        "paste",
-        (design) =>
-            moveStrokes(
-                strokes.reduce((made, stroke) => addStroke(made, site, stroke), design),
-                refs,
-                [by, -by],
-            ),
-        { selection: { strokes: refs, nodes: [] } },
-    );
+    const placed = strokes.map((stroke) => ({ site, stroke }));
+    const { design, refs } = copied(store.settled, placed, by);
+    store.edit("paste", () => design, { selection: { strokes: refs, nodes: [] } });
 }

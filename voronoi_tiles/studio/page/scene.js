@@ -1,6 +1,7 @@
 // @ts-check
 // What a design looks like in the drawing: each stroke's curves and nodes, kept as long as stroke and site are the same.
 
+import { isSameStroke } from "./model/design.js";
 import { kindOf, cubicsOf, flatten, placementOf } from "./model/strokes.js";
 import { nodesOf } from "./model/nodes.js";
 
@@ -99,3 +100,21 @@ export function boxOf(entries) {
     }
     return box[0] <= box[2] ? box : null;
 }
+
+/**
+ * The nodes that can be seen, each with its stroke: those of selected strokes.
+ * @param {Pick<import("./tools/tool.js").Hands, "entries" | "store">} hands
+ */
+export function shownNodes({ entries, store }) {
+    const { strokes } = store.state.selection;
+    return entries()
+        .filter((entry) => strokes.some((ref) => isSameStroke(ref, entry.ref)))
+        .flatMap((entry) => entry.nodes.map((node) => ({ ...node, ref: entry.ref })));
+}
+
+/**
+ * The reference of such a node.
+ * @param {{ref: Ref, node: number}} shown
+ * @returns {import("./model/design.js").NodeRef}
+ */
+export const nodeRef = ({ ref, node }) => ({ site: ref.site, stroke: ref.stroke, node });

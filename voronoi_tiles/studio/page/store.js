@@ -40,6 +40,15 @@ import { History } from "./model/history.js";
 /** @type {Readonly<Selection>} */
 export const NOTHING = Object.freeze({ strokes: [], nodes: [] });
 
+/**
+ * The factor from the drawing's units, before the design's scale, to those in which lengths are shown.
+ * @param {Pick<State, "design" | "tables" | "unit">} state
+ * @returns {number}
+ */
+export function shownFactor({ design, tables, unit }) {
+    return (tables.units[design.units ?? "mm"] * (design.scale ?? 1)) / tables.units[unit];
+}
+
 export class Store {
     /** @type {State} */
     #state;

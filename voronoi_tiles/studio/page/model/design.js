@@ -87,6 +87,27 @@ export const strokeAt = (design, ref) => design.site[ref.site]?.strokes[ref.stro
 /** Whether two references mean the same stroke. @type {(one: Ref, other: Ref) => boolean} */
 export const isSameStroke = (one, other) => one.site === other.site && one.stroke === other.stroke;
 
+/** Whether two references mean the same node. @type {(one: NodeRef, other: NodeRef) => boolean} */
+export const isSameNode = (one, other) => isSameStroke(one, other) && one.node === other.node;
+
+/**
+ * The design with strokes added to sites, each a little beside where it was, and the references of the new ones.
+ *
+ * @param {Design} design
+ * @param {readonly {site: number, stroke: Stroke}[]} strokes
+ * @param {number} by to the right and down; units
+ * @returns {{design: Design, refs: Ref[]}}
+ */
+export function copied(design, strokes, by) {
+    /** @type {Ref[]} */
+    const refs = [];
+    for (const { site, stroke } of strokes) {
+        refs.push({ site, stroke: design.site[site].strokes.length });
+        design = addStroke(design, site, stroke);
+    }
+    return { design: moveStrokes(design, refs, [by, -by]), refs };
+}
+
 /**
  * The references of all strokes, in the order of the design.
  *

@@ -4,15 +4,19 @@
 import {
     addSite,
     addStroke,
+    copied,
+    isSameNode,
+    isSameStroke,
     moveStrokes,
     nameProblem,
     removeSite,
     removeStrokes,
     renameSite,
     replaceStroke,
+    siteNames,
 } from "../model/design.js";
 import { moveNodes } from "../model/nodes.js";
-import { NOTHING } from "../store.js";
+import { NOTHING, shownFactor } from "../store.js";
 import { lengthField, make, refill } from "./elements.js";
 
 /**
@@ -89,8 +93,7 @@ export class StrokePanel extends HTMLElement {
 
     /** The factor from the drawing's units to those that are shown. */
     get #factor() {
-        const { design, tables, unit } = this.#context.store.state;
-        return (tables.units[design.units ?? "mm"] * (design.scale ?? 1)) / tables.units[unit];
+        return shownFactor(this.#context.store.state);
     }
 
     #addSite() {
@@ -107,27 +110,27 @@ export class StrokePanel extends HTMLElement {
      */
     #site(state, entries, i) {
         const { store } = this.#context;
-        const site = state.design.site[i];
-        const name = make("input", {
+        const name = siteNames(state.design)[i];
+        const field = make("input", {
             type: "text",
             "aria-label": `Name of site ${i + 1}`,
             "data-key": `name ${i}`,
-            ".value": site.name ?? `site${i + 1}`,
-            oninput: () => name.setCustomValidity(""),
+            ".value": name,
+            oninput: () => field.setCustomValidity(""),
             onchange: () => {
-                const problem = nameProblem(state.design, i, name.value);
+                const problem = nameProblem(state.design, i, field.value);
                 if (problem) {
-                    name.setCustomValidity(problem);
-                    name.reportValidity();
+                    field.setCustomValidity(problem);
+                    field.reportValidity();
                 } else {
-                    store.edit("rename", (design) => renameSite(design, i, name.value));
+                    store.edit("rename", (design) => renameSite(design, i, field.value));
                 }
             },
         });
         const draw = make("input", {
             type: "radio",
             name: "site",
-            "aria-label": `Draw into site ${site.name ?? `site${i + 1}`}`,
+            "aria-label": `Draw into site ${name}`,
             "data-key": `draw ${i}`,
             ".checked": state.site === i,
             onchange: () => store.set({ site: i }),
@@ -138,7 +141,7 @@ export class StrokePanel extends HTMLElement {
                 type: "button",
                 class: "quiet",
                 "data-key": `remove site ${i}`,
-                "aria-label": `Take out site ${site.name ?? `site${i + 1}`}`,
+                "aria-label": `Take out site ${name}`,
                 ".disabled": state.design.site.length < 2,
                 onclick: () => {
                     store.set({ site: 0 });
@@ -149,7 +152,7 @@ export class StrokePanel extends HTMLElement {
         );
         const own = entries.filter((entry) => entry.ref.site === i);
         return [
-            make("div", { class: "site" }, draw, name, remove),
+            make("div", { class: "site" }, draw, field, remove),
             own.length
                 ? make("ul", { class: "strokes" }, ...own.map((entry) => this.#stroke(state, entry)))
                 : make("p", { class: "note" }, "No stroke yet: take the pen (P) and draw."),
@@ -163,7 +166,7 @@ export class StrokePanel extends HTMLElement {
     #stroke(state, entry) {
         const { store } = this.#context;
         const { ref } = entry;
-        const chosen = state.selection.strokes.some((other) => other.site === ref.site && other.stroke === ref.stroke);
+        const chosen = state.selection.strokes.some((other) => isSameStroke(other, ref));
         const label = `${NAMES[entry.kind] ?? "Stroke"} ${ref.stroke + 1}`;
         const button = make(
             "button",
@@ -174,9 +177,7 @@ export class StrokePanel extends HTMLElement {
                 "data-key": `stroke ${ref.site} ${ref.stroke}`,
                 onclick: (/** @type {MouseEvent} */ event) => {
                     const others = event.shiftKey
-                        ? state.selection.strokes.filter(
-                              (other) => other.site !== ref.site || other.stroke !== ref.stroke,
-                          )
+                        ? state.selection.strokes.filter((other) => !isSameStroke(other, ref))
                         : [];
                     store.set({
                         selection: { strokes: chosen ? others : [...others, ref], nodes: [] },
@@ -216,7 +217,9 @@ export class StrokePanel extends HTMLElement {
                                     design.site[ref.site].strokes[ref.stroke],
                                     entry.placement,
                                     [{ node: node.node, to }],
-                                    { alone: false },
+                                    {
+                                        alone: false,
+                                    },
                                 ),
                             ),
                         );
@@ -226,9 +229,7 @@ export class StrokePanel extends HTMLElement {
                         "data-key": `${ref.site} ${ref.stroke} ${node.node} ${axis}`,
                     },
                 );
-            const has = state.selection.nodes.some(
-                (other) => other.site === ref.site && other.stroke === ref.stroke && other.node === node.node,
-            );
+            const has = state.selection.nodes.some((other) => isSameNode(other, { ...ref, node: node.node }));
             return make(
                 "li",
                 { class: has ? "point chosen" : "point" },
@@ -298,13 +299,12 @@ export class StrokePanel extends HTMLElement {
     #double({ ref }) {
         const { store, stage } = this.#context;
         const by = 12 / stage.camera.scale;
-        const copy = { site: ref.site, stroke: store.settled.site[ref.site].strokes.length };
-        store.edit(
-            "double",
-            (design) =>
-                moveStrokes(addStroke(design, ref.site, design.site[ref.site].strokes[ref.stroke]), [copy], [by, -by]),
-            { selection: { strokes: [copy], nodes: [] } },
+        const { design, refs } = copied(
+            store.settled,
+            [{ site: ref.site, stroke: store.settled.site[ref.site].strokes[ref.stroke] }],
+            by,
         );
+        store.edit("double", () => design, { selection: { strokes: refs, nodes: [] } });
     }
 
     /**
@@ -313,8 +313,8 @@ export class StrokePanel extends HTMLElement {
      * @param {Entry} entry
      */
     #otherSite(state, { ref }) {
-        const options = state.design.site.map((site, i) =>
-            make("option", { value: i, ".selected": i === ref.site }, site.name ?? `site${i + 1}`),
+        const options = state.design.site.map((_, i) =>
+            make("option", { value: i, ".selected": i === ref.site }, siteNames(state.design)[i]),
         );
         const choose = make("select", {
             "aria-label": "Site of the stroke",

@@ -2,6 +2,7 @@
 // Group and cell: the 17 groups as pictures of this drawing, the cell's free lengths, and what the window shows.
 
 import { setCell, setUnits } from "../model/design.js";
+import { shownFactor } from "../store.js";
 import { setGroup } from "../model/regroup.js";
 import { groupOf, latticeOf, motionsOf } from "../model/symmetry.js";
 import { drawOutlines } from "../view/outlines.js";
@@ -174,10 +175,11 @@ export class SymmetryPanel extends HTMLElement {
     }
 
     /** @param {State} state */
-    #cellFields({ design, tables, unit }) {
+    #cellFields(state) {
         const { store } = this.#context;
+        const { design, tables, unit } = state;
         const group = groupOf(design, tables);
-        const factor = (tables.units[design.units ?? "mm"] * (design.scale ?? 1)) / tables.units[unit];
+        const factor = shownFactor(state);
         /** @type {Node[]} */
         const fields = [];
         for (const name of /** @type {const} */ (["a", "b"])) {

@@ -1,7 +1,9 @@
 // @ts-check
 // Every key in one table: what the page does, what the help shows, and what the tooltips say.
 
-import { moved, shownNodes, without } from "./select.js";
+import { isSameNode } from "../model/design.js";
+import { nodeRef, shownNodes } from "../scene.js";
+import { moved, without } from "./select.js";
 import { TOOLS } from "./toolbox.js";
 import { NOTHING } from "../store.js";
 
@@ -140,11 +142,7 @@ export function listen(hands, toolbox, canvas, run) {
         }
         if (event.key === "Tab" && store.state.tool === "select" && selection.strokes.length) {
             const nodes = shownNodes(hands);
-            const now = nodes.findIndex((node) =>
-                selection.nodes.some(
-                    (ref) => ref.node === node.node && ref.stroke === node.ref.stroke && ref.site === node.ref.site,
-                ),
-            );
+            const now = nodes.findIndex((node) => selection.nodes.some((ref) => isSameNode(ref, nodeRef(node))));
             const next = now + (event.shiftKey ? -1 : 1);
             if (next < 0 || next >= nodes.length) {
                 return false;
@@ -152,7 +150,7 @@ export function listen(hands, toolbox, canvas, run) {
             store.set({
                 selection: {
                     strokes: selection.strokes,
-                    nodes: [{ site: nodes[next].ref.site, stroke: nodes[next].ref.stroke, node: nodes[next].node }],
+                    nodes: [nodeRef(nodes[next])],
                 },
             });
             return true;

@@ -1,11 +1,11 @@
 // @ts-check
 // Select, move and edit: strokes, and the nodes and handles of those that are selected.
 
-import { moveStrokes, removeStrokes, replaceStroke, addStroke } from "../model/design.js";
+import { addStroke, isSameNode, isSameStroke, moveStrokes, removeStrokes, replaceStroke } from "../model/design.js";
 import { nearestCopy, nearestNode, nearestStroke, nodesIn, strokesIn } from "../model/hit.js";
 import { deleteNodes, insertNode, moveNodes, pullHandles, toggleSmooth } from "../model/nodes.js";
 import { rounded } from "../model/snapping.js";
-import { entriesOf } from "../scene.js";
+import { entriesOf, nodeRef, shownNodes } from "../scene.js";
 import { NOTHING } from "../store.js";
 
 /**
@@ -19,9 +19,6 @@ import { NOTHING } from "../store.js";
  * @typedef {import("../scene.js").Entry} Entry
  */
 
-/** @param {Ref} a @param {Ref} b */
-const same = (a, b) => a.site === b.site && a.stroke === b.stroke;
-
 /** @param {Ref} ref */
 const bare = ({ site, stroke }) => ({ site, stroke });
 
@@ -34,7 +31,7 @@ const bare = ({ site, stroke }) => ({ site, stroke });
  */
 function changeNodes(design, nodes, change) {
     for (const entry of entriesOf(design)) {
-        const own = nodes.filter((node) => same(node, entry.ref)).map((node) => node.node);
+        const own = nodes.filter((node) => isSameStroke(node, entry.ref)).map((node) => node.node);
         if (own.length) {
             design = replaceStroke(
                 design,
@@ -80,7 +77,7 @@ export function without(design, { strokes, nodes }, cut = false) {
     /** @type {Ref[]} */
     const gone = [];
     for (const entry of entriesOf(design)) {
-        const own = nodes.filter((node) => same(node, entry.ref)).map((node) => node.node);
+        const own = nodes.filter((node) => isSameStroke(node, entry.ref)).map((node) => node.node);
         if (own.length) {
             const [first, ...rest] = deleteNodes(design.site[entry.ref.site].strokes[entry.ref.stroke], own, { cut });
             if (first) {
@@ -97,14 +94,20 @@ export function without(design, { strokes, nodes }, cut = false) {
 }
 
 /**
- * The nodes that can be seen: those of selected strokes.
- * @param {Hands} hands
+ * What is selected after a click on one thing: it alone, or what was selected where it is among that; with Shift what
+ * was selected, with it or without it.
+ * @template Thing
+ * @param {readonly Thing[]} selected
+ * @param {Thing} one
+ * @param {(one: Thing, other: Thing) => boolean} same
+ * @param {boolean} shift
+ * @returns {readonly Thing[]}
  */
-export function shownNodes({ entries, store }) {
-    const { strokes } = store.state.selection;
-    return entries()
-        .filter((entry) => strokes.some((ref) => same(ref, entry.ref)))
-        .flatMap((entry) => entry.nodes.map((node) => ({ ...node, ref: entry.ref })));
+function clicked(selected, one, same, shift) {
+    if (selected.some((other) => same(other, one))) {
+        return shift ? selected.filter((other) => !same(other, one)) : selected;
+    }
+    return shift ? [...selected, one] : [one];
 }
 
 /** @type {{kind: "" | "nodes" | "strokes" | "box" | "pull", from: Point, to: Point, moved: boolean, node: any, add: boolean}} */
@@ -131,15 +134,7 @@ export const select = {
         const { selection } = store.state;
         const node = nearestNode(shownNodes(hands), touch.raw, touch.reach);
         if (node) {
-            const ref = { ...bare(node.ref), node: node.node };
-            const has = selection.nodes.some((other) => same(other, ref) && other.node === ref.node);
-            const nodes = touch.shift
-                ? has
-                    ? selection.nodes.filter((o) => !(same(o, ref) && o.node === ref.node))
-                    : [...selection.nodes, ref]
-                : has
-                  ? selection.nodes
-                  : [ref];
+            const nodes = clicked(selection.nodes, nodeRef(node), isSameNode, touch.shift);
             store.set({ selection: { strokes: selection.strokes, nodes } });
             drag = { ...still, kind: touch.alt && node.role === "anchor" ? "pull" : "nodes", from: node.at, node };
             return;
@@ -149,14 +144,7 @@ export const select = {
         const hit = own ?? nearestCopy(hands.entries(), motions, lattice, touch.raw, touch.reach);
         if (hit) {
             const ref = bare(hit.ref);
-            const has = selection.strokes.some((other) => same(other, ref));
-            const strokes = touch.shift
-                ? has
-                    ? selection.strokes.filter((other) => !same(other, ref))
-                    : [...selection.strokes, ref]
-                : has
-                  ? selection.strokes
-                  : [ref];
+            const strokes = clicked(selection.strokes, ref, isSameStroke, touch.shift);
             store.set({ selection: { strokes, nodes: [] }, site: ref.site });
             // A copy leads to its stroke, which is dragged by itself.
             drag = own ? { ...still, kind: "strokes", from: touch.raw } : still;
@@ -191,7 +179,7 @@ export const select = {
         if (drag.kind === "pull") {
             const { node } = drag;
             store.preview((design) =>
-                changeNodes(design, [{ ...bare(node.ref), node: node.node }], (stroke, entry) =>
+                changeNodes(design, [nodeRef(node)], (stroke, entry) =>
                     pullHandles(stroke, entry.placement, node.node, touch.raw),
                 ),
             );
@@ -213,7 +201,7 @@ export const select = {
             const old = drag.add ? store.state.selection : NOTHING;
             const nodes = nodesIn(shownNodes(hands), box);
             const strokes = strokesIn(hands.entries(), box).filter(
-                (ref) => !old.strokes.some((other) => same(other, ref)),
+                (ref) => !old.strokes.some((other) => isSameStroke(other, ref)),
             );
             store.set({
                 selection:
@@ -233,9 +221,7 @@ export const select = {
         const node = nearestNode(shownNodes(hands), touch.raw, touch.reach);
         if (node && node.role === "anchor") {
             store.edit("smooth or corner", (design) =>
-                changeNodes(design, [{ ...bare(node.ref), node: node.node }], (stroke) =>
-                    toggleSmooth(stroke, node.node),
-                ),
+                changeNodes(design, [nodeRef(node)], (stroke) => toggleSmooth(stroke, node.node)),
             );
             return;
         }

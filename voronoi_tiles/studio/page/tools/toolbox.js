@@ -1,6 +1,7 @@
 // @ts-check
 // All tools, and the way of pointers and keys to the one in hand.
 
+import { isSameStroke } from "../model/design.js";
 import { rounded, snap } from "../model/snapping.js";
 import { elementsIn } from "../model/symmetry.js";
 import { circle, freehand, point } from "./shapes.js";
@@ -159,11 +160,7 @@ export class Toolbox {
         ]);
         const chosen = tool === "select" ? selection.strokes : [];
         const nodes = entries()
-            .filter(
-                ({ ref }) =>
-                    !store.state.dragging ||
-                    !chosen.some((other) => other.site === ref.site && other.stroke === ref.stroke),
-            )
+            .filter(({ ref }) => !store.state.dragging || !chosen.some((other) => isSameStroke(other, ref)))
             .flatMap((entry) => entry.nodes.filter((node) => node.role === "anchor").map((node) => node.at));
         return snap(at, {
             elements: elementsIn(design, tables, near),

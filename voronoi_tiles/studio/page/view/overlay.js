@@ -1,8 +1,9 @@
 // @ts-check
 // What lies over the picture: the cell, symmetry elements, the grid, strokes and their nodes, and what a tool shows.
 
+import { isSameNode, isSameStroke } from "../model/design.js";
 import { cellsIn, elementsIn, regionOf } from "../model/symmetry.js";
-import { shownNodes } from "../tools/select.js";
+import { nodeRef, shownNodes } from "../scene.js";
 
 /**
  * @typedef {import("../tools/tool.js").Hands} Hands
@@ -183,7 +184,7 @@ function strokes(context, hands, motions, lattice, colour) {
     camera.apply(context);
     for (const entry of all) {
         const own = pathOf([entry]);
-        const chosen = selection.strokes.some((ref) => ref.site === entry.ref.site && ref.stroke === entry.ref.stroke);
+        const chosen = selection.strokes.some((ref) => isSameStroke(ref, entry.ref));
         context.strokeStyle = colour.panel;
         context.lineWidth = (entry.kind === "point" ? 8 : 4.5) * pixel;
         context.stroke(own);
@@ -219,9 +220,7 @@ function nodes(context, hands, colour) {
     context.stroke();
     for (const node of shown) {
         const [x, y] = camera.toScreen(node.at);
-        const chosen = selection.nodes.some(
-            (ref) => ref.site === node.ref.site && ref.stroke === node.ref.stroke && ref.node === node.node,
-        );
+        const chosen = selection.nodes.some((ref) => isSameNode(ref, nodeRef(node)));
         context.fillStyle = chosen ? colour.accent : colour.panel;
         context.beginPath();
         if (node.role === "anchor" && !node.smooth) {

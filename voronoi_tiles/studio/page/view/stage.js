@@ -3,6 +3,7 @@
 
 import { Preview, watchSize } from "../gl/preview.js";
 import { boxOf, entriesOf, segmentsOf } from "../scene.js";
+import { isSameStroke } from "../model/design.js";
 import { cosets, latticeOf, motionsOf } from "../model/symmetry.js";
 import { Camera } from "./camera.js";
 import { drawOutlines } from "./outlines.js";
@@ -248,9 +249,7 @@ export class Stage {
         const ys = corners.map((at) => at[1]);
         const cell = [Math.min(...xs), Math.min(...ys), Math.max(...xs), Math.max(...ys)];
         const entries = this.entries().filter(
-            ({ ref }) =>
-                what !== "selection" ||
-                selection.strokes.some((other) => other.site === ref.site && other.stroke === ref.stroke),
+            ({ ref }) => what !== "selection" || selection.strokes.some((other) => isSameStroke(other, ref)),
         );
         this.camera.fit((what === "cell" ? null : boxOf(entries)) ?? cell, what === "cell" ? 0.55 : 0.72);
         this.redraw();
