@@ -180,6 +180,12 @@ def test_a_new_design_has_a_free_name(file: Path, opens: Opens) -> None:
     assert first.opened()["saved"] is True
 
 
+def test_a_name_in_a_folder_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    """A design that could not be saved is not begun."""
+    with pytest.raises(DesignError, match="its folder is not there"):
+        Document.open(str(tmp_path / "missing" / "bird.toml"))
+
+
 def test_a_name_that_is_not_there_is_a_new_design(file: Path, opens: Opens) -> None:
     """TOML or JSON, as its name says."""
     document = opens("new.json")

@@ -74,6 +74,8 @@ class Document:
     def open(cls, path: str | None, *, folder: str = os.curdir) -> Document:
         """Open a design file, or for None a starter under a free name in a folder. Raises DesignError."""
         if path is not None:
+            if not Path(path).parent.is_dir():  # what is drawn could not be saved
+                raise DesignError("cannot be made: its folder is not there", file=path, remedy="Look at the path.")
             return cls(path)
         for free in _numbered(os.path.join(folder, NEW) if folder != os.curdir else NEW):  # noqa: PTH118 - any name
             if os.path.lexists(free):
