@@ -13,8 +13,12 @@ TESTS: Final = Path(__file__).parents[1] / "studio"
 PAGE: Final = Path(__file__).parents[2] / "voronoi_tiles" / "studio" / "page"
 TOOLS: Final = TESTS / "node_modules"
 
-SOFTWARE_GL: Final = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--no-sandbox")
-"""Chromium's options: WebGL by the processor, which it refuses by itself; as root there is no sandbox."""
+SOFTWARE_GL: Final = ("--enable-unsafe-swiftshader", "--no-sandbox")
+"""Chromium's options: WebGL by the processor, which it refuses by itself; as root there is no sandbox.
+
+Not --use-angle=swiftshader: pages would be put together by it too, which no machine without a GPU does, at four times
+the processor time.
+"""
 
 
 def node() -> str:
