@@ -26,6 +26,24 @@ strokes = [
 ]
 """
 
+LOG = """\
+window.log = [];
+const { send, addEventListener } = WebSocket.prototype;
+WebSocket.prototype.send = function (text) {
+    const { type, rev, rest } = JSON.parse(text);
+    if (type === "design" && !rest) window.log.push(rev);
+    return send.call(this, text);
+};
+WebSocket.prototype.addEventListener = function (kind, tell) {
+    return addEventListener.call(this, kind, (event) => {
+        const { type, rev } = kind === "message" ? JSON.parse(event.data) : {};
+        if (type === "outline") window.log.push(-rev);
+        tell(event);
+    });
+};
+"""
+"""What the page writes down of its connection: revisions that it sends while it is dragged, minus those of answers."""
+
 
 @pytest.fixture(scope="module")
 def studio(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
@@ -39,7 +57,7 @@ def studio(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Studio]:
 @pytest.fixture(scope="module")
 def page(chromium: Any, studio: Studio) -> Iterator[Window]:
     """Its page, for all tests."""
-    with opened(chromium, studio) as found:
+    with opened(chromium, studio, script=LOG) as found:
         found.wait()
         yield found
 
@@ -117,9 +135,33 @@ def test_undo_goes_point_by_point(window: Window) -> None:
     assert json.dumps(window.design) == after
 
 
-def test_touching_copies_are_shown_where_they_touch(window: Window) -> None:
-    """The last good outline stays, greyed; the message says what to do."""
+def test_one_design_is_on_its_way_at_a_time(window: Window) -> None:
+    """While a point is dragged, the next design goes out with the answer to the last, and the last one is proved."""
     page = window.page
+    window.choose("Line 1")
+    page.evaluate("() => { window.log.length = 0; }")
+    window.drag((20, 4), (24, 9), steps=40)
+    window.wait()
+    log = page.evaluate("() => window.log")
+    waiting: int | None = None
+    asked = 0
+    for rev in log:
+        if rev > 0:
+            assert waiting is None, log
+            waiting, asked = rev, asked + 1
+        elif waiting is not None and -rev >= waiting:
+            waiting = None
+    assert asked > 5, log
+    assert window.strokes[0]["polyline"][1] == pytest.approx([24, 9], abs=0.3)
+
+
+def test_touching_copies_are_shown_where_they_touch(window: Window) -> None:
+    """The last good outline stays, greyed, over the live picture; the message says what to do.
+
+    Otherwise outlines that come as quickly as here are the picture, where the processor would draw the live one.
+    """
+    page = window.page
+    assert page.locator("#picture").is_hidden()
     page.keyboard.press("l")
     window.click(8, 22)
     window.click(-8, 22.5)
@@ -130,6 +172,7 @@ def test_touching_copies_are_shown_where_they_touch(window: Window) -> None:
     page.keyboard.press("Enter")
     window.wait("refused")
     assert "touches" in page.get_by_role("alert").first.inner_text()
+    page.locator("#picture").wait_for(state="visible")
     page.keyboard.press("Control+z")
     page.keyboard.press("Control+z")
     window.wait()

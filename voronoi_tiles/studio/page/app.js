@@ -59,6 +59,7 @@ const store = new Store({
     theme: "",
     connected: true,
     dragging: false,
+    pointer: null,
     trouble: null,
     ...kept("voronoi_tiles studio"),
 });
@@ -266,43 +267,63 @@ store.subscribe(["revision", "dragging"], () => {
     }
 });
 
-store.subscribe(["exact", "refusal", "revision", "connected"], ({ exact, refusal, revision, connected }) => {
-    const behind = !exact || (exact.rev < revision && !refusal);
-    const [state, text] = !connected
-        ? ["behind", "no connection"]
-        : refusal
-          ? ["refused", "no tile"]
-          : behind
-            ? ["behind", "exact tile follows"]
-            : exact.proved
-              ? ["proved", "proved"]
-              : ["proving", "exact, proof follows"];
-    element("exact").dataset.state = state;
-    element("exact").textContent = text;
-    document.documentElement.dataset.exact = `${state} ${exact?.rev ?? -1} ${revision}`;
-});
+/** Of outlines that are this many changes behind while something is dragged, the page says so. */
+const BEHIND = 8;
 
-store.subscribe(["exact", "refusal", "unit", "tables", "design"], ({ exact, unit, tables, design }) => {
-    if (!exact || !tables) {
-        element("measure").textContent = "";
-        return;
+/** @param {import("./store.js").State} state @returns {[string, string]} */
+function proofOf({ exact, refusal, revision, connected, dragging }) {
+    if (!connected) {
+        return ["behind", "no connection"];
     }
-    const mm = tables.units[design.units ?? "mm"];
-    const parts = exact.tiles.slice(0, 3).map((tile) => {
-        const [width, height] = [tile.width, tile.height].map((side) =>
-            ((side * mm) / tables.units[unit]).toFixed(unit === "mm" ? 2 : 3),
-        );
-        const neighbours = `${tile.neighbours} ${tile.neighbours === 1 ? "neighbour" : "neighbours"}`;
-        return `${exact.tiles.length > 1 ? `${tile.site}: ` : ""}${width} x ${height} ${unit}, ${neighbours}, ${tile.copies} in a cell`;
-    });
-    element("measure").textContent = parts.join("; ") + (exact.tiles.length > 3 ? "; ..." : "");
-});
+    if (refusal) {
+        return ["refused", "no tile"];
+    }
+    if (!exact || exact.rev < revision - (dragging ? BEHIND : 0)) {
+        return ["behind", "exact tile follows"];
+    }
+    return exact.proved ? ["proved", "proved"] : ["proving", "exact, proof follows"];
+}
 
-toolbox.pointed = (at) => {
-    const { unit, tables } = store.state;
-    const factor = tables ? shownFactor(store.state) : 1;
-    element("pointer").textContent = at ? `${shown(at[0] * factor, unit)}, ${shown(at[1] * factor, unit)} ${unit}` : "";
-};
+store.subscribe(
+    ["exact", "refusal", "revision", "connected", "dragging"],
+    (state) => {
+        const [name, text] = proofOf(state);
+        element("exact").dataset.state = name;
+        element("exact").textContent = text;
+        document.documentElement.dataset.exact = `${name} ${state.exact?.rev ?? -1} ${state.revision}`;
+    },
+    { calm: true },
+);
+
+store.subscribe(
+    ["exact", "refusal", "unit", "tables", "design"],
+    ({ exact, unit, tables, design }) => {
+        if (!exact || !tables) {
+            element("measure").textContent = "";
+            return;
+        }
+        const mm = tables.units[design.units ?? "mm"];
+        const parts = exact.tiles.slice(0, 3).map((tile) => {
+            const [width, height] = [tile.width, tile.height].map((side) =>
+                ((side * mm) / tables.units[unit]).toFixed(unit === "mm" ? 2 : 3),
+            );
+            const neighbours = `${tile.neighbours} ${tile.neighbours === 1 ? "neighbour" : "neighbours"}`;
+            return `${exact.tiles.length > 1 ? `${tile.site}: ` : ""}${width} x ${height} ${unit}, ${neighbours}, ${tile.copies} in a cell`;
+        });
+        element("measure").textContent = parts.join("; ") + (exact.tiles.length > 3 ? "; ..." : "");
+    },
+    { calm: true },
+);
+
+toolbox.pointed = (pointer) => store.set({ pointer });
+store.subscribe(
+    ["pointer", "unit"],
+    ({ pointer, unit }) => {
+        const parts = pointer?.map((part) => shown(part * shownFactor(store.state), unit));
+        element("pointer").textContent = parts ? `${parts.join(", ")} ${unit}` : "";
+    },
+    { calm: true },
+);
 
 const LOST = {
     message: "The connection to the studio's server is lost.",

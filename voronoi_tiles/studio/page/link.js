@@ -1,6 +1,6 @@
 // @ts-check
-// The live connection to the server: designs go out with a revision, at most one for each frame; what comes back is
-// for the newest, or it is left. A lost connection is made again, and the design sent anew.
+// The live connection to the server: designs go out with a revision, the next when the last one's answer has come; what
+// comes back is for the newest, or it is left. A lost connection is made again, and the design sent anew.
 
 /**
  * @typedef {import("./store.js").Store} Store
@@ -50,6 +50,8 @@ const TOO_LARGE = {
     remedy: "Take strokes out, or cut it by the command line.",
 };
 const REST_MS = 60;
+/** After this long an answer is no longer waited for. */
+const ANSWER_MS = 1000;
 const JOB_MS = 150;
 const TAKEN_OVER = 4001;
 const AGAIN_MS = [200, 500, 1000, 2000, 5000];
@@ -59,10 +61,11 @@ export class Link {
     /** @type {WebSocket | null} */
     #socket = null;
     #tries = 0;
-    #frame = 0;
     #rest = 0;
     #jobTimer = 0;
     #sent = { revision: -1, rest: false };
+    /** @type {{rev: number, at: number} | null} what was sent while it was dragged, and has no answer yet */
+    #asked = null;
     /** @type {Map<number, Design>} what was sent, by its revision, until an answer to a later one has come */
     #designs = new Map();
     #asksJobs = false;
@@ -93,6 +96,7 @@ export class Link {
         socket.addEventListener("open", () => {
             this.#tries = 0;
             this.#sent = { revision: -1, rest: false };
+            this.#asked = null;
             this.#store.set({ connected: true });
         });
         socket.addEventListener("message", (event) => this.#receive(JSON.parse(event.data)));
@@ -148,10 +152,9 @@ export class Link {
     }
 
     #schedule() {
-        this.#frame ||= requestAnimationFrame(() => {
-            this.#frame = 0;
+        if (!this.#asked || performance.now() - this.#asked.at > ANSWER_MS) {
             this.#send(false);
-        });
+        }
         clearTimeout(this.#rest);
         this.#rest = window.setTimeout(() => this.#send(true), REST_MS);
         this.#scheduleJob();
@@ -166,7 +169,19 @@ export class Link {
         const coarse = rest ? {} : { tolerance: 0.25 / this.scale };
         if (design && this.send({ type: "design", rev: revision, design, rest, ...coarse })) {
             this.#sent = { revision, rest };
+            this.#asked = rest ? this.#asked : { rev: revision, at: performance.now() };
             this.#designs.set(revision, design);
+        }
+    }
+
+    /**
+     * An answer has come: what has changed meanwhile goes out.
+     * @param {number} rev
+     */
+    #answered(rev) {
+        if (this.#asked && rev >= this.#asked.rev) {
+            this.#asked = null;
+            this.#send(false);
         }
     }
 
@@ -195,6 +210,9 @@ export class Link {
     /** @param {any} message */
     #receive(message) {
         const { exact, refusal, revision, product } = this.#store.state;
+        if (message.type === "outline" || (message.type === "refused" && message.lane === "outline")) {
+            this.#answered(message.rev);
+        }
         switch (message.type) {
             case "outline":
                 if (!exact || message.rev >= exact.rev) {

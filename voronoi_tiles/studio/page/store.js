@@ -34,8 +34,14 @@ import { History } from "./model/history.js";
  * @property {"" | "light" | "dark"} theme empty: as the system is
  * @property {boolean} connected
  * @property {boolean} dragging whether `design` is still in the hand
+ * @property {readonly [number, number] | null} pointer where in the drawing it is
  * @property {Trouble | null} trouble what else there is to say, until it is closed
  */
+
+/** @typedef {{keys: readonly string[], tell: (state: State) => void, calm: boolean}} Listener */
+
+/** How often calm listeners are told while something is dragged; milliseconds. */
+const CALM_MS = 125;
 
 /** @type {Readonly<Selection>} */
 export const NOTHING = Object.freeze({ strokes: [], nodes: [] });
@@ -52,8 +58,11 @@ export function shownFactor({ design, tables, unit }) {
 export class Store {
     /** @type {State} */
     #state;
-    /** @type {Set<{keys: readonly string[], tell: (state: State) => void}>} */
+    /** @type {Set<Listener>} */
     #listeners = new Set();
+    /** @type {Set<Listener>} calm ones that are to be told */
+    #waiting = new Set();
+    #calm = 0;
     /** @type {Set<string>} */
     #changed = new Set();
     #history;
@@ -93,24 +102,46 @@ export class Store {
     #tell() {
         const changed = this.#changed;
         this.#changed = new Set();
-        for (const { keys, tell } of this.#listeners) {
-            if (keys.some((key) => changed.has(key))) {
-                tell(this.#state);
+        for (const listener of this.#listeners) {
+            if (!listener.keys.some((key) => changed.has(key))) {
+                continue;
+            }
+            if (listener.calm && this.#state.dragging) {
+                this.#waiting.add(listener);
+                this.#calm ||= setTimeout(() => this.#tellCalm(), CALM_MS);
+            } else {
+                this.#waiting.delete(listener);
+                listener.tell(this.#state);
             }
         }
+        if (!this.#state.dragging) {
+            this.#tellCalm();
+        }
+    }
+
+    #tellCalm() {
+        clearTimeout(this.#calm);
+        this.#calm = 0;
+        const waiting = [...this.#waiting];
+        this.#waiting.clear();
+        waiting.forEach(({ tell }) => tell(this.#state));
     }
 
     /**
      * Call a function now and after every change of one of the keys.
      * @param {readonly (keyof State)[]} keys
      * @param {(state: State) => void} tell
+     * @param {{calm?: boolean}} [how] calm: of changes while something is dragged it is told a few times a second alone
      * @returns {() => void} ends it
      */
-    subscribe(keys, tell) {
-        const listener = { keys, tell };
+    subscribe(keys, tell, { calm = false } = {}) {
+        const listener = { keys, tell, calm };
         this.#listeners.add(listener);
         tell(this.#state);
-        return () => this.#listeners.delete(listener);
+        return () => {
+            this.#listeners.delete(listener);
+            this.#waiting.delete(listener);
+        };
     }
 
     /**

@@ -7,6 +7,7 @@
  */
 
 import { coloursOf, inks, modulo, tileColour } from "./colours.js";
+import { Kept } from "../model/kept.js";
 import { BlockLists, CellLists, blockRadius } from "./lists.js";
 import { Pattern, reducedBasis } from "./pattern.js";
 import { fragmentShaders } from "./shaders.js";
@@ -97,29 +98,6 @@ class ListTables {
         const records = new Int32Array(4 * count);
         for (let k = 0; k < count; k++) records.set(this.names.subarray(3 * k, 3 * k + 3), 4 * k);
         this.copies.write(records, count);
-    }
-}
-
-/** Gives the value that was made last while its causes stay the same, each by identity. @template T */
-class Kept {
-    /** @type {unknown[] | null} */
-    #causes = null;
-    /** @type {T | undefined} */
-    #value;
-
-    /**
-     * @param {unknown[]} causes
-     * @param {() => T} make
-     * @returns {T}
-     */
-    get(causes, make) {
-        const same = this.#causes?.length === causes.length && causes.every((cause, k) => cause === this.#causes?.[k]);
-        if (!same) {
-            this.#causes = null;
-            this.#value = make();
-            this.#causes = causes;
-        }
-        return /** @type {T} */ (this.#value);
     }
 }
 

@@ -27,6 +27,7 @@ export class ReportPanel extends HTMLElement {
         context.store.subscribe(
             ["product", "jobRefusal", "refusal", "unit", "tables", "revision", "jobPending"],
             (state) => this.#fill(state),
+            { calm: true },
         );
     }
 

@@ -4,9 +4,11 @@
 import { colourAt, coloursOf, inks, tileColour } from "../gl/colours.js";
 import { reducedBasis } from "../gl/pattern.js";
 import { cartesian, cellArea, fractional } from "../model/lattice.js";
+import { Kept } from "../model/kept.js";
 import { pathCubics } from "../model/pathdata.js";
 import { apply, minus, plus } from "../model/plane.js";
 import { boxOf } from "../model/segments.js";
+import { roundedScale, screenPath } from "./paths.js";
 
 /** @typedef {import("../gl/colours.js").Colouring} Colouring */
 /** @typedef {import("../gl/pattern.js").Lattice} Lattice */
@@ -28,10 +30,15 @@ import { boxOf } from "../model/segments.js";
 /** Most copies that are drawn: of more one could see nothing but lines. */
 const MOST = 6000;
 
-/** @typedef {{path: Path2D, centre: Point, radius: number}} Shape A path, and a circle about it. */
+/** @typedef {{path: Path2D, scale: number, centre: Point, radius: number}} Shape A path for a scale, and a circle about it. */
 
 /** @type {Map<string, Shape>} Of the paths that were drawn last. */
 let known = new Map();
+
+/** @typedef {{count: number, parts: Map<number, Path2D>, all: Path2D}} Copies Of each colour, and together; CSS pixels. */
+
+/** @type {Kept<Copies | null>} While strokes move under an outline, it is the same. */
+const kept = new Kept();
 
 /**
  * Draw the copies of tiles that meet the window. The context's transform and styles are as before.
@@ -44,63 +51,74 @@ let known = new Map();
  * @returns {number} How many copies were drawn; 0 also where they are too many.
  */
 export function drawOutlines(context, camera, lattice, motions, tiles, style = {}) {
-    const basis = reducedBasis(lattice);
-    if (!basis) return 0;
     const { scale = 1, line = 1.5, dash = [], opacity = 1, fill = null, dark = false } = style;
-    const shapes = new Map(tiles.map(({ path }) => [path, known.get(path) ?? shapeOf(path)]));
+    const causes = [lattice, motions, tiles, scale, line, fill, camera.scale, ...camera.centre, ...camera.size];
+    const copies = kept.get(causes, () => copiesOf(camera, lattice, motions, tiles, { scale, line, fill }));
+    if (!copies) return 0;
+    context.save();
+    context.setTransform(camera.ratio, 0, 0, camera.ratio, 0, 0);
+    if (fill) {
+        for (const [colour, part] of copies.parts) {
+            context.fillStyle = css(tileColour(colour, dark));
+            context.fill(part, "evenodd");
+        }
+    }
+    if (line > 0) {
+        context.lineWidth = line;
+        context.lineJoin = "round";
+        context.setLineDash(dash);
+        context.globalAlpha = opacity;
+        context.strokeStyle = style.colour ?? css(inks(dark).border);
+        // In one stroke: lines that two copies share are not darker than others.
+        context.stroke(copies.all);
+    }
+    context.restore();
+    return copies.count;
+}
+
+/**
+ * @param {Camera} camera
+ * @param {Lattice} lattice
+ * @param {readonly Motion[]} motions
+ * @param {readonly Tile[]} tiles
+ * @param {{scale: number, line: number, fill: Style["fill"]}} style
+ * @returns {Copies | null} Null where they are too many, and where there is no cell.
+ */
+function copiesOf(camera, lattice, motions, tiles, { scale, line, fill }) {
+    const basis = reducedBasis(lattice);
+    if (!basis) return null;
+    const finest = roundedScale(camera.scale) / scale;
+    const shapes = new Map(
+        tiles.map(({ path }) => {
+            const shape = known.get(path);
+            return [path, shape?.scale === finest ? shape : shapeOf(path, finest)];
+        }),
+    );
     known = shapes;
     const placements = tiles.flatMap(({ path, operations }) => operations.map((k) => ({ path, motion: motions[k] })));
     const colours = coloursOf(typeof fill === "object" ? fill : null, placements.length, basis.rows);
     const [width, height] = camera.size;
-    /** @type {{shape: Path2D, matrix: DOMMatrix, colour: number}[]} */
-    const copies = [];
+    const k = camera.scale / scale;
+    /** @type {Copies} */
+    const copies = { count: 0, parts: new Map(), all: new Path2D() };
     for (const [placement, { path, motion }] of placements.entries()) {
         const { path: shape, centre, radius } = /** @type {Shape} */ (shapes.get(path));
         const { a, b, conj } = motion;
         const sign = conj ? -1 : 1;
         const middle = apply(motion, [centre[0] / scale, centre[1] / scale]);
         for (const [i, j] of near(basis, camera, middle, radius / scale + line / camera.scale)) {
-            if (copies.length === MOST) return 0;
-            const shift = plus(b, cartesian({ a: basis.p, b: basis.q }, [i, j]));
-            const k = camera.scale / scale;
-            copies.push({
-                shape,
-                // To CSS pixels, y down.
-                matrix: new DOMMatrix([
-                    k * a[0],
-                    -k * a[1],
-                    -k * sign * a[1],
-                    -k * sign * a[0],
-                    width / 2 + camera.scale * (shift[0] - camera.centre[0]),
-                    height / 2 - camera.scale * (shift[1] - camera.centre[1]),
-                ]),
-                colour: fill ? colourAt(colours, placement, i, j) : -1,
-            });
+            if (copies.count++ === MOST) return null;
+            const colour = fill ? colourAt(colours, placement, i, j) : -1;
+            const part = copies.parts.get(colour) ?? new Path2D();
+            copies.parts.set(colour, part);
+            const [x, y] = minus(plus(b, cartesian({ a: basis.p, b: basis.q }, [i, j])), camera.centre);
+            const [e, f] = [width / 2 + camera.scale * x, height / 2 - camera.scale * y];
+            // To CSS pixels, y down.
+            part.addPath(shape, new DOMMatrix([k * a[0], -k * a[1], -k * sign * a[1], -k * sign * a[0], e, f]));
         }
     }
-    context.save();
-    const ratio = new DOMMatrix([camera.ratio, 0, 0, camera.ratio, 0, 0]);
-    if (fill) {
-        for (const { shape, matrix, colour } of copies) {
-            context.setTransform(ratio.multiply(matrix));
-            context.fillStyle = css(tileColour(colour, dark));
-            context.fill(shape, "evenodd");
-        }
-    }
-    if (line > 0) {
-        // In one stroke: lines that two copies share are not darker than others.
-        const all = new Path2D();
-        for (const { shape, matrix } of copies) all.addPath(shape, matrix);
-        context.setTransform(ratio);
-        context.lineWidth = line;
-        context.lineJoin = "round";
-        context.setLineDash(dash);
-        context.globalAlpha = opacity;
-        context.strokeStyle = style.colour ?? css(inks(dark).border);
-        context.stroke(all);
-    }
-    context.restore();
-    return copies.length;
+    for (const part of copies.parts.values()) copies.all.addPath(part);
+    return copies;
 }
 
 /**
@@ -129,13 +147,20 @@ function* near({ p, q }, { centre, scale, size }, middle, radius) {
 
 /**
  * @param {string} data
+ * @param {number} scale
  * @returns {Shape}
  */
-function shapeOf(data) {
-    const [x0, y0, x1, y1] = boxOf(pathCubics(data));
+function shapeOf(data, scale) {
+    const cubics = pathCubics(data);
+    const [x0, y0, x1, y1] = boxOf(cubics);
     /** @type {Point} */
     const centre = [(x0 + x1) / 2, (y0 + y1) / 2];
-    return { path: new Path2D(data), centre, radius: Math.hypot(x1 - x0, y1 - y0) / 2 };
+    return {
+        path: screenPath(Float64Array.from(cubics), scale),
+        scale,
+        centre,
+        radius: Math.hypot(x1 - x0, y1 - y0) / 2,
+    };
 }
 
 /**

@@ -1,15 +1,16 @@
 // @ts-check
 // What lies over the picture: the cell, symmetry elements, the grid, strokes and their nodes, and what a tool shows.
 
+import { Kept } from "../model/kept.js";
 import { isSameNode, isSameStroke } from "../model/design.js";
 import { cellsIn, elementsIn, regionOf } from "../model/symmetry.js";
 import { nodeRef, shownNodes } from "../scene.js";
+import { roundedScale, screenPath } from "./paths.js";
 
 /**
  * @typedef {import("../tools/tool.js").Hands} Hands
  * @typedef {import("../tools/tool.js").Point} Point
  * @typedef {import("../tools/toolbox.js").Toolbox} Toolbox
- * @typedef {import("../scene.js").Entry} Entry
  * @typedef {CanvasRenderingContext2D} Context
  */
 
@@ -27,29 +28,6 @@ function colours() {
         line: of("--line"),
         bad: of("--bad"),
     };
-}
-
-/**
- * The path of some strokes, in the drawing's coordinates.
- * @param {readonly Entry[]} entries
- */
-export function pathOf(entries) {
-    const path = new Path2D();
-    for (const { kind, cubics } of entries) {
-        for (let k = 0; k < cubics.length; k += 8) {
-            const c = cubics.subarray(k, k + 8);
-            if (kind === "point") {
-                path.moveTo(c[0], c[1]);
-                path.lineTo(c[0], c[1]);
-                continue;
-            }
-            if (k === 0 || c[0] !== cubics[k - 2] || c[1] !== cubics[k - 1]) {
-                path.moveTo(c[0], c[1]);
-            }
-            path.bezierCurveTo(c[2], c[3], c[4], c[5], c[6], c[7]);
-        }
-    }
-    return path;
 }
 
 /**
@@ -145,6 +123,35 @@ function grid(context, { camera }, colour) {
     context.globalAlpha = 1;
 }
 
+/** @type {Kept<Path2D[]>} the strokes, and their copies below: the same while outlines come */
+const keptPaths = new Kept();
+/** @type {Kept<Path2D>} */
+const keptCopies = new Kept();
+
+/**
+ * The copies of paths in a box; none where they are too many.
+ * @param {Path2D[]} paths
+ * @param {import("../model/symmetry.js").Motion[]} motions
+ * @param {import("../model/symmetry.js").Lattice} lattice
+ * @param {import("../model/plane.js").Box} box
+ */
+function copiesOf(paths, motions, lattice, box) {
+    const [once, copies] = [new Path2D(), new Path2D()];
+    const cells = cellsIn(lattice, box);
+    if (cells.length * motions.length > COPIES_MAX) {
+        return copies;
+    }
+    paths.forEach((path) => once.addPath(path));
+    for (const [i, j] of cells) {
+        for (const { a, b, conj } of motions) {
+            const sign = conj ? -1 : 1;
+            const [x, y] = [b[0] + i * lattice.a[0] + j * lattice.b[0], b[1] + i * lattice.a[1] + j * lattice.b[1]];
+            copies.addPath(once, new DOMMatrix([a[0], a[1], -sign * a[1], sign * a[0], x, y]));
+        }
+    }
+    return copies;
+}
+
 /**
  * The copies of the strokes, faint, and the strokes themselves, two-toned so that they show on any colour.
  * @param {Context} context
@@ -157,33 +164,28 @@ function strokes(context, hands, motions, lattice, colour) {
     const { camera, store, entries } = hands;
     const { selection, shown, site } = store.state;
     const all = entries();
-    const path = pathOf(all);
     const pixel = 1 / camera.scale;
+    const finest = roundedScale(camera.scale);
+    const paths = keptPaths.get([finest, ...all.map(({ cubics }) => cubics)], () =>
+        all.map(({ cubics }) => screenPath(cubics, finest)),
+    );
     context.save();
     context.lineCap = context.lineJoin = "round";
     if (shown.copies) {
-        const cells = cellsIn(lattice, camera.box);
-        if (cells.length * motions.length <= COPIES_MAX) {
-            context.globalAlpha = 0.3;
-            context.strokeStyle = colour.text;
-            for (const [i, j] of cells) {
-                for (const { a, b, conj } of motions) {
-                    camera.apply(context);
-                    const [x, y] = [
-                        b[0] + i * lattice.a[0] + j * lattice.b[0],
-                        b[1] + i * lattice.a[1] + j * lattice.b[1],
-                    ];
-                    context.transform(a[0], a[1], conj ? a[1] : -a[1], conj ? -a[0] : a[0], x, y);
-                    context.lineWidth = 1.2 * pixel;
-                    context.stroke(path);
-                }
-            }
-            context.globalAlpha = 1;
-        }
+        camera.apply(context);
+        context.globalAlpha = 0.3;
+        context.strokeStyle = colour.text;
+        context.lineWidth = pixel;
+        context.stroke(
+            keptCopies.get([paths, motions, lattice, ...camera.box], () =>
+                copiesOf(paths, motions, lattice, camera.box),
+            ),
+        );
+        context.globalAlpha = 1;
     }
     camera.apply(context);
-    for (const entry of all) {
-        const own = pathOf([entry]);
+    for (const [k, entry] of all.entries()) {
+        const own = paths[k];
         const chosen = selection.strokes.some((ref) => isSameStroke(ref, entry.ref));
         context.strokeStyle = colour.panel;
         context.lineWidth = (entry.kind === "point" ? 8 : 4.5) * pixel;

@@ -8,6 +8,7 @@ import { cosets, latticeOf, motionsOf } from "../model/symmetry.js";
 import { Camera } from "./camera.js";
 import { drawOutlines } from "./outlines.js";
 import { drawOverlay } from "./overlay.js";
+import { FLAT, roundedScale } from "./paths.js";
 
 /**
  * @typedef {import("../store.js").Store} Store
@@ -15,8 +16,8 @@ import { drawOverlay } from "./overlay.js";
  * @typedef {import("../tools/toolbox.js").Toolbox} Toolbox
  */
 
-/** Strokes are flattened to this many pixels of the page. */
-const FLAT = 0.25;
+/** Outlines that the server makes this fast follow the pointer; milliseconds. */
+const QUICK_MS = 50;
 
 export class Stage {
     camera = new Camera();
@@ -35,6 +36,8 @@ export class Stage {
     #symmetries = new Map();
     /** @type {{design: any, resolved: any, scale: number, sites: any[]} | null} */
     #sites = null;
+    /** @type {State["exact"]} the outlines that were drawn last */
+    drawn = null;
     /** @type {any} what the preview has drawn last */
     #drawn = null;
     /** @type {any} the sites that the preview could not draw */
@@ -63,14 +66,17 @@ export class Stage {
             }
             this.redraw();
         });
-        store.subscribe(["design", "exact", "refusal", "selection", "shown", "tables", "theme", "dragging"], () =>
+        store.subscribe(["design", "refusal", "selection", "shown", "tables", "theme", "dragging"], () =>
             this.redraw(),
         );
-        matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.redraw());
+        // What has come is drawn at once, for the screen's next picture, unless that is drawn in any case.
+        store.subscribe(["exact"], () => this.#frame || this.#draw());
+        this.#system.addEventListener("change", () => this.redraw());
         this.#picture = picture;
     }
 
     #picture;
+    #system = matchMedia("(prefers-color-scheme: dark)");
 
     /**
      * Draw the picture by WebGL, with the raster stage's shader.
@@ -88,12 +94,13 @@ export class Stage {
 
     /** The frame times of the preview, and what draws it; null without WebGL. */
     bench() {
-        return this.#preview?.bench(this.#drawn) ?? null;
+        const { lattice, motions } = this.symmetry();
+        return this.#drawPicture(lattice, motions) ? this.#preview?.bench(this.#drawn) : null;
     }
 
     get dark() {
         const { theme } = this.#store.state;
-        return theme ? theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
+        return theme ? theme === "dark" : this.#system.matches;
     }
 
     /** The strokes as they are drawn. */
@@ -127,7 +134,7 @@ export class Stage {
         const { design, exact } = this.#store.state;
         const { lattice, motions } = this.symmetry();
         const old = this.#sites;
-        const scale = 2 ** Math.round(Math.log2(this.camera.scale));
+        const scale = roundedScale(this.camera.scale);
         if (!old || old.design !== design || old.resolved !== exact?.resolved || old.scale !== scale) {
             const segments = segmentsOf(design, this.entries(), FLAT / scale);
             const sites = segments
@@ -184,22 +191,32 @@ export class Stage {
         context.clearRect(0, 0, width, height);
         const { lattice, motions } = this.symmetry();
         this.#colouring = state.exact?.colouring ?? this.#colouring;
-        const sites = this.#scene();
-        const hasPicture = state.shown.colours && sites.length > 0 && this.#drawPicture(lattice, motions, sites);
+        const hasPicture = state.shown.colours && !this.#outlinesDo(state) && this.#drawPicture(lattice, motions);
         this.#picture.hidden = !hasPicture;
         this.#drawTrace(context, lattice);
         this.#outlines(context, state, state.shown.colours && !hasPicture);
         drawOverlay(context, this.hands, this.toolbox, motions, lattice);
+        this.drawn = state.exact;
+    }
+
+    /**
+     * Whether the exact outlines, filled, do for a live picture: they are of what is drawn, or follow it closely, and
+     * the processor that makes them would draw the other picture as well, several times slower.
+     * @param {State} state
+     */
+    #outlinesDo({ exact, refusal, revision }) {
+        const follow = exact && (exact.rev === revision || exact.ms < QUICK_MS);
+        return Boolean(this.#preview?.software && follow && !refusal);
     }
 
     /**
      * Draw the live picture; false where there is no WebGL, or more than it can draw: the outlines are the picture then.
      * @param {import("../model/symmetry.js").Lattice} lattice
      * @param {import("../model/symmetry.js").Motion[]} motions
-     * @param {any[]} sites
      */
-    #drawPicture(lattice, motions, sites) {
-        if (!this.#preview || this.#tooMuch === sites) {
+    #drawPicture(lattice, motions) {
+        const sites = this.#scene();
+        if (!this.#preview || !sites.length || this.#tooMuch === sites) {
             return false;
         }
         const style = { dark: this.dark, border: 0, strokes: 0 };
@@ -221,7 +238,7 @@ export class Stage {
      * @param {boolean} filled whether they are the picture
      */
     #outlines(context, { exact, refusal, shown }, filled) {
-        if (!exact || !shown.edges) {
+        if (!exact || !(shown.edges || filled)) {
             return;
         }
         const { lattice, motions } = this.symmetry(exact.design);
@@ -229,10 +246,11 @@ export class Stage {
         drawOutlines(context, this.camera, lattice, motions, exact.tiles, {
             scale: exact.scale,
             dark: this.dark,
-            line: refusal ? 1 : 1.6,
+            // Lines of one pixel are quick where the processor draws.
+            line: !shown.edges ? 0 : refusal || this.#preview?.software ? 1 : 1.6,
             colour: style.getPropertyValue(refusal ? "--quiet" : "--text").trim(),
             ...(refusal ? { dash: [5, 4], opacity: 0.7 } : {}),
-            ...(filled ? { fill: exact.colouring ?? true } : {}),
+            ...(filled ? { fill: this.#colouring ?? true } : {}),
         });
     }
 
