@@ -42,9 +42,11 @@ def path_data(paths: Paths, *, top: float = 0.0, number: Callable[[float], str] 
     """
     points = np.column_stack((paths.start, paths.control, paths.end))
     x, y = points.real.tolist(), (top - points.imag).tolist()
-    start, first, second, end = (
-        [f"{number(us[k])} {number(vs[k])}" for us, vs in zip(x, y, strict=True)] for k in range(4)
-    )
+
+    def point(k: int, column: int) -> str:
+        """The start, one of both controls or the end of a segment: columns 0 to 3."""
+        return f"{number(x[k][column])} {number(y[k][column])}"
+
     arcs = np.flatnonzero(paths.kind == ARC)
     radius, turn = paths.arc_radius_and_turn(arcs)
     sweeps = {
@@ -54,17 +56,17 @@ def path_data(paths: Paths, *, top: float = 0.0, number: Callable[[float], str] 
     kinds, offsets = paths.kind.tolist(), paths.offsets.tolist()
     words = []
     for path, closed in enumerate(paths.closed.tolist()):
-        words.append(f"M {start[offsets[path]]}")
+        words.append(f"M {point(offsets[path], 0)}")
         for k in range(offsets[path], offsets[path + 1]):
             kind = kinds[k]
             if kind == QUAD:
-                words.append(f"Q {first[k]} {end[k]}")
+                words.append(f"Q {point(k, 1)} {point(k, 3)}")
             elif kind == CUBIC:
-                words.append(f"C {first[k]} {second[k]} {end[k]}")
+                words.append(f"C {point(k, 1)} {point(k, 2)} {point(k, 3)}")
             elif kind == ARC:
-                words.append(f"{sweeps[k]} {end[k]}")
+                words.append(f"{sweeps[k]} {point(k, 3)}")
             elif not (closed and k == offsets[path + 1] - 1):
-                words.append(f"L {end[k]}")
+                words.append(f"L {point(k, 3)}")
         if closed:
             words.append("Z")
     return " ".join(words)
