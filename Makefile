@@ -13,13 +13,13 @@
 #   make page-format rewrite the layout of the page's modules and their tests
 
 .DEFAULT_GOAL := help
-.PHONY: help demo studio test test-slow test-pythons lint format types bench fuzz docs paper gallery diagrams screenshots wheels page-tools page-format clean
+.PHONY: help demo studio test test-slow test-pythons environment environments lint format types bench fuzz docs paper gallery diagrams screenshots wheels page-tools page-format clean
 .DELETE_ON_ERROR:
 
 PYTHON ?= python3
 VENV ?= .venv
-# mypy cannot see through an editable install: it gets an environment with a regular one.
-TYPES_VENV ?= .venv-types
+# The packages as an install lays them out: mypy cannot see through an editable one.
+TYPES := .types
 DEMO ?= demo
 N ?= 500
 PIP := -m pip install --quiet --disable-pip-version-check
@@ -27,10 +27,8 @@ PIP := -m pip install --quiet --disable-pip-version-check
 INSTALLED := $(VENV)/.installed
 INSTALLED_DEV := $(VENV)/.installed-dev
 INSTALLED_DOCS := $(VENV)/.installed-docs
-INSTALLED_TYPES := $(TYPES_VENV)/.installed
 # Compiled into one library at the install: changes of theirs need a new one.
 KERNELS := setup.py $(shell find voronoi_tiles vector raster -name "*.c")
-SOURCES := $(shell find voronoi_tiles vector raster -name "*.py" -o -name "*.glsl" -o -name "*.toml")
 EXAMPLES := $(wildcard examples/*.toml)
 
 help:
@@ -46,7 +44,7 @@ $(INSTALLED): pyproject.toml $(KERNELS)
 $(INSTALLED_DEV): pyproject.toml $(KERNELS)
 	$(PYTHON) -m venv $(VENV)
 	$(VENV)/bin/python $(PIP) -e '.[test,dev,docs]'
-	touch $(INSTALLED) $@
+	touch $(INSTALLED) $(INSTALLED_DOCS) $@
 
 $(INSTALLED_DOCS): $(INSTALLED)
 	$(VENV)/bin/python $(PIP) -e '.[docs]'
@@ -82,11 +80,21 @@ test-slow: $(INSTALLED_DEV)
 # What the page does in a browser is the same whatever Python serves it.
 NO_BROWSER := --ignore-glob=*/test_browser* --ignore-glob=*/test_page_* --ignore-glob=*/test_accessibility*
 
+# $(call each-python,TARGET): made for every other Python that is here, in an environment of its own.
+define each-python
+set -e; found=$$($(PYTHON) .ci/pythons.py); echo "$${found:-No other CPython from 3.11 on is here.}"; \
+echo "$$found" | while read -r version python; do \
+    test -z "$$python" || $(MAKE) $(1) VENV=$(VENV)-$$version PYTHON=$$python PYTEST="$(NO_BROWSER)" < /dev/null || exit 1; \
+done
+endef
+
 test-pythons:
-	set -e; found=$$($(PYTHON) .ci/pythons.py); echo "$${found:-No other CPython from 3.11 on is here.}"; \
-	echo "$$found" | while read -r version python; do \
-	    test -z "$$python" || $(MAKE) test VENV=$(VENV)-$$version PYTHON=$$python PYTEST="$(NO_BROWSER)" < /dev/null || exit 1; \
-	done
+	+$(call each-python,test)
+
+environment: $(INSTALLED_DEV)
+
+environments: $(INSTALLED_DEV)
+	+$(call each-python,environment)
 
 lint: $(INSTALLED_DEV)
 	$(VENV)/bin/ruff check .
@@ -96,23 +104,13 @@ format: $(INSTALLED_DEV)
 	$(VENV)/bin/ruff check --fix .
 	$(VENV)/bin/ruff format .
 
-$(TYPES_VENV)/.created: pyproject.toml
-	$(PYTHON) -m venv $(TYPES_VENV)
-	$(TYPES_VENV)/bin/python $(PIP) '.[test,dev]'
-	touch $@
-
-# A regular install is a copy: it is renewed when a source is newer. The cache of another kind of install would mislead.
-# mypy reads no library: none is compiled.
-$(INSTALLED_TYPES): $(TYPES_VENV)/.created $(SOURCES)
-	rm -rf build $(TYPES_VENV)/cache
-	VORONOI_TILES_REQUIRE_KERNELS=0 $(TYPES_VENV)/bin/python $(PIP) --force-reinstall --no-deps --no-build-isolation .
-	rm -rf build
-	touch $@
-
-# From inside the environment, where the folder voronoi_tiles/ of the checkout cannot shadow the installed package.
-types: $(INSTALLED_TYPES)
-	cd $(TYPES_VENV) && bin/mypy --config-file $(abspath pyproject.toml) --cache-dir cache -p voronoi_tiles
-	cd $(TYPES_VENV) && bin/mypy --config-file $(abspath pyproject.toml) --cache-dir cache $(abspath tests bench docs setup.py .ci/pythons.py)
+# All in one run: what is read twice is checked once. From where the folder voronoi_tiles/ of the checkout, which lacks
+# two packages, cannot stand in the way of the whole one.
+types: $(INSTALLED_DEV)
+	rm -rf $(TYPES)/voronoi_tiles && mkdir -p $(TYPES)/voronoi_tiles
+	ln -s $(addprefix ../../,$(wildcard voronoi_tiles/*) vector raster) $(TYPES)/voronoi_tiles
+	cd $(TYPES) && $(abspath $(VENV))/bin/mypy --config-file ../pyproject.toml --cache-dir cache \
+	    voronoi_tiles $(addprefix ../,tests bench docs setup.py .ci/pythons.py)
 
 # targets.py exits with 3 where not all that was asked is reached, which its tables say; anything else is a failure.
 bench: $(INSTALLED_DEV)
@@ -168,6 +166,6 @@ page-format: page-tools
 	    "voronoi_tiles/studio/page/**/*.js" "tests/studio/page/*.js"
 
 clean:
-	rm -rf $(VENV) $(VENV)-3.* $(TYPES_VENV) tests/studio/node_modules $(DEMO) docs/_build build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(VENV)-3.* $(TYPES) tests/studio/node_modules $(DEMO) docs/_build build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	rm -f voronoi_tiles/base/kernels.compiled.*
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from collections import Counter
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -42,8 +43,9 @@ RANK = {name: rank for rank, names in enumerate(RANKS) for name in names}
 STAGES = ("vector", "raster")
 
 
+@cache
 def modules() -> dict[str, Path]:
-    """Every module of the product by its installed name."""
+    """Every module of the product by its installed name; looked for once."""
     homes = {"voronoi_tiles": "voronoi_tiles", "vector": "voronoi_tiles.vector", "raster": "voronoi_tiles.raster"}
     return {
         ".".join((package, *path.relative_to(ROOT / folder).with_suffix("").parts)): path
