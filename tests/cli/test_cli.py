@@ -380,9 +380,14 @@ def shell(line: str, command: str, cwd: Path, interpreter: str = "sh") -> subpro
     ["export bird.toml -o -", "info bird.toml", "info --json bird.toml", "--help", "--version", "new p4", "new --help"],
 )
 def test_a_closed_standard_output(line: str, command: str, design: Path) -> None:
-    """One message, exit code 2; what goes to a file is not concerned."""
+    """One message, exit code 2."""
     message = complaint(shell(f'"$0" {line} >&-', command, design.parent))
     assert "cannot write standard output: it is closed. " in message
+
+
+@POSIX
+def test_files_are_written_with_all_streams_closed(command: str, design: Path) -> None:
+    """Standard output, or all three: what goes to a file is not concerned."""
     assert shell('"$0" export bird.toml -o a.svg >&-', command, design.parent).returncode == 0
     assert shell('"$0" export bird.toml -o b.svg <&- >&- 2>&-', command, design.parent).returncode == 0
     assert (design.parent / "a.svg").read_bytes() == (design.parent / "b.svg").read_bytes()

@@ -284,7 +284,7 @@ HOSTILE = {
         "style='" + ";".join(f"--a{k}: {'a(' * 30}var(--a{k + 1}){')' * 30}" for k in range(400)) + "'"
     ),
     "a long name of a layer": "<style>@layer " + ".".join("a" * 60_000) + " { path { fill: red } }</style>",
-    "many long names of layers": "<style>" + ("@layer " + ".".join("a" * 1_000) + ";") * 1_000 + "</style>",
+    "many long names of layers": "<style>" + ("@layer " + ".".join("a" * 1_000) + ";") * 100 + "</style>",
     "universal selectors": "<style>"
     + "".join(f"g g g g g g .x{k} > * {{ fill: red }}" for k in range(300))
     + "</style>"

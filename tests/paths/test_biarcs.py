@@ -227,7 +227,7 @@ def test_the_count_is_the_least(curve: Points, accuracy: float) -> None:
     assert greedy > 1
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=20, deadline=None)
 @example(seed=81590, count=3, accuracy=0.005, angle=2.0, scale=0.01)  # 5 pieces from one end, 8 from the other
 @example(seed=617728, count=7, accuracy=0.05, angle=3.3224661489224676, scale=25.4)  # as many biarcs, but not pieces
 @given(

@@ -155,7 +155,7 @@ def test_nothing_moves_by_more_than_the_deviation(seed: int, rings: str) -> None
     assert moved > 0.05 * deviation, "nothing was left out: it tests nothing"
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=30, deadline=None)
 @drawn(st.integers(0, 2**32 - 1), st.floats(0.05, 0.5), st.floats(1e-3, 0.02))
 def test_all_goes_that_may(seed: int, length: float, deviation: float) -> None:
     """Of arcs about corners, beside longer edges, those go whose tips are near enough, and no others."""

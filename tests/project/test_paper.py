@@ -402,13 +402,20 @@ def test_the_page_has_what_is_measured() -> None:
         assert f"{row.distance[k]:.3f}" == distance
 
 
-def case(command: Command) -> Any:
-    """A command as a parameter; a picture in perspective takes seconds."""
-    slow = command.program[0] != "voronoi-tiles"
-    return pytest.param(command, id=Path(command.output).name, marks=[pytest.mark.slow] if slow else [])
+def cases() -> list[Any]:
+    """The commands as parameters: slow where a picture is in perspective, or not the first of its figure."""
+    figures: set[str] = set()
+    found = []
+    for command in paper.commands():
+        name = Path(command.output).name
+        figure = name.partition("-")[0]
+        slow = command.program[0] != "voronoi-tiles" or figure in figures
+        figures.add(figure)
+        found.append(pytest.param(command, id=name, marks=[pytest.mark.slow] if slow else []))
+    return found
 
 
-@pytest.mark.parametrize("command", [case(command) for command in paper.commands()])
+@pytest.mark.parametrize("command", cases())
 def test_pictures_made_anew_are_the_same(command: Command, tmp_path: Path, voronoi_tiles: CommandLine) -> None:
     """The committed file is what its command writes; versions of matplotlib differ a little."""
     assert anew(command, tmp_path, voronoi_tiles) <= OTHER_PIXELS
