@@ -6,6 +6,7 @@ import os
 import shutil
 import signal
 import sys
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -16,6 +17,7 @@ from helpers.forking import ForkServer
 from helpers.outlines import ABOVE, RIGHT, CommandLine, polygon
 from helpers.page import SOFTWARE_GL, missing
 from helpers.page_server import PageServer
+from helpers.thinning import THINNED, is_left_out
 from hypothesis import settings
 
 from voronoi_tiles.base import kernels
@@ -28,33 +30,67 @@ settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
 
 
-_LEFT_OUT = pytest.StashKey[int]()
+NUMERIC = {"crosscheck", "fabrication", "groups", "paths", "pictures", "raster", "tiling", "vector"} | {
+    f"test_{name}.py" for name in ("dxf", "gallery", "paper", "readers")
+}
+"""Folders and files whose tests are of what numpy, shapely and the kernels compute, the same on every Python."""
+
+_LEFT_OUT = pytest.StashKey[Counter[str]]()
+"""How many "slow" tests and "other" cases are not run."""
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add --thin, for another Python than that which runs all."""
+    parser.addoption("--thin", action="store_true", help=f"of numeric tests one case of {THINNED}, and at least one")
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leave cases out where --thin says so."""
+    if not config.getoption("thin"):
+        return
+    cases: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    left_out = {
+        item
+        for each in cases.values()
+        for number, item in enumerate(each)
+        if NUMERIC & {item.path.name, item.path.parent.name} and is_left_out(number, len(each), sys.version_info.minor)
+    }
+    config.hook.pytest_deselected(items=[*left_out])
+    items[:] = [item for item in items if item not in left_out]
 
 
 def pytest_deselected(items: Sequence[pytest.Item]) -> None:
-    """Count the slow tests that are not run."""
+    """Count what is not run."""
     for item in items:
-        if item.get_closest_marker("slow"):
-            item.config.stash[_LEFT_OUT] = item.config.stash.get(_LEFT_OUT, 0) + 1
+        kind = "slow" if item.get_closest_marker("slow") else "other"
+        item.config.stash.setdefault(_LEFT_OUT, Counter())[kind] += 1
 
 
 def pytest_sessionfinish(session: pytest.Session) -> None:
-    """Hand the count to the process that prints, where this is one of several that run tests."""
+    """Hand the counts to the process that prints, where this is one of several that run tests."""
     if hasattr(session.config, "workeroutput"):
-        session.config.workeroutput["left out"] = session.config.stash.get(_LEFT_OUT, 0)
+        counts = session.config.stash.get(_LEFT_OUT, Counter())
+        session.config.workeroutput["left out"] = dict(counts)
 
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_testnodedown(node: Any) -> None:
-    """Take it; every such process has looked at all tests."""
-    node.config.stash[_LEFT_OUT] = getattr(node, "workeroutput", {}).get("left out", 0)
+    """Take them; every such process has looked at all tests."""
+    node.config.stash[_LEFT_OUT] = Counter(getattr(node, "workeroutput", {}).get("left out", {}))
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: pytest.Config) -> None:
-    """Say how many slow tests were left out, and how they are run."""
-    count = config.stash.get(_LEFT_OUT, 0)
-    if count:
-        terminalreporter.write_line(f"{count} slow tests were left out: `make test-slow` runs them, or pytest -m slow.")
+    """Say how many tests were left out, and how they are run."""
+    counts = config.stash.get(_LEFT_OUT, Counter())
+    if counts["slow"]:
+        say = "slow tests were left out: `make test-slow` runs them, or pytest -m slow."
+        terminalreporter.write_line(f"{counts['slow']} {say}")
+    if counts["other"] and config.getoption("thin"):
+        say = "cases of numeric tests were left out, by --thin."
+        terminalreporter.write_line(f"{counts['other']} {say}")
 
 
 @pytest.fixture
