@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from math import atan2, degrees, hypot, sin
+from math import atan2, degrees, hypot, sin, sqrt
 from typing import Any
 
 import pytest
@@ -289,6 +289,71 @@ def test_delete_heals_and_shift_delete_cuts(window: Window) -> None:
     assert window.text == before
 
 
+def test_an_end_that_is_dragged_onto_another_joins_it(window: Window) -> None:
+    """Its own stroke is closed, with another stroke it becomes one, and the place says so; each is one step back."""
+    page = window.page
+    page.evaluate(
+        "() => { window.written = []; const { fillText } = CanvasRenderingContext2D.prototype;"
+        " CanvasRenderingContext2D.prototype.fillText = function (text, ...rest) {"
+        " window.written.push(text); return fillText.call(this, text, ...rest); }; }"
+    )
+    page.mouse.dblclick(*window.at(13, 6.5))
+    line = window.strokes[0]["polyline"]
+    before = window.text
+    window.drag((25, 18), (6.2, 8.9))
+    assert window.strokes == [{"polyline": line[:3], "closed": True}]
+    assert "joins" in page.evaluate("() => window.written")
+    assert chosen(window) == ["Line 1"]
+    page.keyboard.press("Control+z")
+    assert window.text == before
+
+    window.choose("Line 1")
+    with held(window, "Control"):
+        window.drag((25, 18), (6.2, 8.9))
+    assert window.strokes == [{"polyline": [*line[:3], near(6.2, 8.9)]}]
+    page.keyboard.press("Control+z")
+    window.choose("Line 1")
+    window.drag(tuple(line[1]), (19.8, 4.1))
+    assert window.strokes[0] == {"polyline": WING}
+
+    page.keyboard.press("p")
+    for place in ((30, 12), (32, 20)):
+        window.click(*place)
+    page.keyboard.press("Enter")
+    page.keyboard.press("v")
+    pen = window.strokes[1]["hermite"]
+    two = window.text
+    window.drag(tuple(pen[0]), (25.1, 17.8))
+    [joined] = window.strokes
+    assert joined["bezier"][::3] == [*WING, pen[1]]
+    page.keyboard.press("Control+z")
+    assert window.text == two
+
+
+def test_ends_are_joined_without_dragging(window: Window) -> None:
+    """By the list and J alone: the nearest ends of two strokes, and a stroke with itself; or the button."""
+    page = window.page
+    page.keyboard.press("l")
+    for place in ((30, 12), (26, 20)):
+        window.click(*place)
+    page.keyboard.press("Enter")
+    [start, _] = window.strokes[1]["segment"]
+    rows = page.locator(".stroke")
+    rows.nth(0).focus()
+    page.keyboard.press("Enter")
+    rows.nth(1).focus()
+    page.keyboard.press("Shift+Enter")
+    page.locator("#overlay").focus()
+    page.keyboard.press("j")
+    assert window.strokes == [{"polyline": [*WING, start]}]
+    page.locator("#panel-drawing").get_by_role("button", name="Close", exact=True).click()
+    assert window.strokes == [{"polyline": WING, "closed": True}]
+    page.locator("#overlay").focus()
+    page.keyboard.press("j")
+    page.get_by_text("Nothing here can be joined.").wait_for()
+    page.get_by_role("button", name="Close", exact=True).click()
+
+
 def test_a_rubber_band_takes_strokes_and_then_points(window: Window) -> None:
     """What it surrounds is moved together."""
     window.drag((2, 26), (28, 1))
@@ -362,6 +427,10 @@ def test_points_snap_to_rotation_centres(window: Window) -> None:
     moved = window.strokes[0]["polyline"][2]
     assert moved != [30, 30]
     assert moved == pytest.approx([30, 30], abs=2)
+    window.begin({**DESIGN, "group": "p3"})
+    window.choose("Line 1")
+    window.drag((20, 4), (30.3, 17.2))
+    assert window.strokes[0]["polyline"][1] == pytest.approx([30, 10 * sqrt(3)], abs=1e-12)
 
 
 def test_wheel_space_and_middle_button(window: Window) -> None:

@@ -3,6 +3,7 @@
 
 import { Link } from "./link.js";
 import { copied, siteNames } from "./model/design.js";
+import { joinSelected } from "./model/joining.js";
 import { shown } from "./model/lengths.js";
 import { NOTHING, Store, shownFactor } from "./store.js";
 import { BREAKS, TOOLS, Toolbox } from "./tools/toolbox.js";
@@ -137,6 +138,12 @@ const ask = dialogs(element("dialogs"), {
     },
 });
 
+const NOTHING_TO_JOIN = {
+    message: "Nothing here can be joined.",
+    remedy: "Select an open stroke of three points or more, or two strokes of one site, or an end of each with Shift: lines and pen curves join others.",
+    quiet: true,
+};
+
 /** @type {Record<string, () => void>} */
 const COMMANDS = {
     undo() {
@@ -164,6 +171,14 @@ const COMMANDS = {
     "toggle-copies": () => toggle("copies"),
     "select-all": () =>
         store.set({ tool: "select", selection: { strokes: stage.entries().map((entry) => entry.ref), nodes: [] } }),
+    join() {
+        const joined = joinSelected(store.settled, store.state.selection);
+        if (joined) {
+            store.edit("join", () => joined.design, { selection: { strokes: [joined.ref], nodes: [] } });
+        } else {
+            store.set({ trouble: NOTHING_TO_JOIN });
+        }
+    },
     double() {
         const { selection } = store.state;
         const strokes = selection.strokes.map((ref) => ({

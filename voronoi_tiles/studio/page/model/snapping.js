@@ -6,8 +6,8 @@ import { cross, distance, dot, fixed, length, minus, plus, scaled } from "./plan
 /** @typedef {import("./plane.js").Point} Point */
 /** @typedef {import("./symmetry.js").Elements} Elements */
 /** @typedef {import("./symmetry.js").Line} Line */
-/** @typedef {"node" | "centre" | "origin" | "mirror" | "glide" | "grid"} SnapKind */
-/** @typedef {{at: Point, kind: SnapKind, label: string}} Snapped */
+/** @typedef {"node" | "centre" | "origin" | "mirror" | "glide" | "grid" | "join"} SnapKind */
+/** @typedef {{at: Point, kind: SnapKind, label: string, onto?: import("./design.js").NodeRef}} Snapped onto: a node that is joined */
 
 /** @type {Readonly<Record<number, string>>} */
 const CENTRES = {

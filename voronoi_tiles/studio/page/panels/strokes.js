@@ -15,6 +15,7 @@ import {
     replaceStroke,
     siteNames,
 } from "../model/design.js";
+import { joinSelected } from "../model/joining.js";
 import { moveNodes } from "../model/nodes.js";
 import { NOTHING, shownFactor } from "../store.js";
 import { lengthField, make, refill } from "./elements.js";
@@ -267,6 +268,17 @@ export class StrokePanel extends HTMLElement {
                     },
                     "Take out",
                 ),
+                joinSelected(state.design, state.selection) &&
+                    make(
+                        "button",
+                        {
+                            type: "button",
+                            "data-command": "join",
+                            "data-key": `join ${ref.site} ${ref.stroke}`,
+                            title: "The two ends that are selected, or those of the selected strokes that are nearest (J)",
+                        },
+                        state.selection.strokes.length > 1 || state.selection.nodes.length === 2 ? "Join" : "Close",
+                    ),
                 state.design.site.length > 1 && this.#otherSite(state, entry),
             ),
         );

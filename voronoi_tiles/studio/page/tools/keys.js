@@ -44,6 +44,11 @@ export const HELP = [
             { keys: "Shift+drag", does: "along an axis" },
             { keys: "Arrows", does: "move by 0.1, with Shift by 1, with Ctrl+Shift by 10 units" },
             { keys: "Tab, Shift+Tab", does: "the next point, the one before" },
+            {
+                keys: "J",
+                does: "join two ends that are selected, or the nearest ends of two selected strokes; close one",
+            },
+            { keys: "Drag an end onto another", does: "join them; a point onto the next one takes it out" },
             { keys: "Delete, Shift+Delete", does: "take out: the curve heals; or is cut there" },
             { keys: "Ctrl+A, Ctrl+D", does: "select all, double" },
             { keys: "Ctrl+C, Ctrl+X, Ctrl+V", does: "copy, cut, paste strokes, as SVG" },
@@ -191,6 +196,7 @@ export function listen(hands, toolbox, canvas, run) {
             e: "toggle-elements",
             g: "toggle-grid",
             k: "toggle-copies",
+            j: "join",
         })[event.key];
         if (command) {
             run(command);

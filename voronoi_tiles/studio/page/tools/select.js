@@ -2,8 +2,10 @@
 // Select, move and edit: strokes, and the nodes and handles of those that are selected.
 
 import { addStroke, isSameNode, isSameStroke, moveStrokes, removeStrokes, replaceStroke } from "../model/design.js";
+import { joinNodes } from "../model/joining.js";
 import { nearestCopy, nearestNode, nearestStroke, nodesIn, strokesIn } from "../model/hit.js";
 import { deleteNodes, insertNode, moveNodes, pullHandles, toggleSmooth } from "../model/nodes.js";
+import { distance } from "../model/plane.js";
 import { rounded } from "../model/snapping.js";
 import { entriesOf, nodeRef, shownNodes } from "../scene.js";
 import { NOTHING } from "../store.js";
@@ -17,6 +19,7 @@ import { NOTHING } from "../store.js";
  * @typedef {import("../model/design.js").Ref} Ref
  * @typedef {import("../model/design.js").NodeRef} NodeRef
  * @typedef {import("../scene.js").Entry} Entry
+ * @typedef {import("../scene.js").Node} Node
  */
 
 /** @param {Ref} ref */
@@ -128,7 +131,7 @@ export const select = {
     title: "Select",
     icon: "select",
     cursor: "default",
-    help: "Click a stroke, drag its points. Double click puts a point onto a stroke, or makes a corner smooth.",
+    help: "Click a stroke, drag its points; ends join where they meet. Double click puts in a point, or smooths a corner.",
     down(touch, hands) {
         const { store } = hands;
         const { selection } = store.state;
@@ -172,10 +175,14 @@ export const select = {
             return;
         }
         let by = /** @type {Point} */ ([drag.to[0] - drag.from[0], drag.to[1] - drag.from[1]]);
-        if (touch.shift) {
+        const { snapped } = touch;
+        const onto = drag.kind === "nodes" ? snapped?.onto : null;
+        if (touch.shift && !onto) {
             by = onAxis(by);
         }
-        by = rounded(by, 1 / hands.camera.scale);
+        if (drag.kind !== "nodes" || !snapped) {
+            by = rounded(by, 1 / hands.camera.scale);
+        }
         if (drag.kind === "pull") {
             const { node } = drag;
             store.preview((design) =>
@@ -184,12 +191,32 @@ export const select = {
                 ),
             );
         } else {
-            store.preview((design) => moved(design, store.state.selection, by, touch.alt));
+            const { selection } = store.state;
+            store.preview((design) =>
+                onto && isSameStroke(onto, drag.node.ref)
+                    ? (joinNodes(design, nodeRef(drag.node), onto)?.design ?? design)
+                    : moved(design, selection, by, touch.alt),
+            );
         }
+    },
+    joins(at, reach, { store }) {
+        const { nodes } = store.state.selection;
+        const { kind, node, from } = drag;
+        if (kind !== "nodes" || node.role !== "anchor" || nodes.length !== 1) {
+            return null;
+        }
+        // Who moves a node a little in a crowd does not mean to join it.
+        const isNear = (/** @type {Node} */ other) =>
+            other.role === "anchor" && distance(other.at, at) <= reach && distance(other.at, from) > reach;
+        const near = entriesOf(store.settled)
+            .flatMap((entry) => entry.nodes.filter(isNear).map((other) => ({ ...other, ref: entry.ref })))
+            .filter((other) => joinNodes(store.settled, nodes[0], nodeRef(other)));
+        const onto = nearestNode(near, at, reach);
+        return onto && { at: onto.at, kind: "join", label: "joins", onto: nodeRef(onto) };
     },
     up(touch, hands) {
         const { store } = hands;
-        const { kind, moved: far } = drag;
+        const { kind, moved: far, node } = drag;
         if (kind === "box" && far) {
             const [x, y] = [drag.from, touch.raw];
             const box = /** @type {import("../model/plane.js").Box} */ ([
@@ -210,8 +237,14 @@ export const select = {
                         : { strokes: [...old.strokes, ...strokes], nodes: [] },
             });
         } else if (far && store.state.dragging) {
-            const design = store.state.design;
-            store.edit(kind === "strokes" ? "move" : "move point", () => design);
+            const onto = kind === "nodes" && touch.snapped?.onto;
+            const joined = onto && joinNodes(store.settled, nodeRef(node), onto);
+            if (joined) {
+                store.edit("join", () => joined.design, { selection: { strokes: [joined.ref], nodes: [] } });
+            } else {
+                const { design } = store.state;
+                store.edit(kind === "strokes" ? "move" : "move point", () => design);
+            }
         }
         drag = still;
         hands.redraw();

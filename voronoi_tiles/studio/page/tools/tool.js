@@ -9,6 +9,7 @@
  * @typedef {object} Touch a pointer's place, or the keyboard's cross hair
  * @property {Point} at in the drawing, snapped
  * @property {Point} raw in the drawing, as it is
+ * @property {import("../model/snapping.js").Snapped | null} snapped what drew it there
  * @property {Point} screen in pixels of the page
  * @property {boolean} shift
  * @property {boolean} alt
@@ -40,6 +41,8 @@
  * @property {(touch: Touch, hands: Hands, held: boolean) => void} [move] also with no button held
  * @property {(touch: Touch, hands: Hands) => void} [up]
  * @property {(touch: Touch, hands: Hands) => void} [twice] a double click
+ * @property {(at: Point, reach: number, hands: Hands) => import("../model/snapping.js").Snapped | null} [joins] the node that what is
+ *   held would be joined to: the pointer is drawn to that before all else
  * @property {(key: string, event: KeyboardEvent, hands: Hands) => boolean} [key_down] whether the key was for it
  * @property {(hands: Hands) => boolean} [undo] take back its own last point; whether there was one
  * @property {(hands: Hands) => void} [leave] it is laid down: end what was begun

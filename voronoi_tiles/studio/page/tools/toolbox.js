@@ -25,6 +25,9 @@ export const BREAKS = new Set(["pen", "hand"]);
 const MOUSE_REACH = 10;
 const TOUCH_REACH = 22;
 
+/** The share of the reach within which points are drawn to others. */
+const SNAPS = 0.7;
+
 /** @type {Record<string, Tool>} */
 const byName = Object.fromEntries(TOOLS.map((tool) => [tool.name, tool]));
 
@@ -38,7 +41,7 @@ export class Toolbox {
     #current = "select";
     /** @type {Map<number, Point>} fingers */
     #fingers = new Map();
-    /** @type {{at: Point, kind: string, label: string} | null} */
+    /** @type {import("../model/snapping.js").Snapped | null} */
     snapped = null;
     /** @type {Point | null} the keyboard's cross hair, in the drawing */
     cross = null;
@@ -129,6 +132,7 @@ export class Toolbox {
         return {
             at: this.snapped?.at ?? rounded(raw, 1 / camera.scale),
             raw,
+            snapped: this.snapped,
             screen,
             reach,
             space: this.#space,
@@ -152,6 +156,10 @@ export class Toolbox {
         ) {
             return null;
         }
+        const joint = this.tool.joins?.(at, reach * SNAPS, this.#hands);
+        if (joint) {
+            return joint;
+        }
         const near = /** @type {[number, number, number, number]} */ ([
             at[0] - reach,
             at[1] - reach,
@@ -166,7 +174,7 @@ export class Toolbox {
             elements: elementsIn(design, tables, near),
             nodes: tool === "select" ? nodes : [],
             grid: shown.grid ? 1 : null,
-            reach: reach * 0.7,
+            reach: reach * SNAPS,
         });
     }
 
@@ -240,6 +248,9 @@ export class Toolbox {
         const touch = this.#touch(event);
         this.#held = false;
         this.tool.up?.(touch, this.#hands);
+        if (!this.tool.draws) {
+            this.snapped = null;
+        }
         if (event.button === 1) {
             this.borrow(false);
         }

@@ -277,7 +277,7 @@ export function drawOverlay(context, hands, toolbox, motions, lattice) {
         context.lineWidth = 1;
     }
     toolbox.tool.draw?.(context, hands);
-    if (toolbox.snapped && toolbox.tool.draws) {
+    if (toolbox.snapped && (toolbox.tool.draws || toolbox.snapped.kind === "join")) {
         const [x, y] = camera.toScreen(toolbox.snapped.at);
         context.strokeStyle = colour.accent;
         context.strokeRect(x - 6, y - 6, 12, 12);

@@ -1,0 +1,173 @@
+// @ts-check
+/** A node laid onto another: what closes a stroke, makes one of two, or takes the node out. */
+
+import { chainsOf, isClosed, numbered, strokesOf, withKind } from "./chains.js";
+import { isSameStroke, mapPoints, removeStrokes, replaceStroke, strokeAt } from "./design.js";
+import { nodesOf } from "./nodes.js";
+import { apply, compose, distance, inverse, minus, same, tidyPlus } from "./plane.js";
+import { deleteNodes } from "./reshaping.js";
+import { kindOf, placementIn, placementOf, pointsOf } from "./strokes.js";
+
+/** @typedef {import("./plane.js").Point} Point */
+/** @typedef {import("./design.js").Design} Design */
+/** @typedef {import("./design.js").Stroke} Stroke */
+/** @typedef {import("./design.js").Ref} Ref */
+/** @typedef {import("./design.js").NodeRef} NodeRef */
+
+/** @typedef {{anchors: number[], closed: boolean}} Run the numbers of the anchors along a curve */
+/** @typedef {{design: Design, ref: Ref}} Joined the design, and the stroke that was made */
+
+/** The fewest points of a closed stroke whose points are listed. */
+const LEAST_CLOSED = 3;
+
+/** Whether a stroke is made of lines from point to point. @type {(stroke: Stroke) => boolean} */
+const isStraight = (stroke) => ["segment", "polyline"].includes(kindOf(stroke));
+
+/** Whether a stroke's own pieces are Bezier curves. @type {(stroke: Stroke) => boolean} */
+const isChain = (stroke) => ["bezier", "hermite", "path"].includes(kindOf(stroke));
+
+/**
+ * The curves of a stroke as runs of anchors; none for points, circles and drawings.
+ *
+ * @param {Stroke} stroke
+ * @returns {Run[]}
+ */
+function runsOf(stroke) {
+    if (isChain(stroke)) {
+        return numbered(chainsOf(stroke)).map(({ chain, offset }) => {
+            const closed = isClosed(chain);
+            const count = (chain.length - 1) / 3 + (closed ? 0 : 1);
+            return { anchors: Array.from({ length: count }, (_, k) => offset + 3 * k), closed };
+        });
+    }
+    if (!isStraight(stroke) && !["catmull_rom", "bspline"].includes(kindOf(stroke))) return [];
+    return [{ anchors: pointsOf(stroke).map((_, k) => k), closed: stroke.closed ?? false }];
+}
+
+/**
+ * The design after one node was laid onto another of the same site; null where that joins nothing.
+ *
+ * An end laid onto the other end of its stroke closes it; onto the end of another stroke, the two become one, which
+ * keeps the place and the keys of that other one: a `polyline` of straight strokes, else a `bezier`. A node laid onto
+ * its neighbour is taken out. The shapes stay, but where the node was moved.
+ *
+ * @param {Design} design
+ * @param {NodeRef} from what is laid
+ * @param {NodeRef} onto what stays where it is
+ * @returns {Joined | null}
+ */
+export function joinNodes(design, from, onto) {
+    const [stroke, other] = [strokeAt(design, from), strokeAt(design, onto)];
+    if (!stroke || !other || from.site !== onto.site) return null;
+    const alone = isSameStroke(from, onto);
+    const made = alone ? joinedWithin(stroke, from.node, onto.node) : joinedTo(stroke, from.node, other, onto.node);
+    if (!made) return null;
+    const replaced = replaceStroke(design, onto, made);
+    const shift = !alone && from.stroke < onto.stroke ? 1 : 0;
+    return {
+        design: alone ? replaced : removeStrokes(replaced, [from]),
+        ref: { site: onto.site, stroke: onto.stroke - shift },
+    };
+}
+
+/**
+ * A stroke with one of its nodes laid onto another: closed, or without the node; null where neither can be.
+ *
+ * @param {Stroke} stroke
+ * @param {number} from
+ * @param {number} onto
+ * @returns {Stroke | null}
+ */
+function joinedWithin(stroke, from, onto) {
+    const run = runsOf(stroke).find(({ anchors }) => anchors.includes(from) && anchors.includes(onto));
+    if (!run || from === onto) return null;
+    const last = run.anchors.length - 1;
+    const apart = Math.abs(run.anchors.indexOf(from) - run.anchors.indexOf(onto));
+    if (apart === 1 || (run.closed && apart === last)) {
+        const left = deleteNodes(stroke, [from]);
+        return left.length === 1 ? left[0] : null;
+    }
+    if (run.closed || apart !== last) return null;
+    if (kindOf(stroke) === "hermite") {
+        const to = pointsOf(stroke)[onto / 3];
+        return mapPoints(stroke, (point, k) => (3 * k === from ? to : point));
+    }
+    if (isChain(stroke)) {
+        const chains = numbered(chainsOf(stroke)).map(({ chain, offset }) => {
+            const [end, to] = [from - offset, onto - offset];
+            if (!chain[end] || !chain[to]) return chain;
+            const inward = end ? end - 1 : 1;
+            return chain.map((point, k) =>
+                k === end ? chain[to] : k === inward ? carried(point, chain[end], chain[to]) : point,
+            );
+        });
+        return strokesOf(stroke, chains)[0];
+    }
+    const points = pointsOf(stroke).filter((_, k) => k !== from);
+    return points.length < LEAST_CLOSED ? null : { ...stroke, [kindOf(stroke)]: points, closed: true };
+}
+
+/** A handle that goes along with its anchor. @type {(handle: Point, from: Point, to: Point) => Point} */
+const carried = (handle, from, to) => (same(handle, from) ? to : tidyPlus(handle, minus(to, from)));
+
+/**
+ * Two strokes of a site as one, the end of the first laid onto that of the second; null where they cannot be.
+ *
+ * @param {Stroke} stroke
+ * @param {number} from
+ * @param {Stroke} other
+ * @param {number} onto
+ * @returns {Stroke | null}
+ */
+function joinedTo(stroke, from, other, onto) {
+    if (![stroke, other].every((one) => isStraight(one) || isChain(one))) return null;
+    const ends = [endsOf(stroke), endsOf(other)];
+    if (!ends[0].includes(from) || !ends[1].includes(onto)) return null;
+    const straight = isStraight(stroke) && isStraight(other);
+    const map = compose(inverse(placementIn(other)), placementIn(stroke));
+    const [moving, kept] = [stroke, other].map((one) => [...(straight ? pointsOf(one) : chainsOf(one)[0])]);
+    // From the start of the one that stays, through where they meet, to the end of the one that is moved.
+    if (from) moving.reverse();
+    if (!onto) kept.reverse();
+    const laid = moving.map((point) => apply(map, point));
+    const joint = kept[kept.length - 1];
+    const rest = straight ? laid.slice(1) : [carried(laid[1], laid[0], joint), ...laid.slice(2)];
+    if (same(rest[straight ? 0 : 2], joint)) return null;
+    const points = [...kept, ...rest];
+    if (!onto) points.reverse();
+    const made = withKind(other, straight ? "polyline" : "bezier", points);
+    return straight && isClosed(points) && points.length > LEAST_CLOSED
+        ? { ...made, polyline: points.slice(0, -1), closed: true }
+        : made;
+}
+
+/** The nodes at both ends of an open stroke of one curve, the first 0; none of others. @type {(s: Stroke) => number[]} */
+function endsOf(stroke) {
+    const [run, ...others] = runsOf(stroke);
+    const last = run?.anchors[run.anchors.length - 1];
+    return last && !run.closed && !others.length ? [0, last] : [];
+}
+
+/**
+ * The design with what is selected joined: the first of two nodes laid onto the second; else the two ends of one stroke,
+ * or of two strokes those that are nearest to each other. Null where nothing can be, and of more strokes.
+ *
+ * @param {Design} design
+ * @param {{strokes: readonly Ref[], nodes: readonly NodeRef[]}} selection
+ * @returns {Joined | null}
+ */
+export function joinSelected(design, { strokes, nodes }) {
+    if (nodes.length === 2) return joinNodes(design, nodes[0], nodes[1]);
+    if (strokes.length > 2) return null;
+    const ends = strokes.flatMap((ref) => {
+        const stroke = strokeAt(design, ref);
+        const shown = stroke ? nodesOf(stroke, placementOf(design.site[ref.site], stroke)) : [];
+        const numbers = stroke ? endsOf(stroke) : [];
+        return shown.filter(({ node }) => numbers.includes(node)).map(({ node, at }) => ({ ...ref, node, at }));
+    });
+    return ends
+        .flatMap((onto, k) => ends.slice(k + 1).map((from) => ({ from, onto, apart: distance(from.at, onto.at) })))
+        .filter(({ from, onto }) => strokes.length === 1 || !isSameStroke(from, onto))
+        .sort((one, other) => one.apart - other.apart)
+        .reduce((found, { from, onto }) => found ?? joinNodes(design, from, onto), /** @type {Joined | null} */ (null));
+}
