@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import signal
+import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -321,3 +322,32 @@ def test_gallery(window: Window) -> None:
     page.get_by_role("button", name="Undo").click()
     assert window.text == before
     assert saved_state(window) == "saved"
+
+
+def test_a_new_design_in_a_file_of_its_own(window: Window, studio: Studio) -> None:
+    """Nothing is written over, and what was not saved of the old one can be found again."""
+    page = window.page  # which ends with the new one: this test is the last
+    draw_a_line(window)
+    drawn = window.strokes
+    page.get_by_role("button", name="New", exact=True).click()
+    page.get_by_text("What is not saved of work/bird.toml is kept as a copy").wait_for()
+    page.get_by_label("Name", exact=True).fill("leaf")
+    page.get_by_role("button", name="Begin").click()
+    page.locator("#file").get_by_text("work/leaf.toml").wait_for()
+    window.wait()
+    assert window.strokes != drawn
+    assert page.get_by_role("button", name="Undo").is_disabled()
+    leaf = studio.folder / "work/leaf.toml"
+    assert not leaf.exists()
+    window.save()
+    assert tomllib.loads(leaf.read_text(encoding="utf-8")) == window.design
+    assert tomllib.loads((studio.folder / "work/bird.toml").read_text(encoding="utf-8")) == DESIGN
+    copies = [json.loads(path.read_bytes()) for path in studio.folder.glob(".state/**/bird-*.json")]
+    assert drawn in [copy["design"]["site"][0]["strokes"] for copy in copies]
+
+    before = window.text
+    page.get_by_role("button", name="New", exact=True).click()
+    page.get_by_label("Name", exact=True).fill("bird")
+    page.get_by_role("button", name="Begin").click()
+    page.get_by_text("work/bird.toml: is there already").wait_for()
+    assert (window.text, page.locator("#file").inner_text()) == (before, "work/leaf.toml")

@@ -13,6 +13,7 @@ import sys
 import time
 import tomllib
 from collections.abc import Callable, Iterator
+from contextlib import closing
 from copy import deepcopy
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
@@ -178,6 +179,25 @@ def test_a_new_design_has_a_free_name(file: Path, opens: Opens) -> None:
     first.save(design_of(first))
     assert Path(first.path).read_text() == starter_text("p4", "design.toml")
     assert first.opened()["saved"] is True
+
+
+def test_a_new_design_is_begun_beside_another(file: Path, opens: Opens) -> None:
+    """Under its name or the next that is free, never a file that is there, nor one that a studio draws now."""
+    document = opens(file.name)
+    (file.parent / "taken.toml").write_text("mine")
+    with closing(document.beside(" leaf ")) as leaf:
+        assert leaf.path == str(file.parent / "leaf.toml")
+        assert leaf.opened()["saved"] is False
+        assert not Path(leaf.path).exists()
+        for name in ("taken", "taken.toml", file.name, "leaf"):
+            with pytest.raises(DesignError, match="is there already, or is drawn now"):
+                document.beside(name)
+        with closing(document.beside("")) as free, closing(document.beside("")) as next_free:
+            assert [Path(one.path).name for one in (free, next_free)] == ["design.toml", "design-2.toml"]
+    for name in ("../leaf", "a/b.toml", "c:leaf", ".hidden", "le\naf", "\0", "..", "x" * 200):
+        with pytest.raises(DesignError, match="is no name of a file"):
+            document.beside(name)
+    assert sorted(path.name for path in file.parent.iterdir()) == [file.name, "taken.toml"]
 
 
 def test_a_name_in_a_folder_that_is_not_there_is_refused(tmp_path: Path) -> None:

@@ -23,6 +23,7 @@ from voronoi_tiles.studio.messages import (
     DesignMessage,
     GroupsMessage,
     JobMessage,
+    NewMessage,
     ReloadMessage,
     SaveMessage,
     check_files,
@@ -50,6 +51,7 @@ def test_messages_are_read() -> None:
     assert read(type="groups", rev=3, design=DESIGN) == GroupsMessage(3, DESIGN)
     assert read(type="save", rev=4, design=DESIGN, over=True) == SaveMessage(4, DESIGN, True)
     assert read(type="reload") == ReloadMessage()
+    assert (read(type="new"), read(type="new", name="leaf")) == (NewMessage(""), NewMessage("leaf"))
 
 
 BROKEN = (
@@ -61,6 +63,7 @@ BROKEN = (
     *(f'{{"type": "design", "rev": 1, "design": {{}}, "tolerance": {t}}}' for t in ("0", "-1", '"1"', "true", "[]")),
     *(f'{{"type": "design", "rev": 1, "design": {{}}, "rest": {rest}}}' for rest in ("0", '"x"', "null", "[]")),
     *(f'{{"type": "job", "rev": 1, "design": {{}}, "job": {job}}}' for job in ("3", '"x"', "[1]", '{"kerf": {}}')),
+    *('{"type": "new", "name": 3}', '{"type": "new", "design": {}}'),
     *('{"type": "reload", "rev": 1}', '{"type": "design", "rev": 1, "design": {}, "job": {}}'),
     *('{"type": "job", "rev": 1, "design": {}, "limits": 3}', '{"type": "save", "rev": 1, "design": {}, "over": 1}'),
 )

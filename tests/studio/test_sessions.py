@@ -31,10 +31,21 @@ class Keeper:
         self.noted: list[Mapping[str, Any]] = []
         self.full = False
         self.change: dict[str, Any] | None = None
+        self.closed = False
 
     def opened(self) -> dict[str, Any]:
         """What is open."""
         return {"file": "bird.toml", "design": naming("../on-disk.svg"), "recovery": {"design": naming("../noted.svg")}}
+
+    def beside(self, name: str) -> Keeper:
+        """Another document, under no name that is taken."""
+        if name == "bird":
+            raise DesignError("is there already", file=name)
+        return Keeper()
+
+    def close(self) -> None:
+        """Let others have it."""
+        self.closed = True
 
     def note(self, design: Mapping[str, Any]) -> None:
         """Take a recovery copy."""
@@ -116,6 +127,26 @@ def test_the_newest_design_is_noted(monkeypatch: pytest.MonkeyPatch) -> None:
         page.leave()
         await serving
         assert keeper.noted[-1] == {"number": 51}
+
+    at_desk(story, monkeypatch)
+
+
+def test_a_new_design_takes_the_place_of_one_that_is_noted(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is not saved is noted, then the file is let go; where the new one cannot be begun, nothing has changed."""
+
+    async def story(desk: Desk, keeper: Keeper, page: Page, _serving: asyncio.Task[None]) -> None:
+        page.say(type="new", name="bird")
+        await until(lambda: "trouble" in [message["type"] for message in page.heard])
+        held: Any = desk.document
+        assert held is keeper
+        page.say(type="design", rev=1, design={"number": 1})
+        page.say(type="new", name="leaf")
+        await until(lambda: [message["type"] for message in page.heard].count("opened") == 2)
+        assert (keeper.noted[-1], keeper.closed) == ({"number": 1}, True)
+        begun: Any = desk.document
+        page.say(type="design", rev=2, design={"number": 2})
+        await until(lambda: {"number": 2} in begun.noted)
+        assert {"number": 2} not in keeper.noted
 
     at_desk(story, monkeypatch)
 

@@ -18,6 +18,7 @@ from voronoi_tiles.base.documents import document_text
 from voronoi_tiles.base.errors import DesignError, OutputError, why_not_opened
 from voronoi_tiles.base.files import is_special, write_whole, writing
 from voronoi_tiles.base.tolerance import FILE_BYTES_MAX
+from voronoi_tiles.base.values import shown
 from voronoi_tiles.designs.load import STARTER, parse, refuse_drawing
 from voronoi_tiles.designs.starters import starter_text
 from voronoi_tiles.studio.design_parts import require_parts
@@ -29,6 +30,9 @@ NEW: Final = "design.toml"
 """What a design is called that has no name yet; design-2.toml where that is taken."""
 
 _GROUP: Final = "p4"
+_NAME: Final = re.compile(r"""[^./\\:*?"<>|][^/\\:*?"<>|]{0,99}""")
+"""The name of a file in a folder, on any system; hidden ones are left to those who know how."""
+
 _BOM: Final = b"\xef\xbb\xbf"
 
 
@@ -85,6 +89,25 @@ class Document:
                 return document
             document.close()  # another studio has a new design of this name
         raise AssertionError("numbers do not end")
+
+    def beside(self, name: str) -> Document:
+        """A starter in the same folder, under a name that no file has: for "" the next one that is free.
+
+        The suffix may be left out. Raises DesignError where the name is none, or taken.
+        """
+        folder = os.path.dirname(self._shown)  # noqa: PTH120 - any name
+        if not name.strip():
+            return Document.open(None, folder=folder or os.curdir)
+        file = name.strip() if name.strip().lower().endswith((".toml", ".json")) else f"{name.strip()}.toml"
+        if not (_NAME.fullmatch(file) and file.isprintable()):
+            raise DesignError("is no name of a file", file=shown(name), remedy="Give a short one without / and :.")
+        path = os.path.join(folder, file)  # noqa: PTH118 - same
+        if not os.path.lexists(path):
+            document = Document(path)
+            if not document._recovery.holder:
+                return document
+            document.close()  # a studio, this one it may be, has a new design of this name
+        raise DesignError("is there already, or is drawn now", file=path, remedy="Give the new design another name.")
 
     def opened(self, *, recover: bool = True) -> dict[str, Any]:
         """The design as it is in the file now, which counts as read: what a page that opens is told.

@@ -96,6 +96,13 @@ class ReloadMessage:
 
 
 @dataclass(frozen=True)
+class NewMessage:
+    """A new design to be begun, in a file of this name beside that of the design."""
+
+    name: str
+
+
+@dataclass(frozen=True)
 class ByeMessage:
     """The page is closing."""
 
@@ -106,11 +113,12 @@ _KEYS: Final[Mapping[str, tuple[str, ...]]] = {
     "groups": ("rev", "design"),
     "save": ("rev", "design", "over"),
     "reload": (),
+    "new": ("name",),
     "bye": (),
 }
 """The types of messages, and the keys that each has beside its type."""
 
-Message = DesignMessage | JobMessage | GroupsMessage | SaveMessage | ReloadMessage | ByeMessage
+Message = DesignMessage | JobMessage | GroupsMessage | SaveMessage | ReloadMessage | NewMessage | ByeMessage
 
 
 def read_object(text: str | bytes) -> Table:
@@ -137,10 +145,10 @@ def read_message(table: Table) -> Message:
     if keys is None:
         raise _broken(f"a message has the unknown type {shown(kind)}")
     refuse_others(table, ("type", *keys))
-    if kind == "reload":
-        return ReloadMessage()
-    if kind == "bye":
-        return ByeMessage()
+    if kind == "new":
+        return NewMessage(read_text(table, "name", ""))
+    if not keys:
+        return ReloadMessage() if kind == "reload" else ByeMessage()
     rev, design = _rev(table), read_design(table)
     match kind:
         case "design":

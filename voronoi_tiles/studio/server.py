@@ -109,7 +109,7 @@ async def _serve(
         for task in tasks:
             task.cancel()
         await asyncio.gather(*tasks, return_exceptions=True)
-        await desk.keeper(document.close)
+        await desk.keeper(desk.document.close)
     return caught[0] if caught else 0
 
 

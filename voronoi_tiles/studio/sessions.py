@@ -20,6 +20,7 @@ from voronoi_tiles.studio.messages import (
     GroupsMessage,
     JobMessage,
     Message,
+    NewMessage,
     ReloadMessage,
     SaveMessage,
     Table,
@@ -74,6 +75,17 @@ class Desk:
             self._opened = await self.keeper(call)
             self.know(self._opened.get("design"))
         return {"type": "opened", **self._opened, "again": again}
+
+    async def begin(self, name: str) -> dict[str, Any]:
+        """Begin a new design beside this one, which is closed; what is not saved of it is noted. The message "opened".
+
+        Raises VoronoiTilesError, after which nothing has changed.
+        """
+        await self.note_now()
+        old, self.document = self.document, await self.keeper(self.document.beside, name)
+        self._newest, self._own = None, set()
+        await self.keeper(old.close)
+        return await self.opened()
 
     def know(self, design: Table | None) -> None:
         """Remember what files the design on disk names: these may be read, wherever they are.
@@ -226,6 +238,8 @@ class Session:
                 await self.send({**saved, "rev": rev})
             case ReloadMessage():
                 await self.send(await desk.opened(recover=False))
+            case NewMessage(name):
+                await self.send(await desk.begin(name))
             case ByeMessage():
                 await desk.note_now()
 

@@ -156,6 +156,7 @@ const COMMANDS = {
     "save-as": () => void ask.saveAs(),
     export: () => ask.export(),
     open: () => ask.open(),
+    new: () => ask.begin(),
     gallery: () => void ask.gallery(),
     coupon: () => ask.coupon(),
     share: () => ask.share(),
@@ -431,7 +432,7 @@ link.on("opened", (message) => {
         return;
     }
     const trouble = note(message.note);
-    if (store.state.file) {
+    if (store.state.file === message.file) {
         // What others have made of the file was asked for: undo leads back.
         store.edit("take theirs", () => message.design, { selection: NOTHING });
         store.set({ file: message.file, trouble });

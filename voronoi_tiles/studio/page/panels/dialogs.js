@@ -57,7 +57,7 @@ function nameOf(answer, other) {
 export function dialogs(home, { store, link, stage, save, keepMine }) {
     /**
      * @param {string} title
-     * @param {Node[]} content
+     * @param {(Node | string)[]} content
      * @param {{label: string, first?: boolean, run?: () => unknown}[]} actions the last closes without doing anything
      */
     const open = (title, content, actions) => {
@@ -276,6 +276,33 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
                     ),
                 );
             }
+        },
+
+        begin() {
+            const { file, saved } = store.state;
+            const name = make("input", { type: "text", placeholder: "design.toml", autocomplete: "off" });
+            const kept = `What is not saved of ${file} is kept as a copy, which is offered when it is opened again.`;
+            open(
+                "New design",
+                [
+                    make("p", {}, `It goes into a file beside ${file}, which the first save writes.`),
+                    saved ? "" : make("p", { class: "note" }, kept),
+                    field("Name", name, "Without one, the next name that is free"),
+                ],
+                [
+                    {
+                        label: "Begin",
+                        first: true,
+                        run() {
+                            link.sendNow();
+                            if (!link.send({ type: "new", name: name.value })) {
+                                throw new Error("There is no connection to the studio's server: try again later.");
+                            }
+                        },
+                    },
+                    cancel,
+                ],
+            );
         },
 
         open() {
