@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Iterator
 from contextlib import contextmanager
 from math import atan2, degrees, hypot, sin, sqrt
@@ -574,6 +575,62 @@ def test_a_tile_is_made_as_wide_as_it_shall_be(window: Window) -> None:
 
 
 # Fingers
+
+
+def test_a_picture_to_trace(window: Window) -> None:
+    """It is moved, made larger and turned by the pointer, the arrows and as numbers, and lies there again next time."""
+    page = window.page
+    before = window.text
+    page.get_by_role("tab", name="Symmetry").click()
+    picture = page.evaluate(
+        "() => Object.assign(document.createElement('canvas'), { width: 40, height: 20 }).toDataURL().split(',')[1]"
+    )
+    file = {"name": "bird.png", "mimeType": "image/png", "buffer": base64.b64decode(picture)}
+    page.get_by_label("Picture to trace").set_input_files(file)
+    move = page.get_by_role("button", name="Move picture")
+    move.click()
+
+    def numbers() -> list[float]:
+        """The middle, the width and the turn, as the panel has them."""
+        return [float(field.input_value()) for field in page.locator("[data-key^=picture]").all()]
+
+    def changed(key: str, old: str) -> None:
+        """Wait until a number is another one."""
+        place = f"[data-key='picture {key}']"
+        page.wait_for_function("([place, old]) => document.querySelector(place).value !== old", arg=[place, old])
+
+    assert numbers() == [30, 30, 60, 0]
+    window.drag((35, 28), (25, 38))
+    changed("0", "30")
+    assert numbers() == near(20, 40, 60, 0)
+    window.drag((50, 55), (5, 70))  # a quarter turn of the corner at the upper right
+    changed("turn", "0")
+    assert numbers() == pytest.approx([20, 40, 60, 90], abs=1)
+    for label, text, key in (("Picture width, mm", "2in", "width"), ("Picture turn, degrees", "-30", "turn")):
+        old = page.get_by_label(label).input_value()
+        page.get_by_label(label).fill(text)
+        page.get_by_label(label).press("Enter")
+        changed(key, old)
+    middle = page.get_by_label("Middle of the picture, x").input_value()
+    move.focus()
+    page.keyboard.press("ArrowUp")
+    page.locator("#overlay").focus()
+    page.keyboard.press("Shift+ArrowRight")
+    changed("0", middle)
+    laid = numbers()
+    assert laid == near(21, 40.1, 50.8, -30)
+    page.locator("#overlay").focus()
+    page.keyboard.press("Escape")
+    page.locator("#move-picture[aria-pressed=false]").wait_for()
+    window.drag((35, 38), (25, 48))
+    assert numbers() == laid
+    assert window.text == before
+
+    page.reload()
+    page.get_by_role("button", name="Stay with the file").click()
+    page.get_by_label("Picture to trace").set_input_files(file)
+    page.get_by_label("Picture width, mm").wait_for(state="attached")
+    assert numbers() == laid
 
 
 def test_fingers(chromium: Any, studio: Studio) -> None:

@@ -5,7 +5,8 @@ import { Link } from "./link.js";
 import { copied, siteNames } from "./model/design.js";
 import { joinSelected } from "./model/joining.js";
 import { shown } from "./model/lengths.js";
-import { NOTHING, Store, shownFactor } from "./store.js";
+import { inUnits } from "./model/tracing.js";
+import { NOTHING, NO_TRACE, Store, shownFactor } from "./store.js";
 import { BREAKS, TOOLS, Toolbox } from "./tools/toolbox.js";
 import { listen } from "./tools/keys.js";
 import { SheetView } from "./view/sheet.js";
@@ -24,8 +25,8 @@ const EMPTY = { schema: 1, group: "p4", cell: { a: 60 }, site: [{ strokes: [] }]
 /** What the page keeps from one time to the next: how it looks, and nothing of the design. */
 const HABITS = ["unit", "theme", "shown"];
 
-/** Where the job of this file is kept, as files of designs hold none. */
-let jobKey = "";
+/** The design's file, under which its job is kept, and where the picture to trace lies: it holds neither. */
+let home = "";
 
 /**
  * What the browser keeps for this page under a name.
@@ -58,6 +59,7 @@ const store = new Store({
     unit: "mm",
     shown: { elements: true, cell: true, grid: false, copies: true, region: false, colours: true, edges: true },
     theme: "",
+    trace: NO_TRACE,
     connected: true,
     dragging: false,
     pointer: null,
@@ -81,7 +83,7 @@ const hands = {
     camera: stage.camera,
     redraw: () => stage.redraw(),
     take(tool) {
-        store.set({ tool });
+        store.set({ tool, trace: { ...store.state.trace, moves: false } });
         if (sheet.visible) {
             openTab(/** @type {HTMLButtonElement} */ (element("tab-drawing")));
         }
@@ -402,8 +404,16 @@ element("unit").addEventListener("change", (event) => {
 });
 
 store.subscribe(["job"], ({ job }) => {
-    if (jobKey) {
-        localStorage.setItem(jobKey, JSON.stringify(job));
+    if (home) {
+        localStorage.setItem(`voronoi_tiles job ${home}`, JSON.stringify(job));
+    }
+});
+
+store.subscribe(["trace", "design"], ({ trace, design }) => {
+    store.set({ trace: inUnits(trace, design.units ?? "mm") });
+    if (home && trace.at) {
+        const { image: _, moves: __, ...laid } = trace;
+        localStorage.setItem(`voronoi_tiles trace ${home}`, JSON.stringify(laid));
     }
 });
 
@@ -439,8 +449,9 @@ link.on("opened", (message) => {
     } else {
         store.open(message.design, { file: message.file, trouble });
         stage.fit();
-        jobKey = `voronoi_tiles job ${message.folder}/${message.file}`;
-        store.set({ job: kept(jobKey) });
+        home = `${message.folder}/${message.file}`;
+        const trace = { ...NO_TRACE, ...kept(`voronoi_tiles trace ${home}`) };
+        store.set({ job: kept(`voronoi_tiles job ${home}`), trace });
     }
     store.keep(message.saved ? message.design : null);
     openShared();

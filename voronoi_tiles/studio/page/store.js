@@ -3,6 +3,7 @@
 // sent to the server and drawn. Panels and views subscribe to the keys that they show.
 
 import { History } from "./model/history.js";
+import { UNLAID } from "./model/tracing.js";
 
 /**
  * @typedef {import("./model/design.js").Design} Design
@@ -13,6 +14,7 @@ import { History } from "./model/history.js";
  * @typedef {import("./link.js").Product} Product
  * @typedef {{strokes: readonly Ref[], nodes: readonly NodeRef[]}} Selection
  * @typedef {{message: string, remedy: string, quiet?: boolean}} Trouble quiet: nothing is wrong
+ * @typedef {import("./model/tracing.js").Laid & {image: ImageBitmap | null, moves: boolean}} Trace moves: whether the pointer has it
  *
  * @typedef {object} State
  * @property {Design} design what is drawn, as it is seen: during a drag not yet in the history
@@ -32,6 +34,7 @@ import { History } from "./model/history.js";
  * @property {"mm" | "cm" | "in"} unit in which lengths are shown
  * @property {{elements: boolean, cell: boolean, grid: boolean, copies: boolean, region: boolean, colours: boolean, edges: boolean}} shown
  * @property {"" | "light" | "dark"} theme empty: as the system is
+ * @property {Trace} trace a picture that is traced
  * @property {boolean} connected
  * @property {boolean} dragging whether `design` is still in the hand
  * @property {readonly [number, number] | null} pointer where in the drawing it is
@@ -45,6 +48,9 @@ const CALM_MS = 125;
 
 /** @type {Readonly<Selection>} */
 export const NOTHING = Object.freeze({ strokes: [], nodes: [] });
+
+/** @type {Readonly<Trace>} */
+export const NO_TRACE = Object.freeze({ ...UNLAID, image: null, moves: false });
 
 /**
  * The factor from the drawing's units, before the design's scale, to those in which lengths are shown.

@@ -8,6 +8,7 @@ import { groupOf, latticeOf, motionsOf } from "../model/symmetry.js";
 import { drawOutlines } from "../view/outlines.js";
 import { Camera } from "../view/camera.js";
 import { deferred, field, lengthField, make, refill } from "./elements.js";
+import { tracePart } from "./trace.js";
 
 /**
  * @typedef {import("./panels.js").Context} Context
@@ -55,7 +56,7 @@ export class SymmetryPanel extends HTMLElement {
             make("h2", {}, "Show"),
             this.#shown,
             make("h2", {}, "Picture to trace"),
-            this.#trace(),
+            tracePart(context),
         );
         store.subscribe(
             ["tables", "design", "unit", "dragging", "exact", "site"],
@@ -253,67 +254,6 @@ export class SymmetryPanel extends HTMLElement {
                 "The whole design is scaled, cell and strokes.",
             ),
         );
-    }
-
-    /** A picture under the drawing: it stays in the page, and in no file. */
-    #trace() {
-        const { stage } = this.#context;
-        const strength = make("input", {
-            type: "range",
-            min: 0,
-            max: 1,
-            step: 0.05,
-            ".value": 0.4,
-            oninput: () => stage.setTrace({ opacity: strength.valueAsNumber }),
-        });
-        const size = make("input", {
-            type: "range",
-            min: -2,
-            max: 2,
-            step: 0.01,
-            ".value": 0,
-            oninput: () => stage.setTrace({ size: 2 ** size.valueAsNumber }),
-        });
-        const more = make(
-            "div",
-            { hidden: true },
-            field("Strength", strength),
-            field("Size", size),
-            make(
-                "button",
-                {
-                    type: "button",
-                    onclick: () => {
-                        stage.setTrace({ image: null });
-                        more.hidden = true;
-                        file.value = "";
-                    },
-                },
-                "Take out",
-            ),
-        );
-        const file = make("input", {
-            type: "file",
-            accept: "image/png,image/jpeg,image/webp,image/gif,image/svg+xml",
-            "aria-label": "Picture to trace",
-            onchange: async () => {
-                const chosen = file.files?.[0];
-                if (chosen) {
-                    try {
-                        stage.setTrace({ image: await createImageBitmap(chosen) });
-                        more.hidden = false;
-                    } catch {
-                        this.#context.store.set({
-                            trouble: {
-                                message: `${chosen.name} is no picture that this browser reads.`,
-                                remedy: "Take a PNG or JPEG.",
-                            },
-                        });
-                    }
-                }
-            },
-        });
-        return make("div", {}, file, more);
     }
 
     /** @param {State} state */

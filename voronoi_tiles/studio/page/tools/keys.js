@@ -121,15 +121,18 @@ export function listen(hands, toolbox, canvas, run) {
     /** @param {KeyboardEvent} event */
     const onCanvas = (event) => {
         const arrow = ARROWS[event.key];
+        const by = 0.1 * (event.shiftKey ? (event.ctrlKey ? 100 : 10) : 1);
         const { selection } = store.state;
+        if (arrow && toolbox.tool.nudge) {
+            toolbox.tool.nudge([arrow[0] * by, arrow[1] * by], hands);
+            return true;
+        }
         if (arrow && (selection.strokes.length || selection.nodes.length) && store.state.tool === "select") {
-            const by = 0.1 * (event.shiftKey ? (event.ctrlKey ? 100 : 10) : 1);
             const name = `nudge ${JSON.stringify(selection)}`;
             store.edit("nudge", (design) => moved(design, selection, [arrow[0] * by, arrow[1] * by]), { merge: name });
             return true;
         }
         if (arrow && toolbox.tool.draws) {
-            const by = 0.1 * (event.shiftKey ? (event.ctrlKey ? 100 : 10) : 1);
             toolbox.moveCross(arrow[0] * by, arrow[1] * by);
             return true;
         }
@@ -165,7 +168,8 @@ export function listen(hands, toolbox, canvas, run) {
 
     /** @param {KeyboardEvent} event */
     const plain = (event) => {
-        if (event.target === canvas && onCanvas(event)) {
+        const moves = event.target instanceof HTMLElement && event.target.id === "move-picture" && ARROWS[event.key];
+        if ((event.target === canvas || moves) && onCanvas(event)) {
             return true;
         }
         if (event.key === "Escape") {

@@ -43,6 +43,7 @@
  * @property {(touch: Touch, hands: Hands) => void} [twice] a double click
  * @property {(at: Point, reach: number, hands: Hands) => import("../model/snapping.js").Snapped | null} [joins] the node that what is
  *   held would be joined to: the pointer is drawn to that before all else
+ * @property {(by: Point, hands: Hands) => void} [nudge] arrow keys move what it has
  * @property {(key: string, event: KeyboardEvent, hands: Hands) => boolean} [key_down] whether the key was for it
  * @property {(hands: Hands) => boolean} [undo] take back its own last point; whether there was one
  * @property {(hands: Hands) => void} [leave] it is laid down: end what was begun

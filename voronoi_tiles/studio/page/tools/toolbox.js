@@ -8,6 +8,7 @@ import { circle, freehand, point } from "./shapes.js";
 import { hand, zoom } from "./look.js";
 import { POINT_TOOLS } from "./points.js";
 import { select } from "./select.js";
+import { trace } from "./trace.js";
 
 /**
  * @typedef {import("./tool.js").Point} Point
@@ -62,10 +63,18 @@ export class Toolbox {
         canvas.addEventListener("wheel", (event) => this.#wheel(event), { passive: false });
         canvas.addEventListener("contextmenu", (event) => event.preventDefault());
         hands.store.subscribe(["tool"], (state) => this.#take(state.tool));
+        let moves = false;
+        hands.store.subscribe(["trace"], (state) => {
+            if (state.trace.moves !== moves) {
+                moves = state.trace.moves;
+                this.#show();
+            }
+        });
     }
 
     get tool() {
-        return this.#aside ? byName.hand : byName[this.#current];
+        const { image, moves } = this.#hands.store.state.trace;
+        return this.#aside ? byName.hand : image && moves ? trace : byName[this.#current];
     }
 
     /** @param {string} name */
@@ -75,6 +84,11 @@ export class Toolbox {
             this.#hands.store.cancel();
         }
         this.#current = name;
+        this.#show();
+    }
+
+    /** Show what the tool in hand waits for. */
+    #show() {
         this.cross = null;
         this.#canvas.style.cursor = this.tool.cursor;
         this.#hands.hint(this.tool.help);

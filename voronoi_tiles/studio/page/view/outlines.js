@@ -25,6 +25,7 @@ import { roundedScale, screenPath } from "./paths.js";
  * @property {number} [opacity] Of the line.
  * @property {Colouring | boolean | null} [fill] Fill the tiles: true for colours by site and motion.
  * @property {boolean} [dark]
+ * @property {() => void} [under] Draws what lies over the fill and under the lines, in the context as it was.
  */
 
 /** Most copies that are drawn: of more one could see nothing but lines. */
@@ -54,16 +55,17 @@ export function drawOutlines(context, camera, lattice, motions, tiles, style = {
     const { scale = 1, line = 1.5, dash = [], opacity = 1, fill = null, dark = false } = style;
     const causes = [lattice, motions, tiles, scale, line, fill, camera.scale, ...camera.centre, ...camera.size];
     const copies = kept.get(causes, () => copiesOf(camera, lattice, motions, tiles, { scale, line, fill }));
-    if (!copies) return 0;
     context.save();
     context.setTransform(camera.ratio, 0, 0, camera.ratio, 0, 0);
-    if (fill) {
-        for (const [colour, part] of copies.parts) {
-            context.fillStyle = css(tileColour(colour, dark));
-            context.fill(part, "evenodd");
-        }
+    for (const [colour, part] of (fill && copies?.parts) || []) {
+        context.fillStyle = css(tileColour(colour, dark));
+        context.fill(part, "evenodd");
     }
-    if (line > 0) {
+    context.restore();
+    style.under?.();
+    if (copies && line > 0) {
+        context.save();
+        context.setTransform(camera.ratio, 0, 0, camera.ratio, 0, 0);
         context.lineWidth = line;
         context.lineJoin = "round";
         context.setLineDash(dash);
@@ -71,9 +73,9 @@ export function drawOutlines(context, camera, lattice, motions, tiles, style = {
         context.strokeStyle = style.colour ?? css(inks(dark).border);
         // In one stroke: lines that two copies share are not darker than others.
         context.stroke(copies.all);
+        context.restore();
     }
-    context.restore();
-    return copies.count;
+    return copies?.count ?? 0;
 }
 
 /**

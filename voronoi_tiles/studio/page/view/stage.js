@@ -9,6 +9,7 @@ import { Camera } from "./camera.js";
 import { drawOutlines } from "./outlines.js";
 import { drawOverlay } from "./overlay.js";
 import { FLAT, roundedScale } from "./paths.js";
+import { drawTrace } from "./trace.js";
 
 /**
  * @typedef {import("../store.js").Store} Store
@@ -44,8 +45,6 @@ export class Stage {
     #tooMuch = null;
     /** @type {any} the last colouring that came */
     #colouring = null;
-    /** @type {{image: ImageBitmap | null, opacity: number, size: number}} a picture that is traced, in the middle of the cell */
-    #trace = { image: null, opacity: 0.4, size: 1 };
 
     /**
      * @param {HTMLCanvasElement} picture
@@ -66,7 +65,7 @@ export class Stage {
             }
             this.redraw();
         });
-        store.subscribe(["design", "refusal", "selection", "shown", "tables", "theme", "dragging"], () =>
+        store.subscribe(["design", "refusal", "selection", "shown", "tables", "theme", "dragging", "trace"], () =>
             this.redraw(),
         );
         // What has come is drawn at once, for the screen's next picture, unless that is drawn in any case.
@@ -145,30 +144,6 @@ export class Stage {
         return this.#sites?.sites ?? [];
     }
 
-    /** @param {Partial<{image: ImageBitmap | null, opacity: number, size: number}>} patch */
-    setTrace(patch) {
-        this.#trace = { ...this.#trace, ...patch };
-        this.redraw();
-    }
-
-    /**
-     * @param {CanvasRenderingContext2D} context
-     * @param {any} lattice
-     */
-    #drawTrace(context, { a, b }) {
-        const { image, opacity, size } = this.#trace;
-        if (image) {
-            const width = size * Math.hypot(...a);
-            const height = (width * image.height) / image.width;
-            const [x, y] = this.camera.toScreen([(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]);
-            const { scale, ratio } = this.camera;
-            context.setTransform(ratio, 0, 0, ratio, 0, 0);
-            context.globalAlpha = opacity;
-            context.drawImage(image, x - (width * scale) / 2, y - (height * scale) / 2, width * scale, height * scale);
-            context.globalAlpha = 1;
-        }
-    }
-
     redraw() {
         this.#frame ||= requestAnimationFrame(() => {
             this.#frame = 0;
@@ -193,8 +168,9 @@ export class Stage {
         this.#colouring = state.exact?.colouring ?? this.#colouring;
         const hasPicture = state.shown.colours && !this.#outlinesDo(state) && this.#drawPicture(lattice, motions);
         this.#picture.hidden = !hasPicture;
-        this.#drawTrace(context, lattice);
-        this.#outlines(context, state, state.shown.colours && !hasPicture);
+        this.#outlines(context, state, state.shown.colours && !hasPicture, () =>
+            drawTrace(context, camera, state.trace),
+        );
         drawOverlay(context, this.hands, this.toolbox, motions, lattice);
         this.drawn = state.exact;
     }
@@ -236,9 +212,11 @@ export class Stage {
      * @param {CanvasRenderingContext2D} context
      * @param {State} state
      * @param {boolean} filled whether they are the picture
+     * @param {() => void} under draws what is to lie over the picture and under the lines
      */
-    #outlines(context, { exact, refusal, shown }, filled) {
+    #outlines(context, { exact, refusal, shown }, filled, under) {
         if (!exact || !(shown.edges || filled)) {
+            under();
             return;
         }
         const { lattice, motions } = this.symmetry(exact.design);
@@ -246,6 +224,7 @@ export class Stage {
         drawOutlines(context, this.camera, lattice, motions, exact.tiles, {
             scale: exact.scale,
             dark: this.dark,
+            under,
             // Lines of one pixel are quick where the processor draws.
             line: !shown.edges ? 0 : refusal || this.#preview?.software ? 1 : 1.6,
             colour: style.getPropertyValue(refusal ? "--quiet" : "--text").trim(),
