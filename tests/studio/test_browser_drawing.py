@@ -577,6 +577,38 @@ def test_a_tile_is_made_as_wide_as_it_shall_be(window: Window) -> None:
 # Fingers
 
 
+def test_a_tool_gets_another_letter(window: Window) -> None:
+    """In the help: a letter that is taken is said, tooltips follow, the browser keeps it; and back again."""
+    page = window.page
+    pen = page.locator("[data-tool=pen]")
+
+    def letters() -> tuple[str | None, str | None]:
+        """What the pen's button says."""
+        return pen.get_attribute("title"), pen.get_attribute("aria-keyshortcuts")
+
+    page.keyboard.press("?")
+    page.keyboard.press("q")  # goes into no field
+    page.get_by_label("Letter of Pen", exact=True).focus()
+    page.keyboard.press("l")
+    page.get_by_role("alert").get_by_text("L is the letter of “Line”").wait_for()
+    assert letters() == ("Pen (P)", "p")
+    page.keyboard.press("Backspace")
+    page.keyboard.press("q")
+    assert page.get_by_text("is the letter of").count() == 0
+    page.keyboard.press("Escape")
+    assert letters() == ("Pen (Q)", "q")
+    page.keyboard.press("p")
+    assert pen.get_attribute("aria-pressed") == "false"
+    page.keyboard.press("q")
+    assert pen.get_attribute("aria-pressed") == "true"
+    assert page.evaluate("() => JSON.parse(localStorage.getItem('voronoi_tiles studio')).letters") == {"pen": "q"}
+    page.keyboard.press("?")
+    page.get_by_role("button", name="Reset the letters").click()
+    assert page.get_by_label("Letter of Pen", exact=True).input_value() == "P"
+    page.keyboard.press("Escape")
+    assert letters() == ("Pen (P)", "p")
+
+
 def test_a_picture_to_trace(window: Window) -> None:
     """It is moved, made larger and turned by the pointer, the arrows and as numbers, and lies there again next time."""
     page = window.page

@@ -9,6 +9,7 @@ import { inUnits } from "./model/tracing.js";
 import { NOTHING, NO_TRACE, Store, shownFactor } from "./store.js";
 import { BREAKS, TOOLS, Toolbox } from "./tools/toolbox.js";
 import { listen } from "./tools/keys.js";
+import { letterOf } from "./tools/letters.js";
 import { SheetView } from "./view/sheet.js";
 import { Stage } from "./view/stage.js";
 import { clipboard } from "./clipboard.js";
@@ -23,7 +24,7 @@ const element = (id) => /** @type {HTMLElement} */ (document.getElementById(id))
 const EMPTY = { schema: 1, group: "p4", cell: { a: 60 }, site: [{ strokes: [] }] };
 
 /** What the page keeps from one time to the next: how it looks, and nothing of the design. */
-const HABITS = ["unit", "theme", "shown"];
+const HABITS = ["unit", "theme", "shown", "letters"];
 
 /** The design's file, under which its job is kept, and where the picture to trace lies: it holds neither. */
 let home = "";
@@ -59,6 +60,7 @@ const store = new Store({
     unit: "mm",
     shown: { elements: true, cell: true, grid: false, copies: true, region: false, colours: true, edges: true },
     theme: "",
+    letters: {},
     trace: NO_TRACE,
     connected: true,
     dragging: false,
@@ -218,16 +220,19 @@ for (const tool of TOOLS) {
     const button = document.createElement("button");
     button.type = "button";
     button.dataset.tool = tool.name;
-    button.title = `${tool.title} (${tool.key.toUpperCase()})`;
     button.setAttribute("aria-label", tool.title);
-    button.setAttribute("aria-keyshortcuts", tool.key);
     const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");
     const use = document.createElementNS("http://www.w3.org/2000/svg", "use");
     use.setAttribute("href", `#i-${tool.icon}`);
     svg.append(use);
     const letter = document.createElement("kbd");
-    letter.textContent = tool.key.toUpperCase();
     letter.setAttribute("aria-hidden", "true");
+    store.subscribe(["letters"], ({ letters }) => {
+        const key = letterOf(tool, letters);
+        letter.textContent = key.toUpperCase();
+        button.title = `${tool.title} (${key.toUpperCase()})`;
+        button.setAttribute("aria-keyshortcuts", key);
+    });
     button.append(svg, letter);
     button.addEventListener("click", () => hands.take(tool.name));
     element("tools").append(button);
@@ -359,7 +364,7 @@ function whyNoTile({ design, refusal }) {
         return refusal?.error ?? null;
     }
     const what = design.site.length > 1 ? `${siteNames(design)[bare]} has no stroke yet` : "Nothing is drawn yet";
-    return { message: what, remedy: "Take the pen (P) or another tool and draw.", quiet: true };
+    return { message: what, remedy: "Take the pen or another tool and draw.", quiet: true };
 }
 
 store.subscribe(["refusal", "trouble", "connected"], (state) => {
@@ -417,7 +422,7 @@ store.subscribe(["trace", "design"], ({ trace, design }) => {
     }
 });
 
-store.subscribe(["unit", "theme", "shown"], (state) => {
+store.subscribe(["unit", "theme", "shown", "letters"], (state) => {
     localStorage.setItem(
         "voronoi_tiles studio",
         JSON.stringify(Object.fromEntries(HABITS.map((key) => [key, /** @type {any} */ (state)[key]]))),

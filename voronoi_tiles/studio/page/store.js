@@ -34,6 +34,7 @@ import { UNLAID } from "./model/tracing.js";
  * @property {"mm" | "cm" | "in"} unit in which lengths are shown
  * @property {{elements: boolean, cell: boolean, grid: boolean, copies: boolean, region: boolean, colours: boolean, edges: boolean}} shown
  * @property {"" | "light" | "dark"} theme empty: as the system is
+ * @property {import("./tools/letters.js").Letters} letters of tools, where the user has given them others
  * @property {Trace} trace a picture that is traced
  * @property {boolean} connected
  * @property {boolean} dragging whether `design` is still in the hand

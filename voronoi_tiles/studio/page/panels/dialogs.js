@@ -11,6 +11,7 @@ import { placementOf } from "../model/strokes.js";
 import { regionOf } from "../model/symmetry.js";
 import { boxOf, entriesOf } from "../scene.js";
 import { field, make } from "./elements.js";
+import { lettersPart } from "./letters.js";
 
 /**
  * @typedef {object} Context
@@ -387,7 +388,9 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
                     ),
                 ),
             );
-            open("Keys", [make("div", { class: "help" }, ...columns)], [close]);
+            const { box } = open("Keys", [make("div", { class: "help" }, lettersPart(store), ...columns)], [close]);
+            // Not in the field of a letter, where the next key would give a tool another one.
+            box.querySelector("footer button")?.focus({ preventScroll: true });
         },
 
         /** @param {{design: any, at: string}} recovery */

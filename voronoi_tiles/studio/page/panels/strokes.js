@@ -156,7 +156,7 @@ export class StrokePanel extends HTMLElement {
             make("div", { class: "site" }, draw, field, remove),
             own.length
                 ? make("ul", { class: "strokes" }, ...own.map((entry) => this.#stroke(state, entry)))
-                : make("p", { class: "note" }, "No stroke yet: take the pen (P) and draw."),
+                : make("p", { class: "note" }, "No stroke yet: take the pen and draw."),
         ];
     }
 

@@ -1,8 +1,9 @@
 // @ts-check
-// Every key in one table: what the page does, what the help shows, and what the tooltips say.
+// Keys: what the page does, and what the help shows beside the tools' letters.
 
 import { isSameNode } from "../model/design.js";
 import { nodeRef, shownNodes } from "../scene.js";
+import { COMMAND_LETTERS, letterOf } from "./letters.js";
 import { moved, without } from "./select.js";
 import { TOOLS } from "./toolbox.js";
 import { NOTHING } from "../store.js";
@@ -15,7 +16,6 @@ import { NOTHING } from "../store.js";
 
 /** @type {{title: string, rows: Row[]}[]} */
 export const HELP = [
-    { title: "Tools", rows: TOOLS.map((tool) => ({ keys: tool.key.toUpperCase(), does: tool.title })) },
     {
         title: "Drawing",
         rows: [
@@ -197,16 +197,14 @@ export function listen(hands, toolbox, canvas, run) {
             "+": "zoom-in",
             "=": "zoom-in",
             "-": "zoom-out",
-            e: "toggle-elements",
-            g: "toggle-grid",
-            k: "toggle-copies",
-            j: "join",
+            ...COMMAND_LETTERS,
         })[event.key];
         if (command) {
             run(command);
             return true;
         }
-        const tool = TOOLS.find((one) => one.key === event.key.toLowerCase() || one.other === event.key);
+        const { letters } = store.state;
+        const tool = TOOLS.find((one) => letterOf(one, letters) === event.key.toLowerCase() || one.other === event.key);
         if (tool && !event.shiftKey) {
             hands.take(tool.name);
             canvas.focus({ preventScroll: true });

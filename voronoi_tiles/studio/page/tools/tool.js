@@ -30,7 +30,7 @@
  *
  * @typedef {object} Tool
  * @property {string} name
- * @property {string} key the letter that takes it, fixed
+ * @property {string} key the letter that takes it, until the user gives it another
  * @property {string} [other] another key that does
  * @property {string} title
  * @property {string} icon
