@@ -532,6 +532,36 @@ def test_group_and_cell_by_the_keyboard(window: Window) -> None:
     assert window.text == before
 
 
+def test_strokes_come_from_the_group_before(window: Window) -> None:
+    """After a change of the group they are drawn on their way, then where they are; at once for who asks for that."""
+    page = window.page
+    window.begin({**DESIGN, "group": "p3"})
+    page.evaluate(
+        "() => { const now = performance.now.bind(performance); performance.now = () => window.frozen ?? now(); }"
+    )
+
+    def again() -> str:
+        """What is drawn after the group is changed again, at the beginning of the way."""
+        page.evaluate("() => { window.frozen = null; }")
+        page.get_by_role("button", name="Undo").click()
+        window.wait()
+        page.evaluate("() => { window.frozen = performance.now(); }")
+        page.get_by_role("button", name="Redo").click()
+        window.wait()
+        seen: str = page.evaluate(
+            "() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() =>"
+            " done(document.getElementById('overlay').toDataURL()))))"
+        )
+        return seen
+
+    page.emulate_media(reduced_motion="reduce")
+    there = again()
+    page.emulate_media(reduced_motion="no-preference")
+    assert again() != there
+    page.evaluate("() => { window.frozen = null; }")
+    page.wait_for_function("there => document.getElementById('overlay').toDataURL() === there", arg=there)
+
+
 # Fields
 
 

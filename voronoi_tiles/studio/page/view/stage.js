@@ -8,6 +8,7 @@ import { cosets, latticeOf, motionsOf } from "../model/symmetry.js";
 import { Camera } from "./camera.js";
 import { drawOutlines } from "./outlines.js";
 import { drawOverlay } from "./overlay.js";
+import { Morph } from "./morph.js";
 import { FLAT, roundedScale } from "./paths.js";
 import { drawTrace } from "./trace.js";
 
@@ -45,6 +46,7 @@ export class Stage {
     #tooMuch = null;
     /** @type {any} the last colouring that came */
     #colouring = null;
+    #morph = new Morph();
 
     /**
      * @param {HTMLCanvasElement} picture
@@ -171,8 +173,14 @@ export class Stage {
         this.#outlines(context, state, state.shown.colours && !hasPicture, () =>
             drawTrace(context, camera, state.trace),
         );
-        drawOverlay(context, this.hands, this.toolbox, motions, lattice);
+        const scene = { design: state.design, lattice, motions, entries: this.entries() };
+        const seen = this.#morph.at(scene, performance.now());
+        const hands = { ...this.hands, entries: () => seen.entries };
+        drawOverlay(context, hands, this.toolbox, seen.motions, seen.lattice);
         this.drawn = state.exact;
+        if (seen.moves) {
+            this.redraw();
+        }
     }
 
     /**
