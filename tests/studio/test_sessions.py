@@ -178,6 +178,22 @@ def test_a_full_disk_is_told_once(monkeypatch: pytest.MonkeyPatch) -> None:
     at_desk(story, monkeypatch)
 
 
+def test_a_full_disk_hides_no_changes(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What others do to the file is told while nothing can be noted, and both go on."""
+
+    async def story(_desk: Desk, keeper: Keeper, page: Page, _serving: asyncio.Task[None]) -> None:
+        keeper.full = True
+        page.say(type="design", rev=1, design={"number": 1})
+        await until(lambda: page.heard[-1]["type"] == "trouble")
+        keeper.change = {"design": {"number": 2}, "file": "bird.toml"}
+        await until(lambda: page.heard[-1]["type"] == "changed")
+        keeper.full = False
+        await until(lambda: keeper.noted == [{"number": 1}])
+        assert [message["type"] for message in page.heard] == ["opened", "trouble", "changed"]
+
+    at_desk(story, monkeypatch)
+
+
 def test_changes_wait_for_somebody_to_tell(monkeypatch: pytest.MonkeyPatch) -> None:
     """What others do to the file while no page is there is told to the one that comes."""
 

@@ -125,23 +125,25 @@ class Desk:
                 await self.note_now()
 
     async def watch(self) -> None:
-        """Note what is new, and tell the page what others do to the file, again and again; trouble is told once."""
-        told = ""
+        """Note what is new, and tell the page what others do to the file, again and again; trouble is told once.
+
+        Neither waits for the other: on a full disk nothing can be noted, and others' changes are told all the same.
+        """
+        told = {self.note_now: "", self._tell_changes: ""}
         while True:
             await asyncio.sleep(_NOTED_EVERY_S)
-            try:
-                await self.note_now()
-                if self._page is not None:  # else it is looked for when there is somebody to tell
-                    await self._tell_changes()
-                told = ""
-            except Exception as error:  # noqa: BLE001 - whatever it is, the next copy may be written
-                if str(error) != told:
-                    told = str(error)
-                    await self.tell({"type": "trouble", **error_document(error)})
+            for step, before in told.items():
+                try:
+                    await step()
+                    told[step] = ""
+                except Exception as error:  # noqa: BLE001 - whatever it is, the next time may be right
+                    told[step] = str(error)
+                    if told[step] != before:
+                        await self.tell({"type": "trouble", **error_document(error)})
 
     async def _tell_changes(self) -> None:
-        """Tell the page what others have made of the file, where it is new."""
-        changed = await self.keeper(self.document.changed)
+        """Tell the page what others have made of the file, where it is new; without a page it is not looked for."""
+        changed = await self.keeper(self.document.changed) if self._page is not None else None
         if changed is not None:
             self.know(changed.get("design"))
             await self.tell({"type": "changed", **changed})
