@@ -105,8 +105,19 @@ class Window:
         found: list[dict[str, Any]] = self.design["site"][0]["strokes"]
         return found
 
+    def load(self) -> None:
+        """Wait until the page has the server's design, after it was opened or reloaded; then the gallery is open, too."""
+        self.page.wait_for_function(
+            "() => window.studio && document.getElementById('file').textContent !== 'no design'"
+        )
+
+    def close_gallery(self) -> None:
+        """Close the gallery, with which a new design begins, where it is open."""
+        self.page.evaluate("() => document.querySelector('dialog:has(.gallery)')?.close()")
+
     def begin(self, design: Mapping[str, Any], state: str = "proved") -> None:
         """Open another design as a link, with the select tool in hand and the whole cell in the window."""
+        self.close_gallery()
         self.page.evaluate("link => { location.hash = link; }", link_of(design))
         self.page.wait_for_function(
             "text => JSON.stringify(window.studio.design()) === JSON.stringify(JSON.parse(text))", arg=compact(design)
@@ -138,11 +149,19 @@ def link_of(design: Mapping[str, Any]) -> str:
 
 @contextmanager
 def opened(
-    chromium: Any, studio: Studio, *, fragment: str = "", script: str = "", complaints: bool = True, **options: Any
+    chromium: Any,
+    studio: Studio,
+    *,
+    fragment: str = "",
+    script: str = "",
+    complaints: bool = True,
+    gallery: bool = False,
+    **options: Any,
 ) -> Iterator[Window]:
     """The studio's page in a window of its own, `fragment` behind its address, `script` run before it.
 
     What the page complains of is a failure, unless `complaints` is false: of a server that is gone browsers complain.
+    The gallery, with which a new design begins, is closed, unless the test is about it.
     """
     context = chromium.new_context(**{"viewport": {"width": 1200, "height": 800}, "accept_downloads": True, **options})
     page = context.new_page()
@@ -155,7 +174,9 @@ def opened(
         page.add_init_script(script)
         page.goto(studio.url + fragment)
         window = Window(page)
-        page.wait_for_function("() => window.studio && document.getElementById('file').textContent !== 'no design'")
+        window.load()
+        if not gallery:
+            window.close_gallery()
         yield window
         assert not complaints or found == [], found
     finally:

@@ -15,8 +15,9 @@ RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "wcag22aa", "best-practice"
 
 @pytest.fixture(params=["light", pytest.param("dark", marks=pytest.mark.slow)])
 def window(chromium: Any, request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Window]:
-    """The page of a new design."""
-    with running(tmp_path) as studio, opened(chromium, studio, color_scheme=request.param, bypass_csp=True) as found:
+    """The page of a new design, with the gallery that it begins with."""
+    looks = {"color_scheme": request.param, "bypass_csp": True, "gallery": True}
+    with running(tmp_path) as studio, opened(chromium, studio, **looks) as found:
         found.wait()
         found.page.add_script_tag(path=tool("axe-core/axe.min.js"))
         yield found
@@ -36,6 +37,7 @@ def violations(window: Window) -> list[str]:
 def test_panels_and_dialogs_are_accessible(window: Window) -> None:
     """No violation, whatever is open."""
     page = window.page
+    page.keyboard.press("Escape")
     page.locator(".stroke").first.click()
     assert violations(window) == []
     for tab in ("Symmetry", "Job", "Report"):
@@ -50,7 +52,11 @@ def test_panels_and_dialogs_are_accessible(window: Window) -> None:
 
 
 def test_the_page_is_accessible(window: Window) -> None:
-    """No violation as it opens, with a stroke's points; and axe-core sees what is wrong: a button without a name."""
+    """No violation as it opens, with the gallery and a stroke's points; and axe-core sees a button without a name."""
+    window.page.locator(".gallery button").nth(16).wait_for()
+    assert violations(window) == []
+    window.page.keyboard.press("Escape")
+    window.page.locator("dialog").wait_for(state="detached")
     window.page.locator(".stroke").first.click()
     assert violations(window) == []
     window.page.evaluate("document.querySelector('.bar').append(document.createElement('button'))")

@@ -310,13 +310,22 @@ def test_links(chromium: Any, window: Window, tmp_path: Path) -> None:
 
 
 def test_gallery(window: Window) -> None:
-    """An example takes the place of what is drawn, and undo brings that back."""
+    """Every example has a picture and a name, and one takes the place of what is drawn; undo brings that back."""
     page = window.page
     before = window.text
     page.get_by_role("button", name="Gallery").click()
-    page.locator(".gallery button").nth(16).wait_for()
-    assert page.locator(".gallery button").count() == 17
-    page.locator(".gallery button").nth(16).click()
+    example = page.get_by_role("dialog").get_by_role("button", name="p6m: sixths of a turn and mirrors")
+    example.wait_for()
+    pictures = page.evaluate("""() => [...document.querySelectorAll(".gallery canvas")].map((canvas) => {
+        const pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+        const full = new Uint32Array(pixels.buffer).filter((pixel) => pixel >>> 24 === 255);
+        return { colours: new Set(full).size, address: canvas.toDataURL() };
+    })""")
+    assert len({picture["address"] for picture in pictures}) == 17
+    assert min(picture["colours"] for picture in pictures) > 10  # tiles of several, and the shades of their edges
+    example.focus()
+    page.keyboard.press("Enter")
+    page.locator("dialog").wait_for(state="detached")
     assert window.design["group"] == "p6m"
     window.wait()
     page.get_by_role("button", name="Undo").click()
@@ -334,6 +343,8 @@ def test_a_new_design_in_a_file_of_its_own(window: Window, studio: Studio) -> No
     page.get_by_label("Name", exact=True).fill("leaf")
     page.get_by_role("button", name="Begin").click()
     page.locator("#file").get_by_text("work/leaf.toml").wait_for()
+    page.get_by_role("dialog", name="Begin with an example").wait_for()
+    page.keyboard.press("Escape")
     window.wait()
     assert window.strokes != drawn
     assert page.get_by_role("button", name="Undo").is_disabled()

@@ -94,7 +94,7 @@ def test_a_page_at_another_port_is_refused(window: Window, studio: Studio, other
         == "open"
     )
     window.page.reload()
-    window.page.wait_for_function("() => window.studio")
+    window.load()
 
 
 def test_no_token_no_page(chromium: Any, studio: Studio) -> None:
@@ -147,7 +147,7 @@ def test_a_socket_without_origin_is_refused(window: Window, studio: Studio) -> N
     assert cookie["httpOnly"]
     assert cookie["sameSite"] == "Strict"
     window.page.reload()
-    window.page.wait_for_function("() => window.studio")
+    window.load()
 
 
 def test_hostile_names(window: Window) -> None:

@@ -113,9 +113,13 @@ def test_presets_kinds_and_formats_are_all_there() -> None:
 
 
 def test_there_is_a_starter_of_every_group() -> None:
-    """Each is a design of its group."""
+    """Each is a design of its group, with all copies of its tiles in a cell, whose rings are whole."""
     designs = json.loads(json.dumps(starter_designs()))
-    assert [example["name"] for example in designs] == list(GROUPS)
+    assert [example["group"] for example in designs] == list(GROUPS)
     for example in designs:
-        assert Design.from_dict(example["design"]).group.name == example["group"]
+        design = Design.from_dict(example["design"])
+        assert design.group.name == example["group"]
         assert example["title"]
+        for sent, tile in zip(example["tiles"], design.tessellate(), strict=True):
+            assert len(sent["operations"]) == tile.copies_per_cell
+            assert sent["path"].count("Z") == len(tile.outline.ring_areas)

@@ -116,6 +116,12 @@ def tile_document(tile: TileRecord, group: WallpaperGroup) -> dict[str, Any]:
     }
 
 
+def thumbnail_tiles(design: Design) -> list[dict[str, Any]]:
+    """The tiles of a design as a small picture shows them: exact, and not proved."""
+    tiles = tessellate(design.noded, design.group, design.lattice)
+    return [{"path": path_of(tile.outline), "operations": cosets(design.group, tile.symmetry)} for tile in tiles]
+
+
 def path_of(outline: Outline) -> str:
     """The rings of an outline as SVG path data in units, y up."""
     return path_data(outline.paths.moved(1.0, 0j, conj=True))

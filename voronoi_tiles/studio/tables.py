@@ -15,6 +15,7 @@ from voronoi_tiles.formats.presets import load_preset, preset_names
 from voronoi_tiles.groups.symmetry_elements import Line, symmetry_elements
 from voronoi_tiles.groups.wallpaper import GROUPS, WallpaperGroup
 from voronoi_tiles.studio.messages import LIMITS
+from voronoi_tiles.studio.outlining import thumbnail_tiles
 from voronoi_tiles.tiling import FORMATS, FileFormat
 
 _SQUARE: Final = "0,0 1/2,0 1/2,1/2 0,1/2"
@@ -64,10 +65,11 @@ def page_tables() -> dict[str, Any]:
 
 
 def starter_designs() -> list[dict[str, Any]]:
-    """The starter of every group: its name, what the group does, and its design."""
+    """The starter of every group: what the group does, its design, and the tiles of that, for a picture."""
+    designs = {name: starter(name) for name in GROUP_NAMES}
     return [
-        {"name": name, "title": symmetry_of(name), "group": name, "design": starter(name).to_dict()}
-        for name in GROUP_NAMES
+        {"group": name, "title": symmetry_of(name), "design": design.to_dict(), "tiles": thumbnail_tiles(design)}
+        for name, design in designs.items()
     ]
 
 

@@ -459,9 +459,11 @@ link.on("opened", (message) => {
         store.set({ job: kept(`voronoi_tiles job ${home}`), trace });
     }
     store.keep(message.saved ? message.design : null);
-    openShared();
+    const shared = openShared();
     if (message.recovery) {
         ask.recover(message.recovery);
+    } else if (!shared && !message.saved) {
+        void ask.gallery();
     }
 });
 link.on("saved", (message) => {
@@ -478,13 +480,18 @@ link.on("changed", (message) => {
 });
 link.on("failed", (message) => store.set({ trouble: message.error }));
 
-/** Take the design in the address, where a link was opened: it was never sent to a server. */
+/**
+ * Take the design in the address, where a link was opened: it was never sent to a server.
+ * @returns {boolean} whether there was one
+ */
 function openShared() {
     const { hash } = location;
-    if (store.state.file && hash.startsWith("#design=")) {
+    const shared = Boolean(store.state.file) && hash.startsWith("#design=");
+    if (shared) {
         history.replaceState(null, "", location.pathname + location.search);
         ask.openLink(hash);
     }
+    return shared;
 }
 window.addEventListener("hashchange", openShared);
 

@@ -10,6 +10,7 @@ import { rounded } from "../model/snapping.js";
 import { placementOf } from "../model/strokes.js";
 import { regionOf } from "../model/symmetry.js";
 import { boxOf, entriesOf } from "../scene.js";
+import { drawThumbnail } from "../view/thumbnail.js";
 import { field, make } from "./elements.js";
 import { lettersPart } from "./letters.js";
 
@@ -21,6 +22,9 @@ import { lettersPart } from "./letters.js";
  * @property {(over: boolean) => void} save
  * @property {() => void} keepMine the next save goes over what others have made of the file
  */
+
+/** The side of an example's picture; CSS pixels. */
+const EXAMPLE = 140;
 
 /** @param {Blob} blob @param {string} name */
 function download(blob, name) {
@@ -249,32 +253,34 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
         },
 
         async gallery() {
-            const { box } = open(
+            const list = make("ul", { class: "gallery" });
+            const { box, said } = open(
                 "Begin with an example",
-                [make("p", { class: "note" }, "What is drawn now can be taken back with undo.")],
+                [
+                    make("p", { class: "note" }, "Or close this, and go on with what is drawn: undo leads back to it."),
+                    list,
+                ],
                 [close],
             );
-            const list = make("ul", { class: "gallery" });
-            box.querySelector("footer")?.before(list);
-            const examples = await (await fetch("examples.json")).json();
-            for (const example of examples) {
+            const answer = await fetch("examples.json").catch(() => null);
+            if (!answer?.ok) {
+                said.textContent = "The examples do not come: the server does not answer.";
+                return;
+            }
+            const examples = await answer.json();
+            if (box.open) {
+                const looks = { side: EXAMPLE, dark: stage.dark };
                 list.append(
-                    make(
-                        "li",
-                        {},
-                        make(
-                            "button",
-                            {
-                                type: "button",
-                                onclick: () => {
-                                    begin(example.design);
-                                    box.close();
-                                },
-                            },
-                            make("strong", {}, example.group),
-                            ` ${example.title ?? example.name}`,
-                        ),
-                    ),
+                    ...examples.map((/** @type {any} */ { group, title, design, tiles }) => {
+                        const canvas = make("canvas", { "aria-hidden": true });
+                        drawThumbnail(canvas, design, tiles, store.state.tables, looks);
+                        const onclick = () => {
+                            begin(design);
+                            box.close();
+                        };
+                        const name = make("span", {}, make("strong", {}, group), `: ${title}`);
+                        return make("li", {}, make("button", { type: "button", onclick }, canvas, name));
+                    }),
                 );
             }
         },

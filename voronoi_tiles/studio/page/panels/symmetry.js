@@ -4,9 +4,8 @@
 import { setCell, setUnits } from "../model/design.js";
 import { shownFactor } from "../store.js";
 import { setGroup } from "../model/regroup.js";
-import { groupOf, latticeOf, motionsOf } from "../model/symmetry.js";
-import { drawOutlines } from "../view/outlines.js";
-import { Camera } from "../view/camera.js";
+import { groupOf } from "../model/symmetry.js";
+import { drawThumbnail } from "../view/thumbnail.js";
 import { deferred, field, lengthField, make, refill } from "./elements.js";
 import { tracePart } from "./trace.js";
 
@@ -152,27 +151,13 @@ export class SymmetryPanel extends HTMLElement {
         if (!button) {
             return;
         }
-        const canvas = /** @type {HTMLCanvasElement} */ (button.querySelector("canvas"));
-        const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-        const ratio = devicePixelRatio;
-        Object.assign(canvas, { width: THUMBNAIL * ratio, height: THUMBNAIL * ratio });
         button.classList.toggle("refused", !tiles);
         button.title = error ? `${group}: ${error.message ?? error}` : group;
-        if (!tiles) {
-            return;
+        if (tiles) {
+            const { store, stage } = this.#context;
+            const looks = { side: THUMBNAIL, dark: stage.dark };
+            drawThumbnail(button.querySelector("canvas"), design, tiles, store.state.tables, looks);
         }
-        const { tables } = this.#context.store.state;
-        const lattice = latticeOf(design, tables);
-        const camera = new Camera();
-        Object.assign(camera, { size: [THUMBNAIL, THUMBNAIL], ratio });
-        const size = 1.7 * Math.sqrt(Math.abs(lattice.a[0] * lattice.b[1] - lattice.a[1] * lattice.b[0]));
-        camera.fit([0, 0, size, size], 1);
-        drawOutlines(context, camera, lattice, motionsOf(design, tables), tiles, {
-            scale: design.scale ?? 1,
-            fill: true,
-            dark: this.#context.stage.dark,
-            line: 0.7,
-        });
     }
 
     /** @param {State} state */
