@@ -11,6 +11,8 @@ from typing import Any
 import pytest
 from helpers.studio import Studio, Window, opened, running
 
+from voronoi_tiles.groups.wallpaper import GROUPS
+
 WING = [[6.0, 9.0], [20.0, 4.0], [25.0, 18.0]]
 DESIGN = {"schema": 1, "group": "p4", "cell": {"a": 60}, "site": [{"name": "bird", "strokes": [{"polyline": WING}]}]}
 PENS = {"schema": 1, "group": "p1", "cell": {"a": 60, "b": 60, "angle": 90}, "site": [{"strokes": []}]}
@@ -560,6 +562,47 @@ def test_strokes_come_from_the_group_before(window: Window) -> None:
     assert again() != there
     page.evaluate("() => { window.frozen = null; }")
     page.wait_for_function("there => document.getElementById('overlay').toDataURL() === there", arg=there)
+
+
+OVERHEAR = """() => {
+    const [send, heard] = [WebSocket.prototype.send, []];
+    window.heard = heard;
+    WebSocket.prototype.send = function (text) {
+        heard.length || this.addEventListener("message", (event) => heard.push(JSON.parse(event.data)));
+        heard.push(JSON.parse(text));
+        send.call(this, text);
+    };
+    window.deaf = () => { WebSocket.prototype.send = send; };
+}"""
+"""What the page and the server say to each other from now on goes into `heard`."""
+
+
+def test_pictures_of_groups_are_what_a_click_gives(window: Window) -> None:
+    """In all 17 the design that is pictured is the one that is there after the click, and has the same outlines."""
+    page = window.page
+    page.evaluate(OVERHEAR)
+    window.begin({**DESIGN, "cell": {"a": 61}})
+    page.get_by_role("tab", name="Symmetry").click()
+    page.wait_for_function("""() => {
+        const heard = window.heard.filter(({ type }) => type === "thumbnail");
+        window.asked = heard.filter(({ design }) => design?.cell.a === 61);
+        window.pictures = heard.filter(({ tiles, rev }) => tiles && window.asked.some((one) => one.rev === rev));
+        return window.pictures.length === 17;
+    }""")
+    designs = {message["rev"]: message["design"] for message in page.evaluate("() => window.asked")}
+    pictures = {designs[picture["rev"]]["group"]: picture for picture in page.evaluate("() => window.pictures")}
+    assert set(pictures) == set(GROUPS)
+    moved = 0
+    for group, picture in pictures.items():
+        page.locator(f"[data-group={group}]").click()
+        assert window.design == designs[picture["rev"]]
+        moved += window.design["site"] != DESIGN["site"]
+        window.wait()
+        tiles = page.evaluate("() => window.heard.findLast(({ type }) => type === 'outline').tiles")
+        for tile, pictured in zip(tiles, picture["tiles"], strict=True):
+            assert (tile["path"], tile["operations"]) == (pictured["path"], pictured["operations"])
+    assert 3 < moved < 17
+    page.evaluate("() => window.deaf()")
 
 
 # Fields

@@ -21,11 +21,11 @@ from voronoi_tiles.designs.starters import starter, starter_text
 from voronoi_tiles.studio.messages import (
     FILES_MAX,
     DesignMessage,
-    GroupsMessage,
     JobMessage,
     NewMessage,
     ReloadMessage,
     SaveMessage,
+    ThumbnailMessage,
     check_files,
     named_files,
     read_message,
@@ -48,7 +48,7 @@ def test_messages_are_read() -> None:
     assert moving == DesignMessage(1, DESIGN, False, 1.0)
     job = read(type="job", rev=2, design=DESIGN, job={"kerf": 0.1, "sheet": [1, 2], "tabs": None}, limits={"neck": 1})
     assert job == JobMessage(2, DESIGN, {"kerf": 0.1, "sheet": [1, 2]}, {"neck": 1})
-    assert read(type="groups", rev=3, design=DESIGN) == GroupsMessage(3, DESIGN)
+    assert read(type="thumbnail", rev=3, design=DESIGN) == ThumbnailMessage(3, DESIGN)
     assert read(type="save", rev=4, design=DESIGN, over=True) == SaveMessage(4, DESIGN, True)
     assert read(type="reload") == ReloadMessage()
     assert (read(type="new"), read(type="new", name="leaf")) == (NewMessage(""), NewMessage("leaf"))
@@ -154,7 +154,7 @@ def test_errors_are_for_people() -> None:
     assert refusal({"type": "save", "rev": 3}, ValueError("x"))["type"] == "failed"
     assert refusal({"type": "job", "rev": 3}, ValueError("x"))["lane"] == "job"
     assert refusal({"type": "design", "rev": "x"}, ValueError("x"))["type"] == "trouble"
-    assert refusal({"task": "group", "rev": 3, "group": "p4"}, {"message": "m"})["error"] == {"message": "m"}
+    assert refusal({"type": "thumbnail", "rev": 3}, {"message": "m"})["error"] == {"message": "m"}
 
 
 # --- against a running studio -----------------------------------------------------------------------------------
@@ -168,7 +168,7 @@ def hostile(dice: random.Random) -> str:
         *([[0, 0], [1, 1]], [1e300, 1e300], [[0, 0]] * 30, {"file": "link.svg"}, {"file": "../secret.svg"}),
     ]
     design = json.loads(json.dumps(DESIGN))
-    message: dict[str, Any] = {"type": dice.choice(["design", "job", "groups", "save"]), "rev": 1, "design": design}
+    message: dict[str, Any] = {"type": dice.choice(["design", "job", "thumbnail", "save"]), "rev": 1, "design": design}
     message |= {"rest": dice.random() < 0.5, "job": {dice.choice(["kerf", "sheet", "preset", "format"]): "x"}}
     for _ in range(dice.randint(1, 4)):  # somewhere in it
         place: Any = message
@@ -258,7 +258,7 @@ def test_a_page_reads_no_file_elsewhere(studio: RunningStudio, name: str) -> Non
             ("design", {"design": strokes}),
             ("job", {"design": strokes}),
             ("job", {"design": DESIGN, "job": {"sheet": file}}),
-            ("groups", {"design": strokes}),
+            ("thumbnail", {"design": strokes}),
             ("save", {"design": strokes}),
         ):
             tell(page, kind, rev=1, **more)

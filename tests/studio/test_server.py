@@ -20,7 +20,6 @@ from test_lanes import is_alive, is_gone
 from websockets.exceptions import ConnectionClosed
 
 from voronoi_tiles.designs.starters import starter, starter_text
-from voronoi_tiles.groups.wallpaper import GROUPS
 
 linux = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="only Linux tells whose processes there are")
 """For tests that look for processes."""
@@ -88,16 +87,20 @@ def test_a_page_that_is_reloaded_is_served(studio: RunningStudio) -> None:
 
 
 @pytest.mark.slow
-def test_all_groups_are_shown(studio: RunningStudio) -> None:
-    """Each in a message of its own; a job that is asked for meanwhile does not wait for them all."""
+def test_thumbnails_wait(studio: RunningStudio) -> None:
+    """For a job that is asked for after them; a design that has no tile is said, by its number."""
     with studio.page() as page:
         design = told(page)["design"]
-        tell(page, "groups", rev=1, design=design)
+        tell(page, "job", rev=1, design=design, job={})
+        tell(page, "thumbnail", rev=3, design=design)
         tell(page, "job", rev=2, design=design, job={})
-        kinds = [told(page) for _ in range(18)]
-        assert {message["group"] for message in kinds if message["type"] == "group"} == set(GROUPS)
-        assert [message["type"] for message in kinds].index("product") < 17
-        assert all("error" not in message for message in kinds)
+        heard = [told(page) for _ in range(2)]
+        assert [(message["type"], message["rev"]) for message in heard] == [("product", 2), ("thumbnail", 3)]
+        assert heard[-1]["tiles"]
+        tell(page, "thumbnail", rev=4, design={**design, "cell": {}})
+        refused = told(page)
+        assert (refused["type"], refused["lane"], refused["rev"]) == ("refused", "thumbnail", 4)
+        assert refused["error"]["key"] == "cell.a"
 
 
 def test_what_is_asked_for_by_address_is_answered(studio: RunningStudio) -> None:
@@ -226,7 +229,7 @@ def test_no_process_outlives_a_studio_that_is_killed(tmp_path: Path) -> None:
         design = told(page)["design"]
         tell(page, "design", rev=1, design=design, rest=True)
         told(page, "outline")
-        tell(page, "groups", rev=2, design=design)
+        tell(page, "thumbnail", rev=2, design=design)
         workers = studio.workers()
         assert workers
         studio.process.kill()
@@ -272,7 +275,7 @@ def test_signals_end_it_in_good_order(
         design = told(page)["design"]
         tell(page, "design", rev=1, design=design, rest=True)
         told(page, "outline")
-        tell(page, "groups", rev=1, design=design)
+        tell(page, "thumbnail", rev=1, design=design)
         workers = studio.workers()
         assert workers
         assert all(map(is_alive, workers))

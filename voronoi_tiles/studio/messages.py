@@ -74,8 +74,8 @@ class JobMessage:
 
 
 @dataclass(frozen=True)
-class GroupsMessage:
-    """A design to be shown in all groups."""
+class ThumbnailMessage:
+    """A design to be shown as a small picture, as soon as nothing else is to be done."""
 
     rev: int
     design: Table
@@ -110,7 +110,7 @@ class ByeMessage:
 _KEYS: Final[Mapping[str, tuple[str, ...]]] = {
     "design": ("rev", "design", "rest", "tolerance"),
     "job": ("rev", "design", "job", "limits"),
-    "groups": ("rev", "design"),
+    "thumbnail": ("rev", "design"),
     "save": ("rev", "design", "over"),
     "reload": (),
     "new": ("name",),
@@ -118,7 +118,7 @@ _KEYS: Final[Mapping[str, tuple[str, ...]]] = {
 }
 """The types of messages, and the keys that each has beside its type."""
 
-Message = DesignMessage | JobMessage | GroupsMessage | SaveMessage | ReloadMessage | NewMessage | ByeMessage
+Message = DesignMessage | JobMessage | ThumbnailMessage | SaveMessage | ReloadMessage | NewMessage | ByeMessage
 
 
 def read_object(text: str | bytes) -> Table:
@@ -155,8 +155,8 @@ def read_message(table: Table) -> Message:
             return DesignMessage(rev, design, _flag(table, "rest", default=True), _tolerance(table))
         case "job":
             return JobMessage(rev, design, read_job(table), _table(table, "limits"))
-        case "groups":
-            return GroupsMessage(rev, design)
+        case "thumbnail":
+            return ThumbnailMessage(rev, design)
         case _:
             return SaveMessage(rev, design, _flag(table, "over", default=False))
 

@@ -9,7 +9,7 @@ from typing import Any, Final
 from voronoi_tiles.base.errors import DesignError, TouchingCopiesError, VoronoiTilesError
 from voronoi_tiles.studio.messages import Table
 
-_LANES: Final = {"design": "outline", "job": "job", "groups": "job", "save": "save"}
+_LANES: Final = {"design": "outline", "job": "job", "thumbnail": "thumbnail", "save": "save"}
 """The lanes of the messages that are refused; what is wrong with others is trouble."""
 
 _BUG: Final = "This is a bug in voronoi-tiles: please report it, with the design."
@@ -47,11 +47,9 @@ def error_document(error: BaseException, scale: float = 1.0) -> dict[str, Any]:
 
 
 def refusal(asked: Table, error: BaseException | Mapping[str, Any]) -> dict[str, Any]:
-    """What the page is told of an error about its message, or about a task that was made of one."""
+    """What the page is told of an error about its message."""
     document = error if isinstance(error, Mapping) else error_document(error)
-    kind, rev = asked.get("type", asked.get("task")), asked.get("rev")
-    if kind == "group":
-        return {"type": "group", "rev": rev, "group": asked["group"], "tiles": None, "error": document}
+    kind, rev = asked.get("type"), asked.get("rev")
     if not (isinstance(kind, str) and kind in _LANES and isinstance(rev, int)):
         return {"type": "trouble", **document}
     return {"type": "failed" if kind == "save" else "refused", "rev": rev, "lane": _LANES[kind], "error": document}

@@ -11,19 +11,18 @@ from typing import Any, Final
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from voronoi_tiles.base.errors import VoronoiTilesError
-from voronoi_tiles.designs.starters import GROUP_NAMES
 from voronoi_tiles.studio.design_document import Document
 from voronoi_tiles.studio.lanes import Answer, Deliver, Lane
 from voronoi_tiles.studio.messages import (
     ByeMessage,
     DesignMessage,
-    GroupsMessage,
     JobMessage,
     Message,
     NewMessage,
     ReloadMessage,
     SaveMessage,
     Table,
+    ThumbnailMessage,
     check_files,
     named_files,
     read_message,
@@ -204,7 +203,7 @@ class Session:
                 await self._take(received.get("text"))
         finally:
             self._desk.outlines.forget(self)
-            self._desk.jobs.forget(self, *((self, name) for name in GROUP_NAMES))
+            self._desk.jobs.forget(self, (self, "thumbnail"))
 
     async def _take(self, text: str | None) -> None:
         """Do what a message says, or say what is wrong with it."""
@@ -228,11 +227,10 @@ class Session:
                 desk.check_files(design, job)
                 asked = {"task": "product", "rev": rev, "design": design, "job": job, "limits": limits}
                 desk.jobs.put(self, {**asked, "name": desk.document.name}, self._deliver(table))
-            case GroupsMessage(rev, design):
+            case ThumbnailMessage(rev, design):
                 desk.check_files(design, {})
-                for name in GROUP_NAMES:
-                    asked = {"task": "group", "rev": rev, "design": design, "group": name}
-                    desk.jobs.put((self, name), asked, self._deliver(asked), urgent=False)
+                asked = {"task": "thumbnail", "rev": rev, "design": design}
+                desk.jobs.put((self, "thumbnail"), asked, self._deliver(table), urgent=False)
             case SaveMessage(rev, design, over):
                 desk.check_files(design, {})
                 saved = await desk.keeper(desk.document.save, design, over)

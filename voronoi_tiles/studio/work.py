@@ -63,11 +63,13 @@ def product(request: Request, _body: bytes) -> Done:
     return text_of(made(**{name: request[name] for name in ("rev", "design", "job", "limits", "name")}))
 
 
-def group(request: Request, _body: bytes) -> Done:
-    """A design in another group."""
-    from voronoi_tiles.studio.grouping import group_message
+def thumbnail(request: Request, _body: bytes) -> Done:
+    """The tiles of a design for a small picture."""
+    from voronoi_tiles.designs.design import Design
+    from voronoi_tiles.studio.outlining import thumbnail_tiles
 
-    return text_of(group_message(request["rev"], request["design"], request["group"]))
+    tiles = thumbnail_tiles(Design.from_dict(request["design"]))
+    return text_of({"type": "thumbnail", "rev": request["rev"], "tiles": tiles})
 
 
 def export(request: Request, _body: bytes) -> Done:
@@ -112,7 +114,7 @@ TASKS: Final[Tasks] = {
     "examples": examples,
     "outline": outline,
     "product": product,
-    "group": group,
+    "thumbnail": thumbnail,
     "export": export,
     "coupon": coupon,
     "drop": drop,

@@ -38,7 +38,11 @@ export class SymmetryPanel extends HTMLElement {
     #note = make("p", { class: "note", role: "status" });
     #timer = 0;
     /** @type {any} the design that the thumbnails are of */
-    #asked = null;
+    #pictured = null;
+    /** @type {string[]} the groups whose pictures are still to be asked for */
+    #waiting = [];
+    /** @type {{rev: number, group: string, design: any}} the last picture that was asked for; they are numbered */
+    #asked = { rev: 0, group: "", design: null };
     /** @type {{from: any, made: any} | null} the design before groups were tried, and what the last one made of it */
     #tried = null;
 
@@ -62,7 +66,12 @@ export class SymmetryPanel extends HTMLElement {
             deferred(() => this.#fill(store.state)),
         );
         store.subscribe(["shown"], (state) => this.#fillShown(state));
-        link.on("group", (message) => this.#draw(message));
+        link.on("thumbnail", (message) => this.#answered(message));
+        link.on("refused", (message) => this.#answered(message));
+        link.on("opened", () => {
+            this.#pictured = null; // what was asked for before a connection was lost is not answered
+            this.#ask();
+        });
         new IntersectionObserver(() => this.#ask()).observe(this);
     }
 
@@ -116,48 +125,72 @@ export class SymmetryPanel extends HTMLElement {
         }
     }
 
+    /**
+     * The design that groups are tried on. Who looks at several sees each made of the one before the first: what one had
+     * to move is not kept.
+     */
+    get #origin() {
+        const { settled } = this.#context.store;
+        return this.#tried?.made === settled ? this.#tried.from : settled;
+    }
+
+    /**
+     * A design in a group: what its picture shows, and what a click on that gives.
+     * @param {import("../model/design.js").Design} from
+     * @param {string} name
+     */
+    #inGroup(from, name) {
+        const { tables, exact } = this.#context.store.state;
+        return setGroup(from, name, tables, exact?.resolved);
+    }
+
     /** @param {string} name */
     #choose(name) {
         const { store } = this.#context;
-        // Who looks at several groups sees each made of the design before the first: what one had to move is not kept.
-        const from = this.#tried && this.#tried.made === store.settled ? this.#tried.from : store.settled;
-        const { design, note } =
-            name === from.group
-                ? { design: from, note: "" }
-                : setGroup(from, name, store.state.tables, store.state.exact?.resolved);
+        const from = this.#origin;
+        const { design, note } = this.#inGroup(from, name);
         store.edit("group", () => design);
         this.#tried = { from, made: store.settled };
         this.#note.textContent = note;
     }
 
-    /** Ask for this drawing in all groups, where they are looked at. */
+    /** Ask for pictures of this drawing in all groups, where they are looked at. */
     #ask() {
-        const { store, link } = this.#context;
-        const { design, revision, tables, dragging } = store.state;
-        if (
-            tables &&
-            !dragging &&
-            this.checkVisibility() &&
-            this.#asked !== design &&
-            link.send({ type: "groups", rev: revision, design })
-        ) {
-            this.#asked = design;
+        const { tables, dragging } = this.#context.store.state;
+        if (tables && !dragging && this.checkVisibility() && this.#pictured !== this.#origin) {
+            this.#pictured = this.#origin;
+            this.#waiting = tables.groups.map((/** @type {any} */ group) => group.name);
+            this.#askNext();
         }
     }
 
-    /** @param {any} message */
-    #draw({ group, design, tiles, error }) {
-        const button = [...this.#groups.children].find((one) => one.dataset.group === group);
-        if (!button) {
+    /** Ask for the next picture: one at a time, so that neither end has much to do at once. */
+    #askNext() {
+        const group = this.#waiting.shift();
+        if (group) {
+            const { design } = this.#inGroup(this.#pictured, group);
+            this.#asked = { rev: this.#asked.rev + 1, group, design };
+            if (!this.#context.link.send({ type: "thumbnail", rev: this.#asked.rev, design })) {
+                this.#pictured = null;
+            }
+        }
+    }
+
+    /** @param {{type: string, rev: number, lane?: string, tiles?: any, error?: {message: string}}} message */
+    #answered({ type, rev, lane, tiles, error }) {
+        const { group, design } = this.#asked;
+        if (rev !== this.#asked.rev || (type === "refused" && lane !== "thumbnail")) {
             return;
         }
+        const button = [...this.#groups.children].find((one) => one.dataset.group === group);
         button.classList.toggle("refused", !tiles);
-        button.title = error ? `${group}: ${error.message ?? error}` : group;
+        button.title = error ? `${group}: ${error.message}` : group;
         if (tiles) {
             const { store, stage } = this.#context;
             const looks = { side: THUMBNAIL, dark: stage.dark };
             drawThumbnail(button.querySelector("canvas"), design, tiles, store.state.tables, looks);
         }
+        this.#askNext();
     }
 
     /** @param {State} state */
