@@ -78,13 +78,71 @@ def test_report_and_findings(window: Window) -> None:
     assert page.locator("#sheet").screenshot() != before
     page.get_by_role("tab", name="Job").click()
     fit.select_option("whole")
-    margin = page.get_by_label("Margin, mm")
-    margin.fill("400")
-    margin.press("Enter")
-    page.locator("#panel-job").get_by_role("alert").wait_for()
-    margin.fill("0")
-    margin.press("Enter")
-    page.locator("#panel-job").get_by_role("alert").wait_for(state="detached")
+
+
+def test_errors_stand_by_their_fields(window: Window) -> None:
+    """The field is marked and names its error, whatever heading it is under; others stand above all fields.
+
+    What is being typed elsewhere when the error comes stays.
+    """
+    page = window.page
+    page.get_by_role("tab", name="Job").click()
+    panel = page.locator("#panel-job")
+    alert, marked = panel.get_by_role("alert"), panel.locator("[aria-invalid=true]")
+    for label, value in (("Margin, mm", "400"), ("Rotate", "around")):
+        field = panel.get_by_label(label)
+        heading = panel.locator("details", has=page.get_by_label(label))
+        if not field.is_visible():
+            heading.locator("summary").click()
+        good = field.input_value()
+        field.fill(value)
+        field.press("Enter")
+        alert.wait_for()
+        heading.locator("summary").click()
+        for unit in ("in", "mm"):
+            page.locator("#unit").select_option(unit)
+            alert.wait_for()  # the panel is made anew, and its heading open
+        assert label.partition(",")[0] in alert.inner_text()
+        assert "`" not in alert.inner_text()
+        assert marked.evaluate_all("all => all.map((one) => one.id)") == [field.get_attribute("id")]
+        assert alert.get_attribute("id") in (field.get_attribute("aria-describedby") or "").split()
+        field.fill(good)
+        field.press("Enter")
+        alert.wait_for(state="detached")
+        assert marked.count() == 0
+    sheet, gap = panel.get_by_label("Sheet", exact=True), panel.get_by_label("Gap, mm")
+    sheet.fill("20x20mm")
+    sheet.press("Enter")
+    gap.fill("1 +")
+    page.wait_for_function("() => document.querySelector('report-panel [role=alert]')")
+    assert gap.input_value() == "1 +"
+    gap.fill("")
+    gap.blur()
+    alert.get_by_text("no whole tile fits on the sheet").wait_for()
+    assert marked.count() == 0
+    sheet.fill(JOB["sheet"])
+    sheet.press("Enter")
+    alert.wait_for(state="detached")
+
+
+def test_every_field_is_explained(window: Window) -> None:
+    """By what the command line says of the option, with the fields' names in the place of options."""
+    page = window.page
+    page.get_by_role("tab", name="Job").click()
+    said = page.locator("#panel-job").evaluate("""(panel) => Object.fromEntries(
+        [...panel.querySelectorAll("input, select")].map((field) => [
+            field.dataset.key.replace("job-", ""),
+            document.getElementById(field.getAttribute("aria-describedby")).textContent,
+        ]),
+    )""")
+    options = {name: option.help for name, option in vt.Job.options().items() if name != "only_colour"}
+    assert said.keys() == options.keys()
+    assert {name: text for name, text in said.items() if "`" not in options[name]} == {
+        name: text for name, text in options.items() if "`" not in text
+    }
+    assert said["frame"] == "The least width of the frame; means Fit: frame [default: 2mm]."
+    assert "Colours: layers and Colours: files are the fewest there" in said["colours"]
+    assert page.locator("#panel-job").get_by_text("The width of the cut: contours keep half of it").is_visible()
 
 
 def test_files_are_those_of_the_command_line(window: Window, studio: Studio, tmp_path: Path) -> None:

@@ -294,7 +294,7 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
                 [
                     make("p", {}, `It goes into a file beside ${file}, which the first save writes.`),
                     saved ? "" : make("p", { class: "note" }, kept),
-                    field("Name", name, "Without one, the next name that is free"),
+                    field("Name", name, { help: "Without one, the next name that is free" }),
                 ],
                 [
                     {

@@ -34,15 +34,36 @@ export function make(tag, attributes = {}, ...children) {
 let count = 0;
 
 /**
- * A label and its control, side by side.
+ * A label and its control, side by side; below them what is wrong with it, and what it means.
  * @param {string} label
  * @param {HTMLElement} control
- * @param {string} [title]
+ * @param {{help?: string, error?: string}} [more]
  */
-export function field(label, control, title) {
-    control.id ||= `field-${++count}`;
-    return make("div", { class: "field", title }, make("label", { for: control.id }, label), control);
+export function field(label, control, { help, error } = {}) {
+    const id = (control.id ||= `field-${++count}`);
+    const wrong = error && make("p", { class: "error", role: "alert", id: `${id}-error` }, error);
+    const means = help && make("p", { class: "note", id: `${id}-help` }, help);
+    const said = [wrong, means].filter(Boolean).map((one) => one.id);
+    if (said.length) {
+        control.setAttribute("aria-describedby", said.join(" "));
+    }
+    if (wrong) {
+        control.setAttribute("aria-invalid", "true");
+    }
+    return make("div", { class: "field" }, make("label", { for: id }, label), control, wrong, means);
 }
+
+/** The label of an option of a job. @param {string} name */
+export const labelOf = (name) => name.replaceAll("_", " ").replace(/^./, (letter) => letter.toUpperCase());
+
+/**
+ * What Python says of the options of a job, with their labels in the place of its arguments in backquotes.
+ * @param {string} text as "Use `fit='whole'`."
+ */
+export const inLabels = (text) =>
+    text.replace(/`(\w+)(?:='?([^'`]+)'?)?`/g, (_, name, value) =>
+        value && value !== "True" ? `${labelOf(name)}: ${value}` : labelOf(name),
+    );
 
 /**
  * A field for a length, which takes arithmetic and units: "12.5mm + 1/4in".
@@ -90,15 +111,24 @@ export function lengthField(value, unit, change, attributes = {}) {
  * A function that runs another one soon, once for all calls until then: the browser has moved the focus by that time,
  * which controls that are made anew would lose.
  * @param {() => void} run
+ * @param {HTMLElement} [home] while a text is being typed in it, `run` waits for its end
  */
-export function deferred(run) {
+export function deferred(run, home) {
     let timer = 0;
-    return () => {
+    const soon = () => {
         timer ||= window.setTimeout(() => {
             timer = 0;
-            run();
+            const field = document.activeElement;
+            const typed =
+                field instanceof HTMLInputElement && field.type === "text" && field.value !== field.defaultValue;
+            if (typed && home?.contains(field)) {
+                field.addEventListener("blur", soon, { once: true });
+            } else {
+                run();
+            }
         });
     };
+    return soon;
 }
 
 /**

@@ -1,7 +1,7 @@
 // @ts-check
 // The job: all that `voronoi-tiles export` offers, made from the server's table of options, common ones first.
 
-import { deferred, field, lengthField, make, refill } from "./elements.js";
+import { deferred, field, inLabels, labelOf, lengthField, make, refill } from "./elements.js";
 
 /**
  * @typedef {import("./panels.js").Context} Context
@@ -34,7 +34,7 @@ export class JobPanel extends HTMLElement {
         this.#context = context;
         context.store.subscribe(
             ["tables", "job", "jobRefusal", "unit"],
-            deferred(() => this.#fill(context.store.state)),
+            deferred(() => this.#fill(context.store.state), this),
         );
     }
 
@@ -55,19 +55,20 @@ export class JobPanel extends HTMLElement {
                     { class: "note" },
                     "What is made of the tiles. Without a sheet one of each tile is cut, as a closed contour.",
                 ),
-                bad && make("p", { class: "error", role: "alert" }, `${bad.message} ${bad.remedy}`),
+                bad &&
+                    !options.some(({ name }) => name === bad.key) &&
+                    make("p", { class: "error", role: "alert" }, inLabels(`${bad.message} ${bad.remedy}`)),
                 ...HEADINGS.map(([title, names]) => {
                     const own = names.length
-                        ? names.map((name) => options.find((option) => option.name === name))
-                        : options.filter((option) => !named.has(option.name));
-                    const fields = own
-                        .filter((option) => option !== undefined)
-                        .map((option) => this.#field(option, job[option.name], state));
+                        ? names.flatMap((name) => options.filter((option) => option.name === name))
+                        : options.filter(({ name }) => !named.has(name));
+                    const fields = own.map((option) => this.#field(option, job[option.name], state));
+                    const wrong = own.some(({ name }) => name === bad?.key);
                     return fields.length
                         ? make(
                               "details",
                               {
-                                  ".open": this.#open.has(title),
+                                  ".open": this.#open.has(title) || wrong,
                                   ontoggle: (/** @type {Event} */ event) => {
                                       this.#open[
                                           /** @type {HTMLDetailsElement} */ (event.target).open ? "add" : "delete"
@@ -128,9 +129,14 @@ export class JobPanel extends HTMLElement {
      * @param {any} value
      * @param {State} state
      */
-    #field(option, value, { tables, unit }) {
+    #field(option, value, { tables, unit, jobRefusal }) {
         const { name, kind, words } = option;
-        const label = name.replaceAll("_", " ").replace(/^./, (letter) => letter.toUpperCase());
+        const bad = jobRefusal?.error.key === name && jobRefusal.error;
+        const said = {
+            help: inLabels(option.help),
+            ...(bad ? { error: inLabels(`${bad.message} ${bad.remedy}`) } : {}),
+        };
+        const label = labelOf(name);
         const key = KEY + name;
         const now = value ?? option.default;
         const choices = name === "preset" ? tables.presets.map((/** @type {any} */ preset) => preset.name) : words;
@@ -142,7 +148,7 @@ export class JobPanel extends HTMLElement {
                 onchange: (/** @type {Event} */ event) =>
                     this.#set(name, /** @type {HTMLInputElement} */ (event.target).checked || undefined),
             });
-            return make("label", { class: "check", title: option.help }, input, label);
+            return field(label, input, said);
         }
         if (choices?.length) {
             const select = make("select", {
@@ -160,7 +166,7 @@ export class JobPanel extends HTMLElement {
                     ),
                 ),
             );
-            return field(label, select, option.help);
+            return field(label, select, said);
         }
         if (kind === "length") {
             const mm = tables.units[unit];
@@ -171,26 +177,22 @@ export class JobPanel extends HTMLElement {
                 { "data-key": key, placeholder: "automatic" },
             );
             input.addEventListener("change", () => input.value.trim() || this.#set(name, undefined));
-            return field(`${label}, ${unit}`, input, option.help);
+            return field(`${label}, ${unit}`, input, said);
         }
         const input = make("input", {
             type: "text",
             spellcheck: "false",
             "data-key": key,
-            ".value": now === null || now === undefined ? "" : Array.isArray(now) ? now.join(" x ") : String(now),
+            ".defaultValue":
+                now === null || now === undefined ? "" : Array.isArray(now) ? now.join(" x ") : String(now),
             placeholder: option.shown || "automatic",
-            onchange: (/** @type {Event} */ event) => {
-                const text = /** @type {HTMLInputElement} */ (event.target).value.trim();
-                this.#set(
-                    name,
-                    text === ""
-                        ? undefined
-                        : kind === "angle" || (kind === "number" && /^-?\d+$/.test(text))
-                          ? Number(text)
-                          : text,
-                );
+            onchange: () => {
+                const text = input.value.trim();
+                input.defaultValue = input.value;
+                const isNumber = (kind === "angle" || kind === "number") && Number.isFinite(Number(text));
+                this.#set(name, text === "" ? undefined : isNumber ? Number(text) : text);
             },
         });
-        return field(label, input, option.help);
+        return field(label, input, said);
     }
 }

@@ -2,7 +2,7 @@
 // What the job comes to, and what preflight finds: each finding with its place on the sheet.
 
 import { shown } from "../model/lengths.js";
-import { make, refill } from "./elements.js";
+import { inLabels, make, refill } from "./elements.js";
 
 /**
  * @typedef {import("./panels.js").Context} Context
@@ -40,7 +40,7 @@ export class ReportPanel extends HTMLElement {
         if (bad || !product) {
             refill(this, [
                 bad
-                    ? make("p", { class: "error", role: "alert" }, `${bad.message} ${bad.remedy}`)
+                    ? make("p", { class: "error", role: "alert" }, inLabels(`${bad.message} ${bad.remedy}`))
                     : make("p", { class: "note" }, "The report comes in a moment."),
             ]);
             return;

@@ -236,7 +236,7 @@ export class SymmetryPanel extends HTMLElement {
                 make("option", { ".selected": name === (design.units ?? "mm") }, name),
             ),
         );
-        fields.push(field("Units of the file", units, "The design's numbers are converted: its size stays."));
+        fields.push(field("Units of the file", units, { help: "The design's numbers are converted: its size stays." }));
         return fields;
     }
 
@@ -269,7 +269,7 @@ export class SymmetryPanel extends HTMLElement {
                     },
                     { "data-key": name },
                 ),
-                "The whole design is scaled, cell and strokes.",
+                name === "height" ? { help: "Either scales the whole design, cell and strokes." } : {},
             ),
         );
     }
