@@ -201,6 +201,31 @@ def test_everything_by_the_keyboard(window: Window) -> None:
     assert len(window.design["site"][0]["strokes"]) == count
 
 
+def test_the_point_in_hand_is_said(window: Window) -> None:
+    """Its number and its place, once after a key that was held; of a drawing tool the cross hair's place."""
+    page = window.page
+    said = page.locator("#in-hand[role=status]")
+    window.choose("Line 1")
+    page.locator("#overlay").focus()
+    for text in ("Point 1 of 3, x 6 mm, y 9 mm", "Point 2 of 3, x 20 mm, y 4 mm"):
+        page.keyboard.press("Tab")
+        said.get_by_text(text, exact=True).wait_for(state="attached")
+    page.evaluate("""() => {
+        window.told = [];
+        const said = document.getElementById("in-hand");
+        new MutationObserver(() => window.told.push(said.textContent)).observe(said, { childList: true });
+        for (let k = 0; k < 20; k++) {
+            const key = { key: "ArrowRight", shiftKey: true, bubbles: true };
+            document.getElementById("overlay").dispatchEvent(new KeyboardEvent("keydown", key));
+        }
+    }""")
+    page.wait_for_function("() => window.told.length")
+    assert page.evaluate("() => window.told") == ["Point 2 of 3, x 40 mm, y 4 mm"]
+    page.keyboard.press("l")
+    page.keyboard.press("Shift+ArrowRight")
+    page.wait_for_function("() => /^Cross hair, x -?[0-9.]+ mm, y -?[0-9.]+ mm$/.test(window.told.at(-1))")
+
+
 def test_points_are_numbers_with_units(window: Window) -> None:
     """A coordinate takes arithmetic and inches."""
     page = window.page

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 from helpers.studio import Studio, Window, opened, running
 
+from voronoi_tiles.designs.starters import symmetry_of
 from voronoi_tiles.groups.wallpaper import GROUPS
 
 WING = [[6.0, 9.0], [20.0, 4.0], [25.0, 18.0]]
@@ -507,6 +508,10 @@ def test_group_and_cell_by_the_keyboard(window: Window) -> None:
     page = window.page
     before = window.text
     page.get_by_role("tab", name="Symmetry").click()
+    for group in GROUPS:
+        radio = page.get_by_role("radio", name=f"{group}: {symmetry_of(group)}", exact=True)
+        assert radio.get_attribute("data-group") == group
+    page.get_by_role("heading", name="Group p4: quarter turns").wait_for()
     page.locator("[data-group=p4]").focus()
     page.keyboard.press("ArrowRight")
     assert window.text == before

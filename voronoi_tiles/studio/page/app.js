@@ -13,6 +13,7 @@ import { letterOf } from "./tools/letters.js";
 import { SheetView } from "./view/sheet.js";
 import { Stage } from "./view/stage.js";
 import { clipboard } from "./clipboard.js";
+import { announce } from "./panels/announce.js";
 import { dialogs } from "./panels/dialogs.js";
 import { make } from "./panels/elements.js";
 import { connectPanels } from "./panels/panels.js";
@@ -210,6 +211,7 @@ document.addEventListener("click", (event) => {
 });
 listen(hands, toolbox, /** @type {HTMLCanvasElement} */ (element("overlay")), run);
 clipboard(hands);
+announce(hands, toolbox, element("overlay"), element("in-hand"));
 
 // --- tools and tabs -----------------------------------------------------------------------------------------------
 

@@ -26,6 +26,7 @@ export { cellsIn, fold, orbitIn } from "./lattice.js";
  *
  * @typedef {object} GroupTable
  * @property {string} name
+ * @property {string} title what it does, in words
  * @property {number} order
  * @property {string} system
  * @property {("a" | "b" | "angle")[]} free the keys of the cell that the group leaves free

@@ -41,7 +41,7 @@ const NAMES = {
 };
 
 /** @type {Record<string, string>} what roles of nodes are called */
-const ROLES = { anchor: "Point", in: "Handle before", out: "Handle after", centre: "Middle", radius: "Rim" };
+export const ROLES = { anchor: "Point", in: "Handle before", out: "Handle after", centre: "Middle", radius: "Rim" };
 
 const NODES_MAX = 60;
 

@@ -28,10 +28,14 @@ const SHOWN = [
 const THUMBNAIL = 72;
 const ASK_MS = 400;
 
+/** What a group is called, and what it does. @param {{name: string, title: string}} group */
+const inWords = ({ name, title }) => `${name}: ${title}`;
+
 export class SymmetryPanel extends HTMLElement {
     /** @type {Context} */
     // @ts-expect-error set by connect, before anything else
     #context;
+    #heading = make("h2", {}, "Group");
     #groups = make("div", { class: "groups", role: "radiogroup", "aria-label": "Wallpaper group" });
     #cell = make("div");
     #shown = make("div");
@@ -51,7 +55,7 @@ export class SymmetryPanel extends HTMLElement {
         this.#context = context;
         const { store, link } = context;
         this.replaceChildren(
-            make("h2", {}, "Group"),
+            this.#heading,
             this.#groups,
             this.#note,
             make("h2", {}, "Cell"),
@@ -88,6 +92,7 @@ export class SymmetryPanel extends HTMLElement {
             button.setAttribute("aria-checked", String(on));
             button.tabIndex = on ? 0 : -1;
         }
+        this.#heading.textContent = `Group ${inWords(groupOf(state.design, state.tables))}`;
         refill(this.#cell, this.#cellFields(state));
         clearTimeout(this.#timer);
         this.#timer = window.setTimeout(() => this.#ask(), ASK_MS);
@@ -101,7 +106,8 @@ export class SymmetryPanel extends HTMLElement {
                 type: "button",
                 role: "radio",
                 "data-group": group.name,
-                title: `${group.name}: ${group.order} copies in a cell`,
+                title: inWords(group),
+                "aria-label": inWords(group),
                 onclick: () => this.#choose(group.name),
                 onkeydown: (/** @type {KeyboardEvent} */ event) => this.#step(event),
             },
@@ -184,7 +190,7 @@ export class SymmetryPanel extends HTMLElement {
         }
         const button = [...this.#groups.children].find((one) => one.dataset.group === group);
         button.classList.toggle("refused", !tiles);
-        button.title = error ? `${group}: ${error.message}` : group;
+        button.title = error ? `${group}: ${error.message}` : (button.getAttribute("aria-label") ?? group);
         if (tiles) {
             const { store, stage } = this.#context;
             const looks = { side: THUMBNAIL, dark: stage.dark };
