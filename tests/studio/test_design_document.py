@@ -200,6 +200,34 @@ def test_a_new_design_is_begun_beside_another(file: Path, opens: Opens) -> None:
     assert sorted(path.name for path in file.parent.iterdir()) == [file.name, "taken.toml"]
 
 
+@pytest.mark.parametrize("newline", ["\n", "\r\n"], ids=["lf", "crlf"])
+def test_a_starters_comments_stay_true(file: Path, opens: Opens, newline: str) -> None:
+    """What it says of its group is what the starter of the new one says; whatever else is written stays."""
+    mine = "# A tile design in the wallpaper group p4: quarter turns, my first."
+    text = starter_text("p4").replace("\n[cell]", f"\n{mine}\n[cell]")
+    file.write_text(text, newline=newline)
+    document = opens()
+    for group in ("pmm", "p1", "p6m"):
+        design = design_of(document) | {"group": group}
+        shared = document.toml(design)
+        document.save(design)
+        assert file.read_bytes().decode() == shared
+        lines, starter = shared.split(newline), starter_text(group).splitlines()
+        assert (lines[0], lines[-2]) == (starter[0], starter[-1])
+        assert mine in lines
+    document.save(design_of(document) | {"group": "p4"})
+    assert file.read_bytes().decode() == text.replace("\n", newline)
+
+
+def test_comments_stay_where_the_group_does(file: Path, opens: Opens) -> None:
+    """Whatever they say."""
+    file.write_text(starter_text("p2").replace('group = "p2"', 'group = "p4"'))
+    document = opens()
+    design = design_of(document)
+    document.save(design | {"scale": 2})
+    assert file.read_text().splitlines()[0] == starter_text("p2").splitlines()[0]
+
+
 def test_a_name_in_a_folder_that_is_not_there_is_refused(tmp_path: Path) -> None:
     """A design that could not be saved is not begun."""
     with pytest.raises(DesignError, match="its folder is not there"):

@@ -157,7 +157,7 @@ _CELL_COMMENTS = (
 )
 
 _HEAD = """\
-# A tile design in the wallpaper group {group}: {symmetry}.
+{comment}
 # Export it:  voronoi-tiles export {file} -o {result}
 
 schema = 1
@@ -189,7 +189,7 @@ _TAIL = """
 #   {{ file = "leaf.svg" }}                   a drawing, SVG or DXF
 # Each may carry mirror = true, scale = 0.5, rotate = 30, translate = [4, 2], applied in this order about
 # the origin; so may a whole site.
-# Copies must not touch: {clear}.
+{comment}
 """
 
 _MIRRORED = ("pm", "cm", "pmm", "pmg", "cmm", "p4m", "p4g", "p3m1", "p31m", "p6m")
@@ -225,15 +225,39 @@ def symmetry_of(group: str) -> str:
     return _TABLE[group].symmetry
 
 
+def group_comments(group: str) -> tuple[str, str]:
+    """The two lines of a starter's file that are about its group: what that does, and what strokes keep clear of."""
+    places = ["mirrors"] * (group in _MIRRORED) + ["centres of rotation"] * (group in _TURNED)
+    clear = "keep the strokes clear of those in the next cells"
+    if places:
+        clear = f"keep clear of {' and '.join(places)}, or lay a whole site evenly about them"
+    return (
+        f"# A tile design in the wallpaper group {group}: {symmetry_of(group)}.",
+        f"# Copies must not touch: {clear}.",
+    )
+
+
+def with_group_comments(text: str, group: str) -> str:
+    """The text of a design file whose group has become another one, with that one's comments.
+
+    Only lines that are word for word those of a starter are replaced: what anybody has written stays.
+    """
+    places = {line: k for name in GROUP_NAMES for k, line in enumerate(group_comments(name))}
+    own = group_comments(group)
+    lines = [(line, line.rstrip("\r\n")) for line in text.splitlines(keepends=True)]
+    return "".join(own[places[bare]] + line[len(bare) :] if bare in places else line for line, bare in lines)
+
+
 def written(group: str, starter: Starter, file: str | None, result: str | None = None) -> str:
     """A starter as the text of a design file; see `starter_text`. `result` is what its export is called."""
     path = PurePath(file or "")
     if not (path.name and path.name.isprintable()):  # a comment cannot show it
         path = PurePath(f"{group}.toml")
+    about, clear = group_comments(group)
     parts = [
         _HEAD.format(
+            comment=about,
             group=group,
-            symmetry=starter.symmetry,
             file=shlex.quote(path.name),
             result=shlex.quote(result or f"{path.stem}.svg"),
         ),
@@ -254,9 +278,5 @@ def written(group: str, starter: Starter, file: str | None, result: str | None =
         )
         parts += [f"  # {stroke.comment}\n  {stroke.toml},\n" for stroke in strokes]
         parts.append("]\n")
-    places = ["mirrors"] * (group in _MIRRORED) + ["centres of rotation"] * (group in _TURNED)
-    clear = "keep the strokes clear of those in the next cells"
-    if places:
-        clear = f"keep clear of {' and '.join(places)}, or lay a whole site evenly about them"
-    parts.append(_TAIL.format(clear=clear))
+    parts.append(_TAIL.format(comment=clear))
     return "".join(parts)

@@ -20,7 +20,7 @@ from voronoi_tiles.base.files import is_special, write_whole, writing
 from voronoi_tiles.base.tolerance import FILE_BYTES_MAX
 from voronoi_tiles.base.values import shown
 from voronoi_tiles.designs.load import STARTER, parse, refuse_drawing
-from voronoi_tiles.designs.starters import starter_text
+from voronoi_tiles.designs.starters import GROUP_NAMES, starter_text, with_group_comments
 from voronoi_tiles.studio.design_parts import require_parts
 from voronoi_tiles.studio.matching import json_form, merged, same
 from voronoi_tiles.studio.recovery import Recovery, RecoveryCopy
@@ -205,7 +205,7 @@ class Document:
 
     def toml(self, design: Mapping[str, Any]) -> str:
         """A design as the text of a TOML file: this one where it is TOML, edited. Raises DesignError."""
-        return edited(self._text, design).text if self._is_toml else written(design)
+        return self._edited(design)[0] if self._is_toml else written(design)
 
     def close(self) -> None:
         """Let others have the file. A recovery copy stays: what was not saved is found again."""
@@ -294,8 +294,16 @@ class Document:
     def _written(self, design: Mapping[str, Any]) -> tuple[str, tuple[str, ...]]:
         """The text of the file that says a design, with what could not be kept of it. Raises DesignError."""
         if self._is_toml:
-            return edited(self._text, design)
+            return self._edited(design)
         return self._text if same(self._design, design) else _json_text(merged(self._design, design), self._text), ()
+
+    def _edited(self, design: Mapping[str, Any]) -> tuple[str, tuple[str, ...]]:
+        """The text of the TOML file that says a design, as `_written`; a starter's comments on its group stay true."""
+        text, notes = edited(self._text, design)
+        group = design.get("group")
+        if group in GROUP_NAMES and group != self._design.get("group"):
+            text = with_group_comments(text, group)
+        return text, notes
 
     def _replaced(self, there: _Disk, data: bytes) -> bool:
         """Write the file, if there is still what was there; whether it was. Raises OutputError."""
