@@ -174,6 +174,29 @@ def test_files_are_those_of_the_command_line(window: Window, studio: Studio, tmp
     assert Path(again.path()).read_bytes() == (tmp_path / "bird.svg").read_bytes()
 
 
+def test_an_export_can_be_given_up(window: Window) -> None:
+    """What it is bounded by is said before; while it is made the dialog says so, and Cancel ends it without a file."""
+    page = window.page
+    page.evaluate("""() => {
+        const own = window.fetch;
+        window.fetch = (address, { signal } = {}) => new Promise((done, refuse) => {
+            window.fetch = own;
+            signal.addEventListener("abort", () => { window.given = address; refuse(signal.reason); });
+        });
+    }""")
+    page.keyboard.press("Control+e")
+    dialog = page.get_by_role("dialog")
+    dialog.get_by_text("What takes longer than 10 s is given up").wait_for()
+    page.get_by_label("Format").select_option("png")
+    dialog.get_by_text("A picture of the plane, 1600 pixels on its longer side").wait_for()
+    page.get_by_role("button", name="Download").click()
+    dialog.get_by_role("status").get_by_text("Working").wait_for()
+    dialog.get_by_role("button", name="Cancel").click()
+    page.wait_for_function("() => window.given === 'export'")
+    dialog.wait_for(state="detached")
+    assert download(window, "svg").suggested_filename == "bird.svg"
+
+
 def test_coupon_picture_and_parts(window: Window) -> None:
     """A test piece, a picture, and a zip of one file a colour under its own name."""
     page = window.page

@@ -15,6 +15,7 @@ from voronoi_tiles.designs.drawn_strokes import StrokeKind
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.formats.presets import FORMATS, load_preset
 from voronoi_tiles.groups.wallpaper import GROUPS
+from voronoi_tiles.pictures.picture_size import DEFAULT_SIZE
 from voronoi_tiles.studio.tables import page_tables, starter_designs
 
 TABLES: dict[str, Any] = json.loads(json.dumps(page_tables(), allow_nan=False))
@@ -108,6 +109,7 @@ def test_presets_kinds_and_formats_are_all_there() -> None:
     assert {"plain", "lightburn", "glowforge"} <= {preset["name"] for preset in TABLES["presets"]}
     assert TABLES["kinds"] == list(get_args(StrokeKind))
     assert set(TABLES["formats"]) == {*FORMATS, "json", "png"}
+    assert TABLES["limits"]["picture"] == DEFAULT_SIZE
     assert TABLES["limits"]["drop"] == 16 * 2**20  # as tests/studio/test_drop.py has it
     assert TABLES["units"] == {"mm": 1.0, "cm": 10.0, "in": 25.4}
 

@@ -110,7 +110,7 @@ def render(
     Where copies touch or cross there are no tiles: the picture shows the two copies and the place, a message says it,
     and the exit code is 1.
     """
-    from voronoi_tiles.pictures.rendering import DEFAULT_SIZE
+    from voronoi_tiles.pictures.picture_size import DEFAULT_SIZE
     from voronoi_tiles.pictures.rendering import render as render_picture
 
     refuse_output(design, output, (".png",))

@@ -60,7 +60,7 @@ def watch(
     were; copies that touch are shown in the picture. The other options are those of render and export.
     """
     from voronoi_tiles.base.watching import FileWatch
-    from voronoi_tiles.pictures.rendering import DEFAULT_SIZE
+    from voronoi_tiles.pictures.picture_size import DEFAULT_SIZE
 
     _refuse_design(design)
     targets = outputs or _beside(design)

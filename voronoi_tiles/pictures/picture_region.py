@@ -10,10 +10,8 @@ import numpy as np
 from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.tolerance import COORDINATE_MAX, EPSILON, NUMBER_MIN
 from voronoi_tiles.base.values import is_number, shown
+from voronoi_tiles.pictures.picture_size import SIDE_MAX
 from voronoi_tiles.raster.picture import Region
-
-SIDE_MAX = 100_000
-"""The largest side of a picture; pixels. It has 300 MB a band, and takes hours."""
 
 
 def fitted_region(region: Region, size: int | tuple[int, int]) -> tuple[Region, int, int]:

@@ -28,6 +28,7 @@ from voronoi_tiles.pictures import difference as diff
 from voronoi_tiles.pictures.clash import clash_marks
 from voronoi_tiles.pictures.coordinate_grid import coordinate_grid
 from voronoi_tiles.pictures.picture_region import fitted_region
+from voronoi_tiles.pictures.picture_size import DEFAULT_SIZE
 from voronoi_tiles.pictures.rendered import Rendering
 from voronoi_tiles.raster.line_coverage import dashed
 from voronoi_tiles.raster.picture import INK, Overlay, Picture, PictureStyle, Pixels, Region, default_region
@@ -40,9 +41,6 @@ from voronoi_tiles.vector.tessellation import TileRecord
 OVERLAYS = ("symmetry", "cell", "outline", "art", "grid")
 """What can be drawn on top: mirrors, glides and rotation centres; the cell; the exact outlines; the sites' art, in the
 place of their strokes; a grid of coordinates."""
-
-DEFAULT_SIZE = 1600
-"""The longer side of a picture; pixels."""
 
 CELLS_MAX = 1_000_000
 """Most cells whose symmetry elements are drawn."""

@@ -21,9 +21,7 @@ from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
 from voronoi_tiles.studio.frames import FRAME_START, pack, sizes_of
-
-LIMIT_S: Final = 10.0
-"""For how long a worker may work at one thing; seconds."""
+from voronoi_tiles.studio.messages import SECONDS_MAX
 
 _STARTING_S: Final = 60.0
 """For how long a worker may take to be ready, on the slowest machine; seconds."""
@@ -35,7 +33,7 @@ _WAITING_MAX: Final = 8
 """How much that no newer request replaces may wait in a lane; a count."""
 
 TOO_LONG: Final = {
-    "message": f"This takes longer than {LIMIT_S:g} seconds, and was given up.",
+    "message": f"This takes longer than {SECONDS_MAX} seconds, and was given up.",
     "remedy": "Draw less, take larger tolerances, or make a smaller sheet; voronoi-tiles export has no such limit.",
 }
 DIED: Final = {
@@ -92,7 +90,7 @@ class Worker:
             await self.end()
             raise
 
-    async def ask(self, head: Mapping[str, Any], body: bytes = b"", limit_s: float = LIMIT_S) -> Answer:
+    async def ask(self, head: Mapping[str, Any], body: bytes = b"", limit_s: float = SECONDS_MAX) -> Answer:
         """Have something done; a worker that does not do it is ended."""
         try:
             await self.start()
@@ -151,7 +149,7 @@ class Lane:
     An `early` worker is started at once, others when there is something to do.
     """
 
-    def __init__(self, worker: Worker, *, limit_s: float = LIMIT_S, early: bool = False) -> None:
+    def __init__(self, worker: Worker, *, limit_s: float = SECONDS_MAX, early: bool = False) -> None:
         self.worker = worker
         self._early = early
         self._limit_s = limit_s

@@ -31,7 +31,16 @@ STROKES_MAX: Final = 2_000
 POINTS_MAX: Final = 20_000
 """Most points of a design in the studio; a count. Such a design takes seconds."""
 
-LIMITS: Final = {"message": MESSAGE_MAX, "drop": DROP_MAX, "strokes": STROKES_MAX, "points": POINTS_MAX}
+SECONDS_MAX: Final = 10
+"""For how long a worker may work at one thing; seconds."""
+
+LIMITS: Final = {
+    "message": MESSAGE_MAX,
+    "drop": DROP_MAX,
+    "strokes": STROKES_MAX,
+    "points": POINTS_MAX,
+    "seconds": SECONDS_MAX,
+}
 """What the page is told of them."""
 
 DEPTH_MAX: Final = 16

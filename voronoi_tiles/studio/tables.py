@@ -14,6 +14,7 @@ from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.formats.presets import load_preset, preset_names
 from voronoi_tiles.groups.symmetry_elements import Line, symmetry_elements
 from voronoi_tiles.groups.wallpaper import GROUPS, WallpaperGroup
+from voronoi_tiles.pictures.picture_size import DEFAULT_SIZE
 from voronoi_tiles.studio.messages import LIMITS
 from voronoi_tiles.studio.outlining import thumbnail_tiles
 from voronoi_tiles.tiling import FORMATS, FileFormat
@@ -60,7 +61,7 @@ def page_tables() -> dict[str, Any]:
         "presets": [{"name": name, "title": load_preset(name).title} for name in preset_names()],
         "formats": list(FORMS),
         "units": dict(UNIT_MM),
-        "limits": LIMITS,
+        "limits": {**LIMITS, "picture": DEFAULT_SIZE},
     }
 
 

@@ -37,10 +37,10 @@ function download(blob, name) {
  * Post to the server; what it refuses is an error for people.
  * @param {string} path
  * @param {BodyInit} body
- * @param {string} [type]
+ * @param {{type?: string, signal?: AbortSignal}} [more] `signal` gives it up
  */
-async function post(path, body, type = "application/json") {
-    const answer = await fetch(path, { method: "POST", headers: { "Content-Type": type }, body });
+async function post(path, body, { type = "application/json", signal } = {}) {
+    const answer = await fetch(path, { method: "POST", headers: { "Content-Type": type }, body, signal });
     if (!answer.ok) {
         const error = await answer.json().catch(() => ({ message: `The server says ${answer.status}`, remedy: "" }));
         throw Object.assign(new Error(`${error.message.replace(/\.?$/, ".")} ${error.remedy ?? ""}`.trim()), { error });
@@ -63,10 +63,13 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
     /**
      * @param {string} title
      * @param {(Node | string)[]} content
-     * @param {{label: string, first?: boolean, run?: () => unknown}[]} actions the last closes without doing anything
+     * @param {{label: string, first?: boolean, run?: (signal: AbortSignal) => unknown}[]} actions the last closes without
+     *     doing anything, and gives up what one before it is doing
      */
     const open = (title, content, actions) => {
         const said = make("p", { class: "error", role: "alert" });
+        const working = make("p", { class: "note", role: "status" });
+        const stop = new AbortController();
         const buttons = actions.map(({ label, first, run }) =>
             make(
                 "button",
@@ -74,11 +77,23 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
                     type: "button",
                     class: first ? "first" : "",
                     onclick: async () => {
+                        if (run && box.ariaBusy) {
+                            return;
+                        }
                         try {
-                            await run?.();
+                            said.textContent = "";
+                            const done = run?.(stop.signal);
+                            if (done instanceof Promise) {
+                                box.ariaBusy = "true";
+                                working.replaceChildren(make("progress", { "aria-hidden": true }), " Working");
+                                await done;
+                            }
                             box.close();
                         } catch (error) {
                             said.textContent = error instanceof Error ? error.message : String(error);
+                        } finally {
+                            box.ariaBusy = null;
+                            working.textContent = "";
                         }
                     },
                 },
@@ -88,10 +103,17 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
         const heading = make("h2", { id: "dialog-title" }, title);
         const box = make(
             "dialog",
-            { "aria-labelledby": "dialog-title", onclose: () => box.remove() },
+            {
+                "aria-labelledby": "dialog-title",
+                onclose: () => {
+                    stop.abort();
+                    box.remove();
+                },
+            },
             heading,
             ...content,
             said,
+            working,
             make("footer", {}, ...buttons),
         );
         home.replaceChildren(box);
@@ -121,7 +143,9 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
         const { design } = store.state;
         const units = encodeURIComponent(design.units ?? "mm");
         const answer = await (
-            await post(`drop?name=${encodeURIComponent(file.name)}&units=${units}`, file, "application/octet-stream")
+            await post(`drop?name=${encodeURIComponent(file.name)}&units=${units}`, file, {
+                type: "application/octet-stream",
+            })
         ).json();
         if (answer.design) {
             begin(answer.design);
@@ -197,6 +221,17 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
                 {},
                 ...tables.formats.map((/** @type {string} */ one) => make("option", {}, one)),
             );
+            const { picture, seconds } = tables.limits;
+            const bounds = make("p", { class: "note" });
+            const bound = () => {
+                bounds.textContent =
+                    (format.value === "png"
+                        ? `A picture of the plane, ${picture} pixels on its longer side; voronoi-tiles render makes larger ones. `
+                        : "") +
+                    `What takes longer than ${seconds} s is given up; voronoi-tiles export has no such limit.`;
+            };
+            format.addEventListener("change", bound);
+            bound();
             const what = Object.keys(job).length
                 ? Object.entries(job)
                       .map(([key, value]) => `${key} ${Array.isArray(value) ? value.join(" x ") : value}`)
@@ -204,12 +239,17 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
                 : "no options: the exact tiles, one of each";
             open(
                 "Export",
-                [field("Format", format), field("Name", name), make("p", { class: "note" }, `The job: ${what}.`)],
+                [
+                    field("Format", format),
+                    field("Name", name),
+                    make("p", { class: "note" }, `The job: ${what}.`),
+                    bounds,
+                ],
                 [
                     {
                         label: "Download",
                         first: true,
-                        run: async () => {
+                        run: async (signal) => {
                             const answer = await post(
                                 "export",
                                 JSON.stringify({
@@ -217,6 +257,7 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
                                     job: { ...store.state.job, format: format.value },
                                     name: name.value,
                                 }),
+                                { signal },
                             );
                             download(await answer.blob(), nameOf(answer, `${name.value}.${format.value}`));
                         },
@@ -242,8 +283,10 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
                     {
                         label: "Download",
                         first: true,
-                        run: async () => {
-                            const answer = await post("coupon", JSON.stringify({ thickness: thickness.value }));
+                        run: async (signal) => {
+                            const answer = await post("coupon", JSON.stringify({ thickness: thickness.value }), {
+                                signal,
+                            });
                             download(await answer.blob(), nameOf(answer, "coupon.svg"));
                         },
                     },
