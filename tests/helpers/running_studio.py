@@ -20,10 +20,15 @@ from helpers.loopback import Site
 
 @dataclass(frozen=True)
 class RunningStudio(Site):
-    """A studio that runs as a process, and what it says."""
+    """A studio that runs as a process in a session of its own, and its folder."""
 
     process: subprocess.Popen[str]
-    said: Path
+    folder: Path
+
+    @property
+    def said(self) -> Path:
+        """The file of what it says on its standard error."""
+        return self.folder / "said.txt"
 
     def workers(self) -> list[int]:
         """Its processes, by what the system says of parents; Linux alone tells."""
@@ -50,13 +55,15 @@ def running(folder: Path, *arguments: str, environment: Mapping[str, str] | None
     own = {**os.environ, "XDG_STATE_HOME": str(folder / "state"), **(environment or {})}
     call = [sys.executable, "-m", "voronoi_tiles", "studio", *arguments, "--no-browser"]
     with said.open("w") as errors:
-        process = subprocess.Popen(call, stdout=subprocess.PIPE, stderr=errors, text=True, cwd=folder, env=own)
+        process = subprocess.Popen(
+            call, stdout=subprocess.PIPE, stderr=errors, text=True, cwd=folder, env=own, start_new_session=True
+        )
     with process:
         assert process.stdout is not None
         try:
             address = process.stdout.readline().strip()
             assert address.startswith("http://127.0.0.1:"), (address, said.read_text())
-            yield RunningStudio(address, process, said)
+            yield RunningStudio(address, process, folder)
         finally:
             process.kill()
 

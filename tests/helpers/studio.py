@@ -1,59 +1,28 @@
-"""A studio for tests: the command as a process of its own, and its page in a browser."""
+"""The studio's page in a browser: what tests do with it."""
 
 from __future__ import annotations
 
 import base64
 import json
-import os
 import signal
-import subprocess
-import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from helpers import running_studio
 
-@dataclass
-class Studio:
-    """A running studio: its process, the address with its token, and the folder that it was started in."""
-
-    process: subprocess.Popen[str]
-    url: str
-    folder: Path
-
-    @property
-    def port(self) -> int:
-        """The port that it listens to."""
-        return int(self.url.split(":")[2].split("/")[0])
+Studio = running_studio.RunningStudio
 
 
 @contextmanager
 def running(folder: Path, *arguments: str) -> Iterator[Studio]:
-    """A studio whose recovery copies lie in the folder too; it is stopped in the end."""
-    environment = os.environ | {"XDG_STATE_HOME": str(folder / ".state")}
-    command = [sys.executable, "-m", "voronoi_tiles", "studio", *arguments, "--no-browser"]
-    with subprocess.Popen(
-        command,
-        cwd=folder,
-        env=environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-    ) as process:
-        assert process.stdout is not None
-        url = process.stdout.readline().strip()
-        try:
-            assert url.startswith("http://127.0.0.1:"), url + (process.stderr.read() if process.stderr else "")
-            yield Studio(process, url, folder)
-            assert process.poll() in (None, -signal.SIGKILL), (
-                f"it has ended by itself, {process.poll()}: {process.communicate()}"
-            )
-        finally:
-            process.terminate()
-            process.communicate(timeout=20)
+    """A studio that runs on until the block's end, unless the test kills it."""
+    with running_studio.running(folder, *arguments) as studio:
+        yield studio
+        ended = studio.process.poll()
+        assert ended in (None, -signal.SIGKILL), f"it has ended by itself, {ended}: {studio.said.read_text()}"
 
 
 @dataclass
@@ -172,7 +141,7 @@ def opened(
     try:
         page.set_default_timeout(20_000)
         page.add_init_script(script)
-        page.goto(studio.url + fragment)
+        page.goto(studio.address + fragment)
         window = Window(page)
         window.load()
         if not gallery:

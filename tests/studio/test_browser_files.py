@@ -88,7 +88,7 @@ def test_a_killed_server(chromium: Any, tmp_path: Path) -> None:
         window.wait()
         draw_a_line(window)
         window.wait()
-        copies = tmp_path / ".state/voronoi-tiles/studio"
+        copies = tmp_path / "state/voronoi-tiles/studio"
         window.page.wait_for_timeout(1000)  # what the promise allows
         drawn = window.text
         os.kill(studio.process.pid, signal.SIGKILL)
@@ -353,7 +353,7 @@ def test_a_new_design_in_a_file_of_its_own(window: Window, studio: Studio) -> No
     window.save()
     assert tomllib.loads(leaf.read_text(encoding="utf-8")) == window.design
     assert tomllib.loads((studio.folder / "work/bird.toml").read_text(encoding="utf-8")) == DESIGN
-    copies = [json.loads(path.read_bytes()) for path in studio.folder.glob(".state/**/bird-*.json")]
+    copies = [json.loads(path.read_bytes()) for path in studio.folder.glob("state/**/bird-*.json")]
     assert drawn in [copy["design"]["site"][0]["strokes"] for copy in copies]
 
     before = window.text

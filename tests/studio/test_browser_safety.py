@@ -115,8 +115,8 @@ def test_a_rebound_name_is_refused(chromium: Any, studio: Studio) -> None:
     )
     try:
         page = browser.new_page()
-        assert page.goto(studio.url.replace("127.0.0.1", "evil.test")).status == 403
-        assert page.goto(studio.url).ok
+        assert page.goto(studio.address.replace("127.0.0.1", "evil.test")).status == 403
+        assert page.goto(studio.address).ok
     finally:
         browser.close()
 
