@@ -15,11 +15,13 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.paths.biarc_bounds import fit
 from voronoi_tiles.paths.biarc_segmentation import longest_stretches
 from voronoi_tiles.paths.biarcs import to_arcs
 from voronoi_tiles.paths.conversion import COUNT_MAX, to_cubics, to_lines
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
 from voronoi_tiles.paths.smooth_runs import SmoothRuns
+from voronoi_tiles.paths.stretch_parts import cut
 
 Points = tuple[complex, ...]
 Conversion = Callable[..., Paths]
@@ -350,6 +352,27 @@ def test_degenerate_curves(name: str, accuracy: float) -> None:
     assert_within(old, new, accuracy)
     assert len(new.kind) < 80
     assert same(to_arcs(old.reversed(), accuracy=accuracy), new.reversed())
+
+
+@pytest.mark.usefixtures("compiled")
+def test_kernels_have_the_bits_of_numpy(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The parts of stretches and all bounds: short and long ones, across joints, of curves that are hard to follow."""
+    rng = np.random.default_rng(7)
+    for old in [*(smooth_side(seed, 1 + seed % 6, 2.0) for seed in range(12)), *DEGENERATE.values()]:
+        runs = runs_of(old)
+        if len(runs.begin) > 1:
+            runs.x[3] = rng.normal(size=len(runs.begin))  # cubic curves as well
+        run = np.zeros(40, np.intp)
+        low, high = np.sort(rng.uniform(0.0, runs.total[0], (2, len(run))), axis=0)
+        low[:8], high[4:12] = 0.0, runs.total[0]
+        joints = len(runs.begin) - 1
+        low[12 : 12 + joints], high[12 : 12 + joints] = runs.begin[:-1], runs.begin[1:]
+        found = []
+        for chosen in ("", "numpy"):
+            monkeypatch.setenv("VORONOI_TILES_KERNELS", chosen)
+            fields = [*cut(runs, run, low, high), fit(runs, run, low, high)]
+            found.append([array.tobytes() for arrays in fields for array in arrays])
+        assert found[0] == found[1]
 
 
 def test_no_length_and_no_pieces() -> None:

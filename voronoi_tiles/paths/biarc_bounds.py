@@ -1,6 +1,7 @@
 """How far a line, an arc or a biarc is from a stretch of a smooth run of curves: bounds, not samples.
 
 Along a polynomial segment the equation of a circle is a polynomial; its Bernstein coefficients bound it everywhere.
+What there is to do for every part of a stretch compiled kernels do; the numpy code beside them gives the same bits.
 """
 
 from __future__ import annotations
@@ -9,16 +10,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Floats, Ints, ranges
-from voronoi_tiles.paths.smooth_runs import SmoothRuns, tangents
-
-_PARTS = 12
-"""A stretch is bounded in about this many parts, which makes the bounds at most a few percent too large."""
+from voronoi_tiles.base.arrays import Floats, Ints
+from voronoi_tiles.base.kernels import FLOATS, INT, INTS, kernel
+from voronoi_tiles.paths.smooth_runs import SmoothRuns
+from voronoi_tiles.paths.stretch_parts import StretchEnds, StretchParts, cut, squares_of
 
 _HALF_TURN = np.pi * (1 + 1e-12)
 
 _BALANCE = 0.07
 """The power of the two errors' ratio by which a joint is moved to make them equal; found by trying parabolas."""
+
+# What the compiled kernels take, as in biarc_bounds.c: numbers of stretches and parts, what there is of each of these.
+_SINGLE = kernel("biarc_single", INT, INTS, INT, *13 * [FLOATS])
+_DOUBLE = kernel("biarc_double", INT, INTS, INT, *11 * [FLOATS])
 
 
 class Fit(NamedTuple):
@@ -42,16 +46,6 @@ class Fit(NamedTuple):
     def best(self) -> Floats:
         """The least of the three bounds."""
         return np.minimum(np.minimum(self.line, self.arc), self.biarc)
-
-
-class _ParameterParts(NamedTuple):
-    """The parts of all stretches, in order: control points from the stretch's beginning, (4, m), and owners (m,)."""
-
-    x: Floats
-    y: Floats
-    stretch: Ints
-    first: Ints
-    """(stretches,) where the parts of each begin"""
 
 
 class _FittedCircles(NamedTuple):
@@ -92,7 +86,7 @@ def fit(runs: SmoothRuns, run: Ints, low: Floats, high: Floats) -> Fit:
     Hausdorff distance both ways. A segment needs no such condition: the distance from it is convex, and a curve that
     joins its ends passes every point of it on its perpendicular.
     """
-    parts, ends = _cut(runs, run, low, high)
+    parts, ends = cut(runs, run, low, high)
     chord = np.hypot(ends.x, ends.y)
     apart = chord > 0.0
     safe = np.where(apart, chord, 1.0)
@@ -100,28 +94,24 @@ def fit(runs: SmoothRuns, run: Ints, low: Floats, high: Floats) -> Fit:
     alpha = np.arctan2(ux * ends.ay - uy * ends.ax, ux * ends.ax + uy * ends.ay)
     beta = np.arctan2(ux * ends.by - uy * ends.bx, ux * ends.bx + uy * ends.by)
     frame = _ChordFrame(ux, uy, safe, alpha, beta)
-    squares = _squares(parts.x, parts.y)
 
     # The circle of all joints is that of the one arc; its tangent lies evenly between those of the curve.
     omega = (alpha - beta) / 2
     zero = np.zeros(len(run))
-    joints = _FittedCircles.tangent(-2 * np.sin(omega) / safe, *frame.towards(omega), zero, zero).of(parts.stretch)
-    values = _values(parts.x, parts.y, squares, joints)
-    one_arc = np.maximum.reduceat(_distances(parts.x, parts.y, values, joints), parts.first)
+    joints = _FittedCircles.tangent(-2 * np.sin(omega) / safe, *frame.towards(omega), zero, zero)
+    single = _single_compiled(parts, joints, ux, uy, chord, omega) or _single(parts, joints, ux, uy, chord, omega)
     # Beyond the chord lies only what is near its ends, or a curve that runs round more than the arc.
-    across = (ux[parts.stretch] * parts.y - uy[parts.stretch] * parts.x) * np.sign(omega)[parts.stretch]
-    beyond = np.maximum.reduceat(np.max(-across, axis=0), parts.first)
-    near = (np.minimum(one_arc, chord) + beyond) * np.abs(2 * np.sin(omega)) < safe
+    near = (np.minimum(single.arc, chord) + single.beyond) * np.abs(2 * np.sin(omega)) < safe
 
-    share = _crossing(parts, values, omega, ends)
-    first = _biarc(parts, squares, ends, frame, share)
-    second = _biarc(parts, squares, ends, frame, _balanced(share, first))
+    share = _crossing(parts, single.begins, single.ends, omega, ends)
+    first = _biarc(parts, ends, frame, share)
+    second = _biarc(parts, ends, frame, _balanced(share, first))
     better = second.error < first.error
     biarc = _Biarc(*(np.where(better, new, old) for new, old in zip(second, first, strict=True)))
     round_ = apart & (np.abs(biarc.turn1) <= _HALF_TURN) & (np.abs(biarc.turn2) <= _HALF_TURN)
     return Fit(
-        line=_line_bound(parts, ux, uy, chord),
-        arc=np.where(near & apart & (2 * np.abs(omega) <= _HALF_TURN), one_arc, np.inf),
+        line=single.line,
+        arc=np.where(near & apart & (2 * np.abs(omega) <= _HALF_TURN), single.arc, np.inf),
         biarc=np.where(round_, biarc.error, np.inf),
         turn=-2 * omega,
         turn1=biarc.turn1,
@@ -138,17 +128,6 @@ def _balanced(share: Floats, biarc: _Biarc) -> Floats:
     return np.clip(share * np.clip(ratio, 0.25, 4.0) ** _BALANCE, 0.05, 0.95)
 
 
-class _StretchEnds(NamedTuple):
-    """Where stretches end, from their beginnings, and their unit tangents a and b at the two ends."""
-
-    x: Floats
-    y: Floats
-    ax: Floats
-    ay: Floats
-    bx: Floats
-    by: Floats
-
-
 class _ChordFrame(NamedTuple):
     """The unit chords of stretches, their lengths, and the angles from them to the curve's tangents at the ends."""
 
@@ -162,6 +141,53 @@ class _ChordFrame(NamedTuple):
         """The unit vectors at angles to the chords."""
         c, s = np.cos(angle), np.sin(angle)
         return self.ux * c - self.uy * s, self.ux * s + self.uy * c
+
+
+class _Single(NamedTuple):
+    """What one circle and one line are to stretches, and to their parts.
+
+    The bounds on the distance of the `arc` and of the `line`, and how far stretches lie `beyond` their chords, on the
+    side where the arc is not; the values of the circle's equation where parts begin and end.
+    """
+
+    arc: Floats
+    line: Floats
+    beyond: Floats
+    begins: Floats
+    ends: Floats
+
+
+def _single_compiled(
+    parts: StretchParts, joints: _FittedCircles, ux: Floats, uy: Floats, chord: Floats, omega: Floats
+) -> _Single | None:
+    """What `_single` gives, with the same bits; None without the compiled kernels."""
+    compiled = _SINGLE()
+    if compiled is None:
+        return None
+    arc, line, beyond = np.empty((3, len(chord)))
+    begins, ends = np.empty((2, len(parts.stretch)))
+    curves = len(parts.stretch), parts.x, parts.y, parts.squares
+    given = np.array(joints), ux, uy, chord, np.sign(omega)
+    compiled(len(chord), parts.first, *curves, *given, arc, line, beyond, begins, ends)
+    return _Single(arc, line, beyond, begins, ends)
+
+
+def _single(
+    parts: StretchParts, joints: _FittedCircles, ux: Floats, uy: Floats, chord: Floats, omega: Floats
+) -> _Single:
+    """What circles through the ends of stretches, and the segments between these, are to the stretches."""
+    of = parts.stretch
+    circle = joints.of(of)
+    values = _values(parts.x, parts.y, parts.squares, circle)
+    across, along = ux[of] * parts.y - uy[of] * parts.x, ux[of] * parts.x + uy[of] * parts.y
+    past = np.maximum(np.maximum(-along, along - chord[of]), 0.0)
+    return _Single(
+        arc=parts.most(_distances(parts.x, parts.y, values, circle)),
+        line=parts.most(np.max(np.sqrt(across * across + past * past), axis=0)),
+        beyond=parts.most(np.max(-across * np.sign(omega)[of], axis=0)),
+        begins=values[0],
+        ends=values[6],
+    )
 
 
 class _Biarc(NamedTuple):
@@ -180,7 +206,7 @@ class _Biarc(NamedTuple):
         return np.maximum(self.error1, self.error2)
 
 
-def _biarc(parts: _ParameterParts, squares: Floats, ends: _StretchEnds, frame: _ChordFrame, share: Floats) -> _Biarc:
+def _biarc(parts: StretchParts, ends: StretchEnds, frame: _ChordFrame, share: Floats) -> _Biarc:
     """The biarcs whose joints have these shares of the circle of joints before them."""
     omega = (frame.alpha - frame.beta) / 2
     phi = omega * (1 - share)
@@ -189,24 +215,56 @@ def _biarc(parts: _ParameterParts, squares: Floats, ends: _StretchEnds, frame: _
     chord2 = frame.chord * (1 - share) * np.sinc(phi / np.pi) / whole
     turn1, turn2 = 2 * (phi - frame.alpha), 2 * (frame.beta + omega * share)
     x, y = (chord1 * u for u in frame.towards(phi))
-    tx, ty = frame.towards(2 * phi - frame.alpha)
+    joint = _Joint(x, y, *frame.towards(2 * phi - frame.alpha))
     zero = np.zeros(len(x))
-    circle1 = _FittedCircles.tangent(2 * np.sin(turn1 / 2) / chord1, ends.ax, ends.ay, zero, zero)
-    circle2 = _FittedCircles.tangent(2 * np.sin(turn2 / 2) / chord2, ends.bx, ends.by, ends.x, ends.y)
+    circles = (
+        _FittedCircles.tangent(2 * np.sin(turn1 / 2) / chord1, ends.ax, ends.ay, zero, zero),
+        _FittedCircles.tangent(2 * np.sin(turn2 / 2) / chord2, ends.bx, ends.by, ends.x, ends.y),
+    )
+    error1, error2 = _double_compiled(parts, *circles, joint) or _double(parts, *circles, joint)
+    return _Biarc(error1, error2, turn1, turn2, x, y)
 
+
+class _Joint(NamedTuple):
+    """The joints of biarcs, from where their stretches begin, and the unit tangents there."""
+
+    x: Floats
+    y: Floats
+    tx: Floats
+    ty: Floats
+
+
+def _double_compiled(
+    parts: StretchParts, circle1: _FittedCircles, circle2: _FittedCircles, joint: _Joint
+) -> tuple[Floats, Floats] | None:
+    """What `_double` gives, with the same bits; None without the compiled kernels."""
+    compiled = _DOUBLE()
+    if compiled is None:
+        return None
+    error1, error2 = np.empty((2, len(joint.x)))
+    curves = len(parts.stretch), parts.x, parts.y, parts.squares
+    compiled(len(joint.x), parts.first, *curves, np.array(circle1), np.array(circle2), *joint, error1, error2)
+    return error1, error2
+
+
+def _double(
+    parts: StretchParts, circle1: _FittedCircles, circle2: _FittedCircles, joint: _Joint
+) -> tuple[Floats, Floats]:
+    """The bounds on the distances of stretches from the first and the second arcs of their biarcs."""
+    x, y, tx, ty = joint
     # The part that crosses the normal at the joint is cut there: its left half stands behind all parts.
     stretch = parts.stretch
     passed = (parts.x[3] - x[stretch]) * tx[stretch] + (parts.y[3] - y[stretch]) * ty[stretch] > 0.0
-    last = np.append(parts.first[1:], len(stretch)) - 1
+    last = parts.first[1:] - 1
     number = np.arange(len(stretch))
-    cut = np.minimum.reduceat(np.where(passed, number, last[stretch]), parts.first)
+    cut = np.minimum.reduceat(np.where(passed, number, last[stretch]), parts.first[:-1])
     along = (parts.x[:, cut] - x) * tx + (parts.y[:, cut] - y) * ty
     t = _root(along)
     left_x, right_x = _halves(parts.x[:, cut], t)
     left_y, right_y = _halves(parts.y[:, cut], t)
     all_x, all_y = np.concatenate((parts.x, left_x), axis=1), np.concatenate((parts.y, left_y), axis=1)
-    all_squares = np.concatenate((squares, _squares(left_x, left_y)), axis=1)
-    all_x[:, cut], all_y[:, cut], all_squares[:, cut] = right_x, right_y, _squares(right_x, right_y)
+    all_squares = np.concatenate((parts.squares, squares_of(left_x, left_y)), axis=1)
+    all_x[:, cut], all_y[:, cut], all_squares[:, cut] = right_x, right_y, squares_of(right_x, right_y)
     after = np.append(number >= cut[stretch], np.zeros(len(x), np.bool_))
     owner = np.append(stretch, np.arange(len(x)))
     circle = _FittedCircles(
@@ -219,9 +277,7 @@ def _biarc(parts: _ParameterParts, squares: Floats, ends: _StretchEnds, frame: _
     # A curve that runs round more than the arc comes to lie far on the wrong side.
     off += np.where(np.abs(circle.curvature) * astray <= 0.25, astray, np.inf)
     body, left, late = off[: len(stretch)], off[len(stretch) :], after[: len(stretch)]
-    error1 = np.maximum(np.maximum.reduceat(np.where(late, 0.0, body), parts.first), left)
-    error2 = np.maximum.reduceat(np.where(late, body, 0.0), parts.first)
-    return _Biarc(error1, error2, turn1, turn2, x, y)
+    return np.maximum(parts.most(np.where(late, 0.0, body)), left), parts.most(np.where(late, body, 0.0))
 
 
 def _root(b: Floats) -> Floats:
@@ -241,65 +297,6 @@ def _halves(b: Floats, t: Floats) -> tuple[Floats, Floats]:
     p02, p13 = p01 + t * (p12 - p01), p12 + t * (p23 - p12)
     middle = p02 + t * (p13 - p02)
     return np.stack((b[0], p01, p02, middle)), np.stack((middle, p13, p23, b[3]))
-
-
-def _cut(runs: SmoothRuns, run: Ints, low: Floats, high: Floats) -> tuple[_ParameterParts, _StretchEnds]:
-    """Cut stretches at the joints of segments and into about _PARTS parts; also the ends of the stretches."""
-    begin, at = runs.locate(run, low, before=False)
-    last, until = runs.locate(run, high, before=True)
-    last = np.maximum(last, begin)
-    count = last - begin + 1
-    owner = np.repeat(np.arange(len(run)), count)
-    segment = ranges(begin, count)
-    t0 = np.where(segment == begin[owner], at[owner], 0.0)
-    t1 = np.where(segment == last[owner], until[owner], 1.0)
-    part_of_all = runs.size[segment] * (t1 - t0) / (high - low)[owner]
-    parts = np.maximum(np.ceil(_PARTS * part_of_all - 1e-9), 1.0).astype(np.intp)
-    row = np.repeat(np.arange(len(segment)), parts)
-    number = ranges(np.zeros(len(segment), np.intp), parts)
-    step = ((t1 - t0) / parts)[row]
-    from_, to = t0[row] + number * step, t0[row] + (number + 1) * step
-    segment, owner = segment[row], owner[row]
-    start = np.stack(runs.points(begin, at))
-    x, y = (
-        _between(coefficients[:, segment], origin[owner], from_, to)
-        for coefficients, origin in zip((runs.x, runs.y), start, strict=True)
-    )
-    first = np.searchsorted(owner, np.arange(len(run)))
-    final = np.append(first[1:], len(owner)) - 1
-    a = tangents(runs.x[:, begin], runs.y[:, begin], at, ahead=True)
-    b = tangents(runs.x[:, last], runs.y[:, last], until, ahead=False)
-    return _ParameterParts(x, y, owner, first), _StretchEnds(x[3, final], y[3, final], *a, *b)
-
-
-def _between(c: Floats, origin: Floats, t0: Floats, t1: Floats) -> Floats:
-    """One coordinate of the control points of cubics between two parameters, (4, m): their polar forms."""
-    base = c[0] - origin
-    sum_, product = t0 + t1, t0 * t1
-    return np.stack(
-        (
-            base + t0 * (3 * c[1] + t0 * (3 * c[2] + t0 * c[3])),
-            base + c[1] * (sum_ + t0) + c[2] * (t0 * t0 + 2 * product) + c[3] * (t0 * product),
-            base + c[1] * (sum_ + t1) + c[2] * (t1 * t1 + 2 * product) + c[3] * (t1 * product),
-            base + t1 * (3 * c[1] + t1 * (3 * c[2] + t1 * c[3])),
-        )
-    )
-
-
-def _squares(x: Floats, y: Floats) -> Floats:
-    """The Bernstein coefficients of degree 6 of |d|^2 / 2 along cubics with control points (4, m): (7, m)."""
-    (x0, x1, x2, x3), (y0, y1, y2, y3) = x, y
-    return np.stack(
-        (
-            (x0 * x0 + y0 * y0) / 2,
-            (x0 * x1 + y0 * y1) / 2,
-            ((x0 * x2 + y0 * y2) * 2 + (x1 * x1 + y1 * y1) * 3) / 10,
-            ((x0 * x3 + y0 * y3) + (x1 * x2 + y1 * y2) * 9) / 20,
-            ((x1 * x3 + y1 * y3) * 2 + (x2 * x2 + y2 * y2) * 3) / 10,
-            (x2 * x3 + y2 * y3) / 2,
-            (x3 * x3 + y3 * y3) / 2,
-        )
-    )
 
 
 def _values(x: Floats, y: Floats, squares: Floats, circle: _FittedCircles) -> Floats:
@@ -322,28 +319,27 @@ def _distances(x: Floats, y: Floats, values: Floats, circle: _FittedCircles) -> 
     # The tangent of the circles round the centre is i times the gradient of F.
     gx, gy = circle.curvature * x[0] - circle.x, circle.curvature * y[0] - circle.y
     vx, vy = np.diff(x, axis=0), np.diff(y, axis=0)
-    size = np.hypot(vx, vy)
+    size = np.sqrt(vx * vx + vy * vy)  # which is rounded alike everywhere, as np.hypot is not
     bend = np.abs(circle.curvature)
     onward = np.all(vy * gx - vx * gy >= size * (bend * (size[0] + size[1] + size[2])), axis=0)
     room = 1 - 2 * bend * largest
     return np.where(onward & (room >= 0.0), 2 * largest / (1 + np.sqrt(np.maximum(room, 0.0))), np.inf)
 
 
-def _crossing(parts: _ParameterParts, values: Floats, omega: Floats, ends: _StretchEnds) -> Floats:
+def _crossing(parts: StretchParts, begins: Floats, ends: Floats, omega: Floats, at: StretchEnds) -> Floats:
     """Where on the circle of all joints the biarcs have theirs: the share of the angle that lies before it."""
     inner = np.ones(len(parts.stretch), np.bool_)
-    inner[parts.first] = False
-    inner[np.append(parts.first[1:], len(inner)) - 1] = False
-    crossing = np.flatnonzero(inner & ((values[0] > 0) != (values[6] > 0)))
+    inner[parts.first[:-1]] = inner[parts.first[1:] - 1] = False
+    crossing = np.flatnonzero(inner & ((begins > 0) != (ends > 0)))
     share = np.full(len(omega), 0.5)
     if not len(crossing):
         return share
     stretch = parts.stretch[crossing]
-    f0, f1 = values[0, crossing], values[6, crossing]
+    f0, f1 = begins[crossing], ends[crossing]
     t = f0 / (f0 - f1)
     x = parts.x[0, crossing] * (1 - t) + parts.x[3, crossing] * t
     y = parts.y[0, crossing] * (1 - t) + parts.y[3, crossing] * t
-    before, after = np.hypot(x, y), np.hypot(x - ends.x[stretch], y - ends.y[stretch])
+    before, after = np.hypot(x, y), np.hypot(x - at.x[stretch], y - at.y[stretch])
     angle = omega[stretch]
     # In the triangle of the ends and the joint the angles at the ends are to each other as the shares of omega.
     flat = np.abs(angle) < 1e-8
@@ -354,12 +350,3 @@ def _crossing(parts: _ParameterParts, values: Floats, omega: Floats, ends: _Stre
     leading = np.append(True, stretch[1:] != stretch[:-1])
     share[stretch[leading]] = np.clip(found[leading], 0.05, 0.95)
     return share
-
-
-def _line_bound(parts: _ParameterParts, ux: Floats, uy: Floats, chord: Floats) -> Floats:
-    """The bound on the distance of stretches from the segments between their ends."""
-    ux, uy, chord = ux[parts.stretch], uy[parts.stretch], chord[parts.stretch]
-    along = ux * parts.x + uy * parts.y
-    beyond = np.maximum(np.maximum(-along, along - chord), 0.0)
-    off = np.max(np.hypot(ux * parts.y - uy * parts.x, beyond), axis=0)
-    return np.maximum.reduceat(off, parts.first)

@@ -8,7 +8,7 @@ import numpy as np
 
 from voronoi_tiles.base.arrays import Floats, Ints
 
-_SNAP = 1e-6
+SNAP = 1e-6
 """A parameter that is nearer than this to an end of its segment means the end."""
 
 
@@ -49,7 +49,7 @@ class SmoothRuns:
         """The segments and parameters at places; at a joint, those of the segment before it or of the one after it."""
         segment = last_up_to(self.begin, self.first, run, place)
         t = np.clip((place - self.begin[segment]) / self.size[segment], 0.0, 1.0)
-        t = np.where(t < _SNAP, 0.0, np.where(t > 1 - _SNAP, 1.0, t))
+        t = np.where(t < SNAP, 0.0, np.where(t > 1 - SNAP, 1.0, t))
         back = before & (t == 0.0) & (segment > self.first[run])
         on = (not before) & (t == 1.0) & (segment < self.first[run + 1] - 1)
         return segment + on - back, np.where(back, 1.0, np.where(on, 0.0, t))
