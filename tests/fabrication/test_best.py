@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from voronoi_tiles.fabrication.best_offset import best_shift
 from voronoi_tiles.fabrication.region import Region
-from voronoi_tiles.fabrication.tile_placement import place_tiles
+from voronoi_tiles.fabrication.tile_placement import place_tiles, whole_tiles
 from voronoi_tiles.paths.paths import Paths
 
 NAMES = ("p1-heron", "p2-lizard", "p3-mitten", "p4-hook", "pgg-crane", "p6-manta", "cmm-scroll", "cm-moth")
@@ -36,6 +36,24 @@ def test_no_other_place_has_more(name: str, size: tuple[float, float]) -> None:
     rng = np.random.default_rng(len(name))
     others = [0j, *(complex(u * a + v * b) for u, v in rng.uniform(-1, 1, (30, 2)))]
     assert all(whole(name, region, other) <= count for other in others)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_boxes_tell_which_tiles_a_rectangle_holds(name: str) -> None:
+    """The same as where outlines meet the border, in the same order; vertices lie on it."""
+    tiles = period(name)
+    rng = np.random.default_rng(len(name))
+    corners = tiles.own_outlines[0].start[:2]
+    for shift in (0j, *(rng.uniform(-40, 40, (2, 2)) @ [1, 1j]).tolist()):
+        a, b = (complex(corner) + shift for corner in corners)
+        left, bottom = min(a.real, b.real), min(a.imag, b.imag)
+        region = Region.rectangle(left, bottom, left + 170.0, bottom + 130.0)
+        placed = place_tiles(tiles.placed(1.0, shift), region)
+        found = whole_tiles(tiles, region, shift)
+        assert 0 < len(found.tile) < len(placed.tile)
+        assert found.whole.all()
+        assert found.tile.tolist() == placed.tile[placed.whole].tolist()
+        assert found.step.tolist() == placed.step[placed.whole].tolist()
 
 
 def test_a_sheet_that_fits_exactly_is_filled() -> None:

@@ -13,10 +13,11 @@ from functools import cached_property
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Ints, ranges
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
 from voronoi_tiles.base.maps import move
 from voronoi_tiles.groups.wallpaper import Lattice
 from voronoi_tiles.paths.paths import LINE, QUAD, Paths
+from voronoi_tiles.paths.segments import item_boxes
 from voronoi_tiles.vector.complex.quotient import EdgeUse, Quotient
 from voronoi_tiles.vector.complex.representatives import Points, Representatives
 from voronoi_tiles.vector.copies import Placed
@@ -133,6 +134,11 @@ class Period:
         """The rings of all tiles where they stand in the period, as `outlines` gives them."""
         everything = np.arange(len(self.site))
         return self.outlines(everything, np.zeros((len(everything), 2), np.intp))
+
+    @cached_property
+    def own_boxes(self) -> Floats:
+        """The boxes around all tiles where they stand in the period: least x, y, greatest x, y, float64 (c, 4)."""
+        return item_boxes(*self.own_outlines)
 
     def borders(self, tile: Ints, step: Ints) -> tuple[Ints, Ints, Ints, Bools]:
         """The edges around tiles moved by lattice vectors: index into `tile`, edge, its lattice vector, forward."""

@@ -8,8 +8,7 @@ import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.fabrication.region import Region
-from voronoi_tiles.fabrication.tile_placement import group_box, place_tiles
-from voronoi_tiles.paths.segments import item_boxes
+from voronoi_tiles.fabrication.tile_placement import group_box, whole_tiles
 from voronoi_tiles.vector.complex.period import Period
 
 _PLACES: Final = 48
@@ -21,8 +20,8 @@ _GRID: Final = 8
 _ROUGH: Final = 4
 """The same for a rough shift; a divisor of the one above, so that no place is another."""
 
-_AT_ONCE: Final = 1 << 22
-"""Pairs of a tile and a place that are looked at in one go."""
+_AT_ONCE: Final = 1 << 16
+"""Tiles whose places are looked at in one go; a count."""
 
 _ROUNDS: Final = 3
 """How often a group of tiles is moved to the middle: there it may have grown, or be free to move on."""
@@ -51,7 +50,7 @@ def best_shift(period: Period, region: Region, *, rough: bool = False) -> comple
 
 def _best_of_edges(period: Period, region: Region) -> complex:
     """The shortest of the best shifts in a rectangle."""
-    box = item_boxes(*period.own_outlines)
+    box = period.own_boxes
     left, bottom, right, top = region.bounds
     # Where a tile's place may be, by its box, for the tile to be whole.
     room = np.column_stack((left - box[:, 0], bottom - box[:, 1], right - box[:, 2], top - box[:, 3]))
@@ -61,17 +60,22 @@ def _best_of_edges(period: Period, region: Region) -> complex:
     points = [_lattice(period, *(row + np.array([-reach, -reach, reach, reach]))) for row in room]
     xs = _touching([(row[0], row[2]) for row in room], [place.real for place in points], reach / 2)
     ys = _touching([(row[1], row[3]) for row in room], [place.imag for place in points], reach / 2)
-    shifts = (xs[:, None] + 1j * ys).ravel()
-    counts = np.zeros(len(shifts), np.intp)
+    shifts = xs[:, None] + 1j * ys
+    counts = np.zeros(shifts.shape)
     for row, place in zip(room, points, strict=True):
-        size = max(1, _AT_ONCE // max(1, len(place)))
-        for first in range(0, len(shifts), size):
-            here = place + shifts[first : first + size, None]
-            inside = (here.real >= row[0] - close) & (here.real <= row[2] + close)
-            inside &= (here.imag >= row[1] - close) & (here.imag <= row[3] + close)
-            counts[first : first + size] += inside.sum(axis=1)
+        for first in range(0, len(place), _AT_ONCE):
+            some = place[first : first + _AT_ONCE]
+            # Which shifts keep each tile between left and right, and which between below and above: both have to.
+            beside = _between(some.real + xs[:, None], row[0] - close, row[2] + close)
+            above = _between(some.imag + ys[:, None], row[1] - close, row[3] + close)
+            counts += beside @ above.T
     best = shifts[counts == counts.max()]
     return complex(best[np.argmin(np.abs(best))])
+
+
+def _between(values: Floats, low: float, high: float) -> Floats:
+    """1 where values lie in an interval, 0 elsewhere: sums of products of these are exact."""
+    return ((values >= low) & (values <= high)).astype(np.float64)
 
 
 def _lattice(period: Period, left: float, bottom: float, right: float, top: float) -> Complexes:
@@ -105,8 +109,8 @@ def _best_of_grid(period: Period, region: Region, side: int) -> complex:
 
 def _group(period: Period, region: Region, shift: complex) -> tuple[int, complex]:
     """How many whole tiles there are with a shift, and from the middle of their box to that of the region."""
-    placement = place_tiles(period.placed(1.0, shift), region)
-    tile, step = placement.tile[placement.whole], placement.step[placement.whole]
+    placement = whole_tiles(period, region, shift)
+    tile, step = placement.tile, placement.step
     if not len(tile):
         return 0, 0j
     x0, y0, x1, y1 = group_box(period, tile, period.shifts(step) + shift)

@@ -21,12 +21,11 @@ from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.kerf import Compensation
 from voronoi_tiles.fabrication.region import Region
 from voronoi_tiles.fabrication.spacing import FARTHEST, UNSTRETCHED, Stretch, pulled_apart, spread
-from voronoi_tiles.fabrication.tile_placement import TilePlacement, place_tiles
+from voronoi_tiles.fabrication.tile_placement import TilePlacement, place_tiles, whole_tiles
 from voronoi_tiles.paths.areas import item_areas
 from voronoi_tiles.paths.conversion import to_lines
 from voronoi_tiles.paths.offset import OffsetError, offset
 from voronoi_tiles.paths.paths import Paths
-from voronoi_tiles.paths.segments import item_boxes
 from voronoi_tiles.vector.complex.period import Period
 from voronoi_tiles.vector.copies import Placed
 from voronoi_tiles.vector.motions import IDENTITY, reverses_orientation
@@ -309,12 +308,9 @@ def _one_of_each(period: Period, placed: Sequence[Placed]) -> TilePlacement:
 
 def _placement(period: Period, field: Region, job: Job) -> TilePlacement:
     """Find the tiles on the page."""
-    placement = place_tiles(period, field)
-    if job.fit != "clip":
-        kept = np.flatnonzero(placement.whole)
-        placement = TilePlacement(placement.tile[kept], placement.step[kept], placement.whole[kept])
+    placement = (place_tiles if job.fit == "clip" else whole_tiles)(period, field)
     if not len(placement.tile):
-        x0, y0, x1, y1 = item_boxes(*period.own_outlines)[0].tolist()
+        x0, y0, x1, y1 = period.own_boxes[0].tolist()
         other = ", or `fit='clip'`" if job.fit != "clip" else ""
         raise JobError(
             f"no {'whole ' if other else ''}tile fits on the sheet: one takes {x1 - x0:.4g} x {y1 - y0:.4g} mm",

@@ -10,7 +10,7 @@ from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
 from voronoi_tiles.fabrication.region import Region, beside_border
 from voronoi_tiles.paths.intersections import candidate_pairs, crossings
 from voronoi_tiles.paths.paths import Paths
-from voronoi_tiles.paths.segments import item_boxes, point_at
+from voronoi_tiles.paths.segments import point_at
 from voronoi_tiles.paths.winding import item_winding
 from voronoi_tiles.vector.complex.period import Period
 
@@ -23,10 +23,14 @@ class TilePlacement:
     step: Ints
     whole: Bools
 
+    def take(self, which: Bools) -> TilePlacement:
+        """Some of the tiles."""
+        return TilePlacement(self.tile[which], self.step[which], self.whole[which])
+
 
 def group_box(period: Period, tile: Ints, place: Complexes) -> tuple[float, float, float, float]:
     """The box around tiles of a period, each moved by its place (complex128): x0, y0, x1, y1."""
-    box = item_boxes(*period.own_outlines)[tile]
+    box = period.own_boxes[tile]
     return (
         float((box[:, 0] + place.real).min()),
         float((box[:, 1] + place.imag).min()),
@@ -40,13 +44,7 @@ def place_tiles(period: Period, region: Region) -> TilePlacement:
 
     Tiles that only touch the border, within `region.close`, are whole, or have nothing of the region.
     """
-    box = item_boxes(*period.own_outlines)
-    tile, step = _near(period, box, region)
-    shift = period.shifts(step)
-    here = box[tile] + np.column_stack((shift.real, shift.imag, shift.real, shift.imag))
-    # Order by the middle of the box: the sheet's rows, whatever the tile.
-    order = np.lexsort((here[:, 0] + here[:, 2], np.round(here[:, 1] + here[:, 3], 6)))
-    tile, step, here = tile[order], step[order], here[order]
+    tile, step, here = _near(period, period.own_boxes, region)
     kept = region.contains(here[:, 0] + 1j * here[:, 1])
     whole = kept.copy()
     unclear = np.flatnonzero(region.meets_border(here, region.close))
@@ -55,12 +53,27 @@ def place_tiles(period: Period, region: Region) -> TilePlacement:
         inner, outer = _against(region, paths, parts)
         kept[unclear] = inner
         whole[unclear] = inner & ~outer
-    chosen = np.flatnonzero(kept)
-    return TilePlacement(tile[chosen], step[chosen], whole[chosen])
+    return TilePlacement(tile, step, whole).take(kept)
 
 
-def _near(period: Period, box: Floats, region: Region) -> tuple[Ints, Ints]:
-    """The tiles whose boxes meet that of the region by more than touching."""
+def whole_tiles(period: Period, region: Region, shift: complex = 0j) -> TilePlacement:
+    """Those that `place_tiles` finds whole after a shift of the period; in a rectangle their boxes tell."""
+    if not region.is_rectangle:
+        placement = place_tiles(period.placed(1.0, shift) if shift else period, region)
+        return placement.take(placement.whole)
+    moved = np.array([shift.real, shift.imag, shift.real, shift.imag])
+    tile, step, here = _near(period, period.own_boxes + moved, region)
+    left, bottom, right, top = region.bounds
+    low, high = np.array([left, bottom]) - region.close, np.array([right, top]) + region.close
+    whole = ((here[:, :2] >= low) & (here[:, 2:] <= high)).all(axis=1)
+    return TilePlacement(tile, step, whole).take(whole)
+
+
+def _near(period: Period, box: Floats, region: Region) -> tuple[Ints, Ints, Floats]:
+    """The tiles whose boxes meet that of the region by more than touching, in order: tile, lattice vector, and box.
+
+    `box` are those of the period's tiles.
+    """
     left, bottom, right, top = region.bounds
     close = region.close
     tiles, steps = [], []
@@ -71,7 +84,12 @@ def _near(period: Period, box: Floats, region: Region) -> tuple[Ints, Ints]:
         meets &= (y0 + shift.imag < top - close) & (y1 + shift.imag > bottom + close)
         tiles.append(np.full(int(meets.sum()), number))
         steps.append(step[meets])
-    return np.concatenate(tiles), np.concatenate(steps)
+    tile, step = np.concatenate(tiles), np.concatenate(steps)
+    shift = period.shifts(step)
+    here = box[tile] + np.column_stack((shift.real, shift.imag, shift.real, shift.imag))
+    # Order by the middle of the box: the sheet's rows, whatever the tile.
+    order = np.lexsort((here[:, 0] + here[:, 2], np.round(here[:, 1] + here[:, 3], 6)))
+    return tile[order], step[order], here[order]
 
 
 def _against(region: Region, paths: Paths, items: Ints) -> tuple[Bools, Bools]:
