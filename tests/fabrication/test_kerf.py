@@ -13,14 +13,19 @@ from helpers.cutting import contour_shapes, cuts, dense, exact_shape, farthest, 
 from helpers.examples import each_example, tiling
 
 from voronoi_tiles.designs.design import Design
+from voronoi_tiles.designs.starters import starter
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.arc_fitting import curve_fit
 from voronoi_tiles.fabrication.job import Job, JobError
+from voronoi_tiles.fabrication.kerf import SHORTEST_MM
 from voronoi_tiles.fabrication.layout import lay_out
 from voronoi_tiles.fabrication.sheets import read_sheet
 from voronoi_tiles.formats.svg.reader import svg_drawing
+from voronoi_tiles.groups.wallpaper import GROUPS
+from voronoi_tiles.paths.offset import offset
 from voronoi_tiles.paths.paths import ARC, Paths
-from voronoi_tiles.paths.segments import tangent_at
+from voronoi_tiles.paths.segments import Circles, point_at, tangent_at
+from voronoi_tiles.paths.short_segments import without_short_segments
 from voronoi_tiles.preflight import judge
 from voronoi_tiles.preflight.findings import DEFAULT_LIMITS
 from voronoi_tiles.tiling import Tiling
@@ -200,6 +205,36 @@ def test_copies_are_congruent(name: str) -> None:
     assert len(kinds) <= 3 * sites, "contours differ by more than the last digit's rounding"
     if product.pieces.turned_over.any():
         assert any(len(senses) == 2 for senses in kinds.values())
+
+
+@pytest.mark.parametrize(
+    "group", [pytest.param(group, marks=() if group in ("pg", "p4g", "p31m") else pytest.mark.slow) for group in GROUPS]
+)
+def test_pieces_have_the_offsets_of_their_own_places(group: str) -> None:
+    """One offset a site is made and moved: every tile's is that of the tile where it stands, to rounding."""
+    tiles = starter(group).tessellate()
+    job = Job(kerf=0.2, sheet=(4 * abs(tiles.design.lattice.a), 3 * abs(tiles.design.lattice.a)))
+    budget = AccuracyBudget.of(job, "exact")
+    fit = curve_fit(job, "exact", budget, tiles.design.unit_mm)
+    layout = lay_out(tiles.design, tiles.tessellation, job, read_sheet(job, budget), budget, fit)
+    tile, first = np.unique(layout.copies.tile, return_index=True)
+    assert len(tile) == len(layout.period.site)
+    outlines, items = layout.period.outlines(tile, layout.copies.step[first])
+    for k, copy in enumerate(first.tolist()):
+        here = outlines.take(np.arange(items[k], items[k + 1])).moved(1.0, complex(layout.copies.moved_by[copy]))
+        direct = without_short_segments(offset(here, 0.1).paths, SHORTEST_MM, budget.short)
+        placed = layout.contours.paths.take(np.array([copy]))
+        assert len(placed.start) == len(direct.start)
+        assert max(away(placed, direct), away(direct, placed)) <= 1e-12 * layout.sheet.width
+
+
+def away(paths: Paths, others: Paths) -> float:
+    """How far the ends and middles of segments are from other lines and arcs, at most."""
+    every = np.arange(len(paths.start))
+    points = np.concatenate([point_at(paths, every, np.full(len(every), t)) for t in (0.0, 0.5)])
+    point, segment = (k.ravel() for k in np.indices((len(points), len(others.start))))
+    near = Circles.of(others, segment).distance(points[point]).reshape(len(points), -1)
+    return float(near.min(axis=1).max())
 
 
 def _rounded(lengths: tuple[int, ...]) -> tuple[int, ...]:
