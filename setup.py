@@ -26,6 +26,7 @@ from setuptools.errors import CompileError, OptionError
 
 SOURCES = [
     "voronoi_tiles/base/kernels.c",
+    "voronoi_tiles/base/box_index.c",
     "voronoi_tiles/paths/biarc_bounds.c",
     "raster/block_lists.c",
     "vector/cells/cells.c",

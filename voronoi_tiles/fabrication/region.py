@@ -8,8 +8,9 @@ from functools import cached_property
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.box_index import BoxIndex
 from voronoi_tiles.paths.paths import LINE, Paths
-from voronoi_tiles.paths.segments import boxes, point_at, tangent_at
+from voronoi_tiles.paths.segments import boxes, corners, point_at, tangent_at
 from voronoi_tiles.paths.winding import winding
 
 _CLOSE = 1e-9
@@ -61,11 +62,9 @@ class Region:
 
     def meets_border(self, box: Floats, margin: float) -> Bools:
         """Which boxes (n x 4, as `pieces.boxes` gives them) come within a margin of that of a border's piece."""
-        import shapely
-
-        grown = box + np.array([-margin, -margin, margin, margin])
+        grown = corners(box + margin * np.array([-1.0, -1.0, 1.0, 1.0]))
         meets = np.zeros(len(box), np.bool_)
-        meets[shapely.STRtree(shapely.box(*grown.T)).query(shapely.box(*boxes(self.border).T))[1]] = True
+        meets[BoxIndex(*corners(boxes(self.border))).meeting(*grown)[0]] = True
         return meets
 
     def distance(self, points: Complexes) -> Floats:

@@ -65,7 +65,7 @@ def whole_tiles(period: Period, region: Region, shift: complex = 0j) -> TilePlac
     tile, step, here = _near(period, period.own_boxes + moved, region)
     left, bottom, right, top = region.bounds
     low, high = np.array([left, bottom]) - region.close, np.array([right, top]) + region.close
-    whole = ((here[:, :2] >= low) & (here[:, 2:] <= high)).all(axis=1)
+    whole: Bools = np.all((here[:, :2] >= low) & (here[:, 2:] <= high), axis=1)
     return TilePlacement(tile, step, whole).take(whole)
 
 

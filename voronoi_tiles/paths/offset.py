@@ -11,7 +11,8 @@ from typing import ClassVar, Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, Floats, Ints, next_in_ring
+from voronoi_tiles.base.arrays import Complexes, Floats, next_in_ring
+from voronoi_tiles.base.box_index import BoxIndex
 from voronoi_tiles.base.errors import VoronoiTilesError
 from voronoi_tiles.base.tolerance import EPSILON
 from voronoi_tiles.paths.areas import ring_areas
@@ -20,7 +21,7 @@ from voronoi_tiles.paths.chaining import built, chained, without_dead_ends
 from voronoi_tiles.paths.offset_events import Lost, losses
 from voronoi_tiles.paths.paths import ARC, LINE, Paths
 from voronoi_tiles.paths.raw_offset import raw_offset
-from voronoi_tiles.paths.segments import Circles, boxes, point_at
+from voronoi_tiles.paths.segments import Circles, boxes, corners, point_at
 from voronoi_tiles.paths.short_segments import straightened, without_points
 
 OFFSET_ULPS: Final = 256.0
@@ -116,7 +117,7 @@ class _Attempt:
         self.tolerance = OFFSET_ULPS * EPSILON * size
         self.region = region = straightened(region, self.tolerance / 64)
         self.circles = Circles.of(region, np.arange(len(region.start)))
-        self.tree = _Tree(boxes(region))
+        self.index = BoxIndex(*corners(boxes(region)))
         # Curves that touch or cross at small angles are apart by the tolerance over this length.
         self.blurred = 16 * float(np.sqrt(self.tolerance * size))
 
@@ -145,10 +146,10 @@ class _Attempt:
     def _nearest(self, points: Complexes, beyond: float = 0.0) -> Floats:
         """The distance of each point from the region's edge; infinite where it is more than the offset's + `beyond`."""
         nearest = np.full(len(points), np.inf)
-        reach = abs(self.distance) + beyond
+        reach = complex(1, 1) * (abs(self.distance) + beyond)
         for k in range(0, len(points), _CHUNK):
             chunk = points[k : k + _CHUNK]
-            i, j = self.tree.near(chunk, reach)
+            i, j = self.index.meeting(chunk - reach, chunk + reach)
             np.minimum.at(nearest, k + i, self.circles.take(j).distance(chunk[i]))
         return nearest
 
@@ -166,20 +167,3 @@ class _Attempt:
             wrong = np.flatnonzero(off > 4 * self.tolerance)
             if len(wrong):
                 raise OffsetError("the offset is not at its distance", points[wrong[0]])
-
-
-class _Tree:
-    """Finds the segments whose boxes are near a point."""
-
-    def __init__(self, rectangles: Floats) -> None:
-        import shapely
-
-        self._tree = shapely.STRtree(shapely.box(*rectangles.T))
-
-    def near(self, points: Complexes, reach: float) -> tuple[Ints, Ints]:
-        """Pairs of a point and a segment whose box is within `reach` of it, along both axes."""
-        import shapely
-
-        x, y = points.real, points.imag
-        i, j = self._tree.query(shapely.box(x - reach, y - reach, x + reach, y + reach))
-        return i.astype(np.intp), j.astype(np.intp)

@@ -8,6 +8,7 @@ from typing import Final, Self
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, Floats, Ints
+from voronoi_tiles.base.box_index import BoxIndex
 from voronoi_tiles.paths.paths import ARC, CUBIC, QUAD, Paths
 
 _AXES: Final = np.array([1, 1j, -1, -1j])
@@ -125,6 +126,11 @@ def boxes(paths: Paths) -> Floats:
     return np.concatenate((low, high)).T
 
 
+def corners(rectangles: Floats) -> tuple[Complexes, Complexes]:
+    """The lower left and the upper right corners of rectangles as `boxes` gives them."""
+    return rectangles[:, 0] + 1j * rectangles[:, 1], rectangles[:, 2] + 1j * rectangles[:, 3]
+
+
 def item_boxes(paths: Paths, items: Ints) -> Floats:
     """The same around each item: item k are the paths from items[k] up to, not including, items[k + 1]."""
     each = boxes(paths)
@@ -186,16 +192,10 @@ def candidate_pairs(first: Paths, second: Paths, margin: float = 0.0) -> tuple[I
 
     In the order of the first, then of the second. Raises ValueError for CUBIC.
     """
-    import shapely
-
     if not len(first.start) or not len(second.start):
         return np.zeros(0, np.intp), np.zeros(0, np.intp)
-    here, there = boxes(first), boxes(second)
-    grown = here + np.array([-margin, -margin, margin, margin])
-    tree = shapely.STRtree(shapely.box(*there.T))
-    i, j = tree.query(shapely.box(*grown.T))
-    order = np.lexsort((j, i))
-    return i[order].astype(np.intp), j[order].astype(np.intp)
+    low, high = corners(boxes(first) + np.array([-margin, -margin, margin, margin]))
+    return BoxIndex(*corners(boxes(second))).meeting(low, high)
 
 
 def bezier_at(paths: Paths, segments: Ints, t: Floats) -> Complexes:

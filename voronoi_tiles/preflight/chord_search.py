@@ -7,7 +7,6 @@ from itertools import pairwise
 from typing import Final
 
 import numpy as np
-import shapely
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Ints, starts
 from voronoi_tiles.formats.reading import DrawingError
@@ -54,9 +53,8 @@ def chords_in(chords: Chords, low: Complexes, high: Complexes) -> Iterator[tuple
     portion = np.cumsum(bound) // _PORTION
     for first, after in pairwise([*starts(portion).tolist(), len(low)]):
         some = slice(first, after)
-        boxes = shapely.box(low[some].real, low[some].imag, high[some].real, high[some].imag)
-        box, chord = chords.tree.query(boxes)
-        yield box.astype(np.intp) + first, chord.astype(np.intp)
+        box, chord = chords.index.meeting(low[some], high[some])
+        yield box + first, chord
 
 
 def pairs(chords: Chords, reach: float, remedy: str = _REMEDY) -> Iterator[tuple[Ints, Ints]]:

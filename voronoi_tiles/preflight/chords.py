@@ -11,6 +11,7 @@ import shapely
 from numpy.typing import NDArray
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, plane, ranges
+from voronoi_tiles.base.box_index import BoxIndex
 from voronoi_tiles.paths.conversion import chord_counts, chords
 from voronoi_tiles.paths.paths import Paths
 
@@ -40,6 +41,11 @@ class Chords:
     def lengths(self) -> Floats:
         """The length of each chord."""
         return np.abs(self.end - self.start)
+
+    @cached_property
+    def index(self) -> BoxIndex:
+        """The chords' boxes, to look for those that meet others."""
+        return BoxIndex(*self.corners)
 
     @cached_property
     def tree(self) -> shapely.STRtree:

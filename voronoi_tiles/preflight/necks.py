@@ -112,9 +112,8 @@ class _Joints:
     def __init__(self, chords: Chords) -> None:
         points = np.concatenate((chords.start, chords.end))
         # Points that are equal to a nanometre are one; lines that are joined have the same bits, or a writer's digits.
-        grid = np.round(plane(points) / 1e-6)
-        _, joint = np.unique(grid, axis=0, return_inverse=True)
-        joint = joint.ravel()
+        grid = np.round(plane(points) / 1e-6) @ [1, 1j]
+        _, joint = np.unique(grid, return_inverse=True)
         self._of_start, self._of_end = joint[: len(chords.start)], joint[len(chords.start) :]
         way = chords.end - chords.start
         unit = way / divisor(chords.lengths)
