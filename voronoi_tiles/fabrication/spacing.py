@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
@@ -30,10 +31,13 @@ FARTHEST: Final = 64.0
 _COARSE: Final = 0.02
 """How far the contours by which stretches are chosen may lie from the true ones; a share of the gap."""
 
+_ROUGH: Final = 0.1
+"""The same for contours by which most stretches are found to be too small."""
+
 _BISECTIONS: Final = 20
 """Halvings of the last step of a stretch, a tenth of it: they leave a ten millionth."""
 
-_AT_ONCE: Final = 64
+_AT_ONCE: Final = 128
 """Stretches that are tried at once; a count. Those after the first that will do are tried in vain."""
 
 
@@ -83,7 +87,9 @@ def spread(contours: Sequence[Paths], centres: Complexes, basis: Complexes, gap:
         return UNSTRETCHED
     p, q = _tried(_FIRST * gap / float(np.abs(fine.apart).max()))
     coarse = _Neighbourhood(shapely.simplify(shapes, _COARSE * gap), centres, basis, gap)
-    best = coarse.first_clear(p, q)
+    # What comes so near by contours that are off by so much is too near by the coarse ones.
+    rough = _Neighbourhood(shapely.simplify(coarse.shapes, _ROUGH * gap), centres, basis, (1 - 2 * _ROUGH) * gap)
+    best = coarse.first_clear(p, q, rough)
     if best is None:
         raise ValueError("a tile lies within another, and cannot be pulled out")
     return fine.fitted(float(p[best]), complex(q[best]))
@@ -106,8 +112,7 @@ class _Neighbourhood:
     """Pairs of tiles of a layout that is stretched: which of them are nearer than the gap.
 
     The first of pair k is the shape `one[k]`, the second the shape `two[k]` moved by the lattice vector `step[k]`;
-    then its centre is `apart[k]` from the first one's, and the two are `at_rest[k]` apart, infinite where it is more
-    than the gap.
+    then its centre is `apart[k]` from the first one's.
     """
 
     def __init__(self, shapes: Any, centres: Complexes, basis: Complexes, gap: float) -> None:
@@ -120,20 +125,31 @@ class _Neighbourhood:
         across = np.hypot(self.boxes[:, 2] - self.boxes[:, 0], self.boxes[:, 3] - self.boxes[:, 1])
         self.one, self.two, self.step = _pairs(self.boxes, basis, 2 * float(across.max()) + gap)
         self.apart = centres[self.two] + self.step - centres[self.one]
-        self.at_rest = np.full(len(self.one), np.inf)
-        for k in np.flatnonzero(self._near(self.step)).tolist():
-            self.at_rest[k] = shapely.distance(shapes[self.one[k]], *_moved(shapes[self.two[k]], self.step[k : k + 1]))
+        self.everything = np.arange(len(self.one))
         self.failures = np.zeros(len(self.one), np.intp)
 
-    def first_clear(self, p: Floats, q: Complexes) -> int | None:
-        """The first of some stretches that parts all pairs; None where none does."""
+    @cached_property
+    def at_rest(self) -> Floats:
+        """How far the pairs are apart where nothing is stretched; infinite where it is more than the gap."""
+        import shapely
+
+        at_rest = np.full(len(self.one), np.inf)
+        for k in np.flatnonzero(self._near(self.step, self.gap)).tolist():
+            at_rest[k] = shapely.distance(
+                self.shapes[self.one[k]], *_moved(self.shapes[self.two[k]], self.step[k : k + 1])
+            )
+        return at_rest
+
+    def first_clear(self, p: Floats, q: Complexes, rough: _Neighbourhood) -> int | None:
+        """The first of some stretches that parts all pairs; None where none does. It parts those of `rough`, too."""
         # What is nearer than the gap has to move by what is missing, whatever the direction.
         close = np.flatnonzero(self.at_rest < self.gap)
         enough = np.abs(_moves(p, q, self.apart[close])) >= self.gap - self.at_rest[close]
         likely = np.flatnonzero(enough.all(axis=1))
         for first in range(0, len(likely), _AT_ONCE):
             some = likely[first : first + _AT_ONCE]
-            clear = np.flatnonzero(self.clear(p[some], q[some]))
+            some = some[rough.clear(p[some], q[some], rough.everything)]
+            clear = np.flatnonzero(self.clear(p[some], q[some], self.everything))
             if len(clear):
                 return int(some[clear[0]])
         return None
@@ -143,25 +159,29 @@ class _Neighbourhood:
 
         def clear(part: float) -> bool:
             """Whether one that moves everything by so much of it does."""
-            return bool(self.clear(np.array([1 + part * (p - 1)]), np.array([part * q]))[0])
+            return bool(self.clear(np.array([1 + part * (p - 1)]), np.array([part * q]), pairs)[0])
 
+        pairs = self.everything
         high = 1.0
         while not clear(high):
             high *= 1 + (_GROWTH - 1) / 10
         low = 1 / _GROWTH
+        # No pair comes nearer by more than it is moved.
+        moves = _moves(np.array([p]), np.array([q]), self.apart)[0]
+        pairs = self._nearer(self.step + high * moves, self.gap + (high - low) * np.abs(moves))
         for _ in range(_BISECTIONS):
             middle = (low + high) / 2
             low, high = (low, middle) if clear(middle) else (middle, high)
         return Stretch(1 + high * (p - 1), high * q)
 
-    def clear(self, p: Floats, q: Complexes) -> Bools:
-        """Which of some stretches leave all pairs the gap apart."""
+    def clear(self, p: Floats, q: Complexes, among: Ints) -> Bools:
+        """Which of some stretches leave all pairs of these the gap apart."""
         import shapely
 
         shift = self.step + _moves(p, q, self.apart)
-        near = self._near(shift)
+        near = self._near(shift, self.gap)
         clear = np.ones(len(shift), np.bool_)
-        pairs = np.flatnonzero(near.any(axis=0))
+        pairs = among[near[:, among].any(axis=0)]
         # What was too near most often is likely to be so again.
         for k in pairs[np.argsort(-self.failures[pairs], kind="stable")].tolist():
             left = np.flatnonzero(clear & near[:, k])
@@ -172,12 +192,21 @@ class _Neighbourhood:
                 self.failures[k] += np.count_nonzero(close)
         return clear
 
-    def _near(self, shift: Complexes) -> Bools:
-        """Whether the boxes of pairs come within the gap, the second tiles moved by their `shift`."""
+    def _nearer(self, shift: Complexes, reach: Floats) -> Ints:
+        """The pairs that are nearer than a reach each, the second tiles moved by their `shift`."""
+        import shapely
+
+        near = np.flatnonzero(self._near(shift, reach))
+        moved = [_moved(self.shapes[self.two[k]], shift[k : k + 1])[0] for k in near.tolist()]
+        close: Bools = shapely.dwithin(self.shapes[self.one[near]], moved, reach[near])
+        return near[close]
+
+    def _near(self, shift: Complexes, reach: Floats | float) -> Bools:
+        """Whether the boxes of pairs come within a reach, the second tiles moved by their `shift`."""
         here, there = self.boxes[self.one], self.boxes[self.two]
         x, y = shift.real, shift.imag
         free = np.maximum(there[:, 0] + x - here[:, 2], here[:, 0] - there[:, 2] - x)
-        return np.maximum(free, np.maximum(there[:, 1] + y - here[:, 3], here[:, 1] - there[:, 3] - y)) < self.gap
+        return np.maximum(free, np.maximum(there[:, 1] + y - here[:, 3], here[:, 1] - there[:, 3] - y)) < reach
 
 
 def _moves(p: Floats, q: Complexes, points: Complexes) -> Complexes:
