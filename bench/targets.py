@@ -1,4 +1,4 @@
-"""What was asked of the engine, the command line and the raster stage, and whether it is reached: all in one run.
+"""What was asked of the engine, sheets, the command line and the raster stage, and whether it is reached, in one run.
 
 Side by side are this working tree, the same with numpy alone (`--numpy`: VORONOI_TILES_KERNELS=numpy), an older commit,
 each installed in an environment of its own, and peers: Boost.Polygon itself (boost.cpp) and through pyvoronoi, on the
@@ -72,6 +72,12 @@ if sys.argv[1] == "lists":
     frame = cell_frame(pattern.lattice, 2048)
     scene = gather(pattern, frame.origin, frame.middle, frame.radius)
     action = lambda: find_candidates(scene, frame)
+elif sys.argv[1] == "kerf":
+    from voronoi_tiles import Job
+
+    job = Job(sheet="600x300mm", margin=5, kerf=0.15)
+    # Anew each time: a tessellation keeps what jobs have made of it.
+    action = lambda: design.tessellate().export(Path(sys.argv[2]).with_suffix(".svg"), job=job)
 else:
     action = design.tessellate
 
@@ -92,10 +98,10 @@ print(json.dumps({"seconds": runs, "megabytes": peak}))
 
 
 class Problem(NamedTuple):
-    """A case: what is timed, `tile` or `lists` within a process, or `command`, a whole one, with these arguments.
+    """A case: what is timed, `tile`, `lists` or a sheet with `kerf` within a process, or `command`, a whole one.
 
-    DESIGN stands for the file of the design, PICTURE and SVG for files to write. The older commit is left out where it
-    would take minutes.
+    That has these arguments: DESIGN stands for the file of the design, PICTURE and SVG for files to write. The older
+    commit is left out where it would take minutes.
     """
 
     name: str
@@ -188,6 +194,7 @@ def problems() -> list[Problem]:
             ("voronoi-tiles", "render", "DESIGN", "--renderer", "cpu", "-o", "PICTURE"),
         ),
         Problem("raster lists", "lists", curve(1000)),
+        Problem("kerf of a sheet", "kerf", curve(24)),
     ]
 
 
@@ -215,6 +222,7 @@ def targets() -> list[Target]:
         Target(("check", NEW), ("import numpy", NEW), most=3.5),
         Target(("picture of 6,000 x 1", OLD), ("picture of 6,000 x 1", NEW), 10),
         Target(("raster lists", OLD), ("raster lists", NEW), 10),
+        Target(("kerf of a sheet", NEW), ("kerf of a sheet", OLD), most=0.25),
     ]
 
 
