@@ -15,11 +15,8 @@ from voronoi_tiles.base.components import components
 from voronoi_tiles.vector.complex.edges import Edges
 from voronoi_tiles.vector.complex.representatives import Builder, Points, fixed, on_mirror
 from voronoi_tiles.vector.complex.sharpening import sharpened, tangent
-from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, code_of, composed, inverted, motion_of
+from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, composed, inverted, motion_of
 from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, inverse, reverses_orientation
-
-# For each corner, corners that edges' motions take it to, and those motions.
-_Related = defaultdict[int, list[tuple[int, Motion]]]
 
 
 def find_corners(builder: Builder, edges: Edges) -> Points:
@@ -35,34 +32,24 @@ def find_corners(builder: Builder, edges: Edges) -> Points:
     one, two, by = one.reshape(-1), two.reshape(-1), edges.by.repeat(2)
     least = components(len(edges), one, two)
     motion = _motions(least, one, two, by)
-    # Where two ways lead to one corner, it may be that a motion fixes it.
-    careful = np.zeros(len(edges), bool)
-    careful[least[one[composed(by, motion[one]) != motion[two]]]] = True
-    if edges.traced.nearly_touching:
-        careful[least[_near_touching(edges)]] = True
+    fixing = _fixing(least, one, two, by, motion)
     first = (least == np.arange(len(edges))).nonzero()[0]
     where = edges.traced.vertex[edges.start[first]]
     numbers = np.empty(len(edges), np.intp)
     numbers[first] = builder.add(where)
-    if careful.any():
-        # From corner to corner the identity leads as well, to a tile beside.
-        asked = careful[least[one]] & ((one != two) | (by != IDENTITY_CODE))
-        related = _related(one[asked], two[asked], by[asked])
-        ends = _Ends(edges)
-        for place in careful[first].nonzero()[0].tolist():
-            corner = int(first[place])
-            reached, fixing = _orbit(corner, related)
-            at = complex(where[place])
-            if edges.traced.nearly_touching:
-                for other, taken in reached.items():
-                    at = ends.sharpened(builder.action, at, taken, other)
-            stabilizer = _generated(fixing)
-            mirror = len(stabilizer) == 2 and any(map(reverses_orientation, stabilizer))
-            along = ends.across(corner) if mirror else None
-            action = builder.action
-            where[place] = on_mirror(action, at, stabilizer, along) if along else fixed(action, at, stabilizer)
-            builder.fix(int(numbers[corner]), stabilizer)
-            motion[list(reached)] = [code_of(taken) for taken in reached.values()]
+    near = set(least[_near_touching(edges)].tolist()) if edges.traced.nearly_touching else set[int]()
+    ends, action = _Ends(edges), builder.action
+    for corner in sorted(near.union(fixing)):
+        place = int(first.searchsorted(corner))
+        at = complex(where[place])
+        if corner in near:
+            for other in (least == corner).nonzero()[0].tolist():
+                at = ends.sharpened(action, at, motion_of(int(motion[other])), other)
+        stabilizer = _generated(fixing[corner])
+        mirror = len(stabilizer) == 2 and any(map(reverses_orientation, stabilizer))
+        along = ends.across(corner) if mirror else None
+        where[place] = on_mirror(action, at, stabilizer, along) if along else fixed(action, at, stabilizer)
+        builder.fix(int(numbers[corner]), stabilizer)
     return Points(numbers[least], motion)
 
 
@@ -87,34 +74,19 @@ def _near_touching(edges: Edges) -> Ints:
     return np.concatenate((np.flatnonzero(arcs[edges.start]), edges.following[arcs[edges.last]]))
 
 
-def _related(one: Ints, two: Ints, by: Codes) -> _Related:
-    """The links between corners, by the corner that they come from, in their order, there and back."""
-    related: _Related = defaultdict(list)
-    for corner, other, code in zip(one.tolist(), two.tolist(), by.tolist(), strict=True):
-        motion = motion_of(code)
-        related[corner].append((other, motion))
-        related[other].append((corner, inverse(motion)))
-    return related
-
-
-def _orbit(first: int, related: _Related) -> tuple[dict[int, Motion], set[Motion]]:
-    """The corners that a corner is taken to, each with a motion that does it; and motions that generate its stabilizer.
+def _fixing(least: Ints, one: Ints, two: Ints, by: Codes, motion: Codes) -> defaultdict[int, set[Motion]]:
+    """Motions that generate the stabilizers of the first corners of orbits, by corner, of those that have others.
 
     Where two ways lead to one corner, to go there and back is a motion that fixes the first.
     """
-    reached = {first: IDENTITY}
-    stack = [first]
-    fixing: set[Motion] = set()
-    while stack:
-        corner = stack.pop()
-        for other, motion in related[corner]:
-            there_by = compose(motion, reached[corner])
-            if other not in reached:
-                reached[other] = there_by
-                stack.append(other)
-            elif reached[other] != there_by:
-                fixing.add(compose(inverse(reached[other]), there_by))
-    return reached, fixing
+    there_by = composed(by, motion[one])
+    apart = (there_by != motion[two]).nonzero()[0]
+    fixing = defaultdict[int, set[Motion]](set)
+    if len(apart):
+        codes = composed(inverted(motion[two[apart]]), there_by[apart])
+        for corner, code in zip(least[one[apart]].tolist(), codes.tolist(), strict=True):
+            fixing[corner].add(motion_of(code))
+    return fixing
 
 
 class _Ends:
