@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
@@ -78,8 +78,8 @@ class SiteUnion:
         return cls(nodes, segments, np.repeat(np.arange(len(sites)), counts), first)
 
 
-def place(action: Action, sites: Sequence[NodedSite]) -> list[Placed]:
-    """Sites moved near the origin, each with its stabilizer."""
+def place(action: Action, sites: Sequence[NodedSite]) -> tuple[list[Placed], SiteUnion]:
+    """Sites moved near the origin, each with its stabilizer; and all in one."""
     union = SiteUnion.of(sites)
     nodes, first = union.nodes, union.first[:-1]
     sides = nodes.real, nodes.imag
@@ -102,10 +102,11 @@ def place(action: Action, sites: Sequence[NodedSite]) -> list[Placed]:
         if far[k]:
             own[k] = _symmetrized(action, own[k], stabilizers[k])
     representatives = {stabilizer: _representatives(action, stabilizer) for stabilizer in set(stabilizers)}
-    return [
+    placed = [
         Placed(own[k], site.segments, shifts[k], stabilizers[k], representatives[stabilizers[k]])
         for k, site in enumerate(sites)
     ]
+    return placed, replace(union, nodes=np.concatenate(own)) if far.any() else union
 
 
 def _nearly_fixed(action: Action, points: Complexes, within: float) -> list[int]:
@@ -206,16 +207,15 @@ def bundles(placed: list[Placed]) -> Ints:
     return np.array([known.setdefault(site.representatives, len(known)) for site in placed], np.intp)
 
 
-def copies_near(action: Action, placed: list[Placed], bundle: Ints) -> Copies:
+def copies_near(action: Action, placed: list[Placed], nodes: Complexes, node_bundle: Ints) -> Copies:
     """Every copy that can shape the tile of any of the sites: the identities, then bundle after bundle.
 
-    `bundle` (intp, sites) is the bundle of each site. A point x of a tile, its nearest point y of the base site and its
-    nearest point z of any copy satisfy x - y and x - z in V, the Voronoi cell of the lattice about 0: otherwise a
-    translated copy would be nearer. So z - y lies in 2 V: few copies are left, however long or skew the cell. It is
-    asked of what sites and copies extend over across the sides of V.
+    `nodes` (complex128, m) are those of all sites, `node_bundle` (intp, m) is the bundle of each. A point x of a tile,
+    its nearest point y of the base site and its nearest point z of any copy satisfy x - y and x - z in V, the Voronoi
+    cell of the lattice about 0: otherwise a translated copy would be nearer. So z - y lies in 2 V: few copies are left,
+    however long or skew the cell. It is asked of what sites and copies extend over across the sides of V.
     """
-    numbers = bundle.tolist()
-    named = [placed[numbers.index(number)].representatives for number in range(max(numbers) + 1)]
+    named = [*dict.fromkeys(site.representatives for site in placed)]
     linear = [action.linear[motion[:4]] for some in named for motion in some]
     motions = _Motions(
         np.array([motion for some in named for motion in some]),
@@ -223,8 +223,6 @@ def copies_near(action: Action, placed: list[Placed], bundle: Ints) -> Copies:
         np.array([conj for _, conj in linear]),
         np.repeat(np.arange(len(named)), [len(some) for some in named]),
     )
-    nodes = np.concatenate([site.nodes for site in placed])
-    node_bundle = np.repeat(bundle, [len(site.nodes) for site in placed])
     compiled = _COMPILED()
     near = _copies_near if compiled is None else partial(_copies_near_compiled, compiled)
     return near(action, motions, nodes, node_bundle)

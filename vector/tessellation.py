@@ -214,11 +214,11 @@ def tessellate(
     where two copies touch or cross, ProofError where no boundary was found, which is not known to happen to any design.
     """
     action = _action(group, lattice)
-    placed = place(action, sites)
+    placed, union = place(action, sites)
     names = tuple(site.name for site in sites)
     symmetry = SiteSymmetry.of(placed)
     try:
-        traced, least = _trace(action, placed)
+        traced, least = _trace(action, placed, union)
         if least < _SUSPICIOUS * action.size:
             refuse_touching(action, names, placed)
         edges = find_edges(action, symmetry, traced, without_short=without_short)
@@ -248,11 +248,10 @@ def _action(group: WallpaperGroup, lattice: Lattice) -> Action:
     return Action(group, lattice)
 
 
-def _trace(action: Action, placed: list[Placed]) -> tuple[Traced, float]:
+def _trace(action: Action, placed: list[Placed], union: SiteUnion) -> tuple[Traced, float]:
     """The boundaries of all tiles, and the least distance of a site from a vertex of its own."""
-    union, bundle = SiteUnion.of(placed), bundles(placed)
-    contour, node_bundle = trace_contour(union.nodes, union.segments), bundle[union.node_site]
-    copies = copies_near(action, placed, bundle)
+    contour, node_bundle = trace_contour(union.nodes, union.segments), bundles(placed)[union.node_site]
+    copies = copies_near(action, placed, union.nodes, node_bundle)
     rows = make_rows(contour, action.covering_radius, enclosed(contour, copies, union.node_site, node_bundle))
     parts = bound_cells(rows, contour, copies, node_bundle, action.covering_radius)
     # Beside the shorter vector of the cell: an edge as long as the longer one may turn about what is left out.

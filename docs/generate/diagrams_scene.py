@@ -95,8 +95,9 @@ def lone_scene(sites: Sequence[tuple[Complexes, Ints]]) -> Scene:
 def group_scene(design: Design) -> Scene:
     """A scene of the first and only site of a design among all its copies near it."""
     action = Action(design.group, design.lattice)
-    (site,) = placed = place(action, design.noded)
-    return _scene([(site.nodes, site.segments)], copies_near(action, placed, bundles(placed)), action.covering_radius)
+    placed, union = place(action, design.noded)
+    copies = copies_near(action, placed, union.nodes, bundles(placed)[union.node_site])
+    return _scene([(union.nodes, union.segments)], copies, action.covering_radius)
 
 
 def _scene(sites: Sequence[tuple[Complexes, Ints]], copies: Copies, covering_radius: float) -> Scene:

@@ -214,6 +214,6 @@ def _copies(group: WallpaperGroup, lattice: Lattice, drawn: list[dict[str, Any]]
         {"schema": 1, "group": group.name, "cell": cell_of(group), "site": [{"strokes": drawn}]}
     )
     action = Action(group, lattice)
-    (site,) = place(action, design.noded)
+    (site,), _ = place(action, design.noded)
     numbers_of = {to_motion(operation): number for number, operation in enumerate(group.operations)}
     return [numbers_of[motion] for motion in site.representatives]

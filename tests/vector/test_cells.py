@@ -23,7 +23,7 @@ from voronoi_tiles.vector.cells.bisectors import TouchingElementsError
 from voronoi_tiles.vector.cells.cells import Parts, UnboundedCellError, bound_cells
 from voronoi_tiles.vector.cells.half_edges import Contour, trace_contour
 from voronoi_tiles.vector.cells.pencils import Rows, make_rows
-from voronoi_tiles.vector.copies import Copies, SiteUnion, bundles, copies_near, place
+from voronoi_tiles.vector.copies import Copies, bundles, copies_near, place
 from voronoi_tiles.vector.motions import Action
 
 Complexes = NDArray[np.complex128]
@@ -50,11 +50,13 @@ class Case:
 def case(design: Design) -> Case:
     """The rows of all half-edges and corners of a design's sites."""
     action = Action(design.group, design.lattice)
-    placed = place(action, design.noded)
-    bundle, union = bundles(placed), SiteUnion.of(placed)
+    placed, union = place(action, design.noded)
+    node_bundle = bundles(placed)[union.node_site]
     contour = trace_contour(union.nodes, union.segments)
     rows = make_rows(contour, action.covering_radius, np.zeros(len(contour.source), bool))
-    return Case(rows, contour, copies_near(action, placed, bundle), bundle[union.node_site], action.covering_radius)
+    return Case(
+        rows, contour, copies_near(action, placed, union.nodes, node_bundle), node_bundle, action.covering_radius
+    )
 
 
 def drawn(group: str, cell: tuple[float, float], *sites: list[dict[str, Any]]) -> Design:

@@ -16,11 +16,11 @@ from voronoi_tiles.vector.motions import Action
 def same_copies(design: Design, monkeypatch: pytest.MonkeyPatch) -> None:
     """Both paths give the same copies, bit for bit, as arrays of the same types."""
     action = Action(design.group, design.lattice)
-    placed = place(action, design.noded)
+    placed, union = place(action, design.noded)
     found = []
     for chosen in ("", "numpy"):
         monkeypatch.setenv("VORONOI_TILES_KERNELS", chosen)
-        near = copies_near(action, placed, bundles(placed))
+        near = copies_near(action, placed, union.nodes, bundles(placed)[union.node_site])
         assert near.bundles == max(bundles(placed)) + 1
         found.append([(array.dtype, array.tobytes()) for array in (getattr(near, k) for k in Copies.__slots__)])
     assert found[0] == found[1]

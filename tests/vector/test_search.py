@@ -22,7 +22,7 @@ from voronoi_tiles.vector.cells.bisectors import find_bisectors
 from voronoi_tiles.vector.cells.cells import Parts
 from voronoi_tiles.vector.cells.half_edges import Contour, trace_contour
 from voronoi_tiles.vector.cells.trace import OpenBoundaryError
-from voronoi_tiles.vector.copies import SiteUnion, bundles, copies_near, place
+from voronoi_tiles.vector.copies import bundles, copies_near, place
 from voronoi_tiles.vector.motions import IDENTITY, Action
 
 _THIRD = 60 * math.sqrt(3) / 6
@@ -92,10 +92,10 @@ def test_bundles_are_few() -> None:
         design("p4m", *({"point": [x, y]} for x, y in [(17, 5), (0, 0), (30, 30), (19, 9), (30, 0), (14, 3)]))
     )
     action = Action(read.group, read.lattice)
-    placed = place(action, read.noded)
+    placed, union = place(action, read.noded)
     bundle = bundles(placed)
     assert bundle.tolist() == [0, 1, 1, 0, 2, 0]
-    copies = copies_near(action, placed, bundle)
+    copies = copies_near(action, placed, union.nodes, bundle[union.node_site])
     identity = (copies.motions == IDENTITY).all(axis=1)
     assert copies.bundle[identity].tolist() == [0, 1, 2]
     assert identity[:3].all()
@@ -111,10 +111,10 @@ def test_copies_reach_as_far_as_twice_the_cell_of_the_lattice() -> None:
         }
     )
     action = Action(read.group, read.lattice)
-    placed = place(action, read.noded)
-    copies = copies_near(action, placed, bundles(placed))
+    placed, union = place(action, read.noded)
+    copies = copies_near(action, placed, union.nodes, bundles(placed)[union.node_site])
     found = {tuple(motion) for motion in copies.motions.tolist()}
-    points = np.concatenate([site.nodes for site in placed])
+    points = union.nodes
     vectors = [action.cartesian(i, j) for i in range(-2, 3) for j in range(-2, 3) if (i, j) != (0, 0)]
     for motion in action.motions:
         for i in range(-4, 5):
@@ -193,7 +193,7 @@ def test_a_tile_without_a_boundary_is_an_error(monkeypatch: pytest.MonkeyPatch) 
 
     monkeypatch.setattr(tessellation, "bound_cells", without_first)
     with pytest.raises(OpenBoundaryError):
-        tessellation._trace(action, place(action, read.noded))
+        tessellation._trace(action, *place(action, read.noded))
 
 
 def test_only_regions_with_guests_are_looked_into() -> None:
@@ -202,10 +202,10 @@ def test_only_regions_with_guests_are_looked_into() -> None:
     guests = [{"point": [8 + 9 * 2, 8 + 9 * 3]}, {"point": [68 + 9 * 4, 8 + 9 * 1]}]
     read = Design.from_dict(design("p1", *strokes, *guests))
     action = Action(read.group, read.lattice)
-    placed = place(action, read.noded)
-    union, bundle = SiteUnion.of(placed), bundles(placed)
+    placed, union = place(action, read.noded)
+    bundle = bundles(placed)
     contour = trace_contour(union.nodes, union.segments)
-    copies = copies_near(action, placed, bundle)
+    copies = copies_near(action, placed, union.nodes, bundle[union.node_site])
     enclosed = enclosures.enclosed(contour, copies, union.node_site, bundle[union.node_site])
     inner = np.bincount(union.node_site[contour.source], enclosed, minlength=38)
     assert np.flatnonzero(inner == 0).tolist() == [10, 20, 36, 37]
@@ -228,7 +228,7 @@ def calls(read: Design) -> int:
     sites = read.noded
     sys.setprofile(counted)
     try:
-        tessellation._trace(action, place(action, sites))
+        tessellation._trace(action, *place(action, sites))
     finally:
         sys.setprofile(None)
     return count
@@ -255,7 +255,7 @@ def test_work_grows_with_the_number_of_sites(monkeypatch: pytest.MonkeyPatch) ->
         read = Design.from_dict(scattered(count))
         pairs.append(0)
         action = Action(read.group, read.lattice)
-        tessellation._trace(action, place(action, read.noded))
+        tessellation._trace(action, *place(action, read.noded))
     assert pairs[0] > 30
     assert pairs[1] < 5 * pairs[0]
 

@@ -17,7 +17,7 @@ from voronoi_tiles.vector.cells.half_edges import trace_contour
 from voronoi_tiles.vector.cells.pencils import make_rows
 from voronoi_tiles.vector.cells.trace import Boundary, OpenBoundaryError, trace_boundary
 from voronoi_tiles.vector.complex.traced import with_curves
-from voronoi_tiles.vector.copies import SiteUnion, bundles, copies_near, place
+from voronoi_tiles.vector.copies import bundles, copies_near, place
 from voronoi_tiles.vector.motions import Action
 
 # Fuzzed designs that are refused for copies that touch.
@@ -27,10 +27,9 @@ TOUCHING = (17, 23, 33)
 def same_boundary(design: Design, null: float, monkeypatch: pytest.MonkeyPatch) -> None:
     """Both paths give the same rings and curves, bit for bit, or refuse the same; also where a part is amiss."""
     action = Action(design.group, design.lattice)
-    placed = place(action, design.noded)
-    bundle, union = bundles(placed), SiteUnion.of(placed)
-    contour, node_bundle = trace_contour(union.nodes, union.segments), bundle[union.node_site]
-    near = copies_near(action, placed, bundle)
+    placed, union = place(action, design.noded)
+    contour, node_bundle = trace_contour(union.nodes, union.segments), bundles(placed)[union.node_site]
+    near = copies_near(action, placed, union.nodes, node_bundle)
     rows = make_rows(contour, action.covering_radius, enclosed(contour, near, union.node_site, node_bundle))
     parts = bound_cells(rows, contour, near, node_bundle, action.covering_radius)
     amiss = parts.copy.copy()

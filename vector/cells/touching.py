@@ -25,10 +25,11 @@ def refuse_touching(action: Action, names: tuple[str, ...], placed: list[Placed]
     # Sites drawn far from the origin are known to fewer digits.
     far = max(abs(complex(action.cartesian(*site.shift))) for site in placed)
     nearest = max(TOUCHING * action.size, 4 * EPSILON * far)
-    bundle, union = bundles(placed), SiteUnion.of(placed)
-    copies = copies_near(action, placed, bundle)
+    union = SiteUnion.of(placed)
+    node_bundle = bundles(placed)[union.node_site]
+    copies = copies_near(action, placed, union.nodes, node_bundle)
     # The nodes of every site in every copy of its bundle: run after run.
-    images = Images.of(bundle[union.node_site], copies)
+    images = Images.of(node_bundle, copies)
     nodes, site = images.moved(union.nodes, copies), union.node_site[images.thing]
     runs = np.append(starts(images.copy * len(placed) + site), len(nodes))
     copy, site = images.copy[runs[:-1]], site[runs[:-1]]

@@ -30,7 +30,7 @@ _IMAGES_MAX = 2000
 def find_clash(design: Design) -> TouchingCopiesError | None:
     """The error that says which copies touch, None where all keep apart: without the tiles, which take longer."""
     action = Action(design.group, design.lattice)
-    placed = place(action, design.noded)
+    placed, _ = place(action, design.noded)
     try:
         refuse_touching(action, tuple(site.name for site in design.noded), placed)
     except TouchingCopiesError as error:
