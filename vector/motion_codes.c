@@ -1,4 +1,4 @@
-/* Motions as integers, as motion_codes.py explains them: the images of points, and the least of several products. */
+/* Motions as integers, as motion_codes.py explains them: the images of points, products and inverses, and the least of several products. */
 
 #include <stdint.h>
 
@@ -48,6 +48,19 @@ int64_t codes_composed(int64_t count, const int64_t *outer, const int64_t *inner
     int64_t k;
     for (k = 0; k < count; k++)
         out[k] = composed(outer[k], inner[k], parts, product, along);
+    return 0;
+}
+
+/* The motions that undo others. Of linear parts `back` has the codes of their inverses with no translation, `along` what
+   each inverse makes of a translation's two coordinates. */
+int64_t codes_inverted(int64_t count, const int64_t *code, int64_t parts, const int64_t *back, const int64_t *along,
+                       int64_t *out)
+{
+    int64_t k;
+    for (k = 0; k < count; k++) {
+        int64_t linear = code[k] >> 2 * BITS, s = ((code[k] >> BITS) & MASK) - HALF, t = (code[k] & MASK) - HALF;
+        out[k] = back[linear] - along[linear] * s - along[parts + linear] * t;
+    }
     return 0;
 }
 

@@ -44,7 +44,9 @@ _PRODUCT = np.array(
         for inner in LINEAR_PARTS
     ]
 )
+# The code of each inverse, and what that makes of a translation's two coordinates.
 _INVERSE = np.array([_NUMBER[inverse((*linear, 0, 0))[:4]] for linear in LINEAR_PARTS])
+_BACK, _ALONG_BACK = (_INVERSE << 2 * _BITS) + _ORIGIN, np.ascontiguousarray(_ALONG[:, _INVERSE])
 
 # What the compiled kernels take, as in motion_codes.c.
 TABLES = len(LINEAR_PARTS), _PRODUCT, _ALONG
@@ -52,6 +54,7 @@ TABLES = len(LINEAR_PARTS), _PRODUCT, _ALONG
 OF_TABLES, OF_PLANE = (INT, INTS, INTS), (COMPLEXES, FLOATS, *[FLOAT] * 4)
 _IMAGES = kernel("codes_images", INT, INTS, COMPLEXES, *OF_PLANE, INT, INT, COMPLEXES)
 _COMPOSED = kernel("codes_composed", INT, INTS, INTS, *OF_TABLES, INTS)
+_INVERTED = kernel("codes_inverted", INT, INTS, INT, INTS, INTS, INTS)
 _LEAST = kernel("codes_least", INT, INTS, INTS, INT, INTS, *OF_TABLES, INTS)
 
 # The codes of linear parts, by their digits in base 3.
@@ -111,10 +114,14 @@ def composed(outer: Codes | int, inner: Codes | int) -> Codes:
 
 
 def inverted(codes: Codes) -> Codes:
-    """The motions that undo these."""
+    """The motions that undo these. A compiled kernel gives the same."""
+    compiled = _INVERTED()
+    if compiled is not None:
+        result = np.empty_like(codes)
+        compiled(codes.size, codes, len(LINEAR_PARTS), _BACK, _ALONG_BACK, result)
+        return result
     linear, s, t = decode(codes)
-    back = _INVERSE[linear]
-    return np.asarray((back << 2 * _BITS) + _ORIGIN - _ALONG_A[back] * s - _ALONG_B[back] * t)
+    return np.asarray(_BACK[linear] - _ALONG_BACK[0, linear] * s - _ALONG_BACK[1, linear] * t)
 
 
 def reversing(codes: Codes) -> Bools:

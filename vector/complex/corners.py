@@ -37,7 +37,7 @@ def find_corners(builder: Builder, edges: Edges) -> Points:
     where = edges.traced.vertex[edges.start[first]]
     numbers = np.empty(len(edges), np.intp)
     numbers[first] = builder.add(where)
-    near = set(least[_near_touching(edges)].tolist()) if edges.traced.nearly_touching else set[int]()
+    near = set(least[_near_touching(edges)].tolist()) if edges.traced.nearly_touching else set()
     ends, action = _Ends(edges), builder.action
     for corner in sorted(near.union(fixing)):
         place = int(first.searchsorted(corner))
@@ -81,7 +81,7 @@ def _fixing(least: Ints, one: Ints, two: Ints, by: Codes, motion: Codes) -> defa
     """
     there_by = composed(by, motion[one])
     apart = (there_by != motion[two]).nonzero()[0]
-    fixing = defaultdict[int, set[Motion]](set)
+    fixing: defaultdict[int, set[Motion]] = defaultdict(set)
     if len(apart):
         codes = composed(inverted(motion[two[apart]]), there_by[apart])
         for corner, code in zip(least[one[apart]].tolist(), codes.tolist(), strict=True):

@@ -59,18 +59,19 @@ def represent(
     builder: Builder,
     edges: Edges,
     kept: Ints,
-    ends: tuple[Points, Points],
+    corners: Points,
     reversals: Mapping[int, Motion | None],
 ) -> tuple[Points, Points, Ints, Ints]:
     """The vertices, control points and arcs of the edges that stand for orbits, and where the arcs of each begin.
 
-    These are the edges `kept` (intp, k) with corners at their two `ends`. Those among them that motions map onto
-    themselves have `reversals`: a motion that does so backwards, or None for what lies on a mirror. That is one
-    straight line, whatever elements take turns beside it. Of the others the points of the second half are the images of
-    those of the first half, and what lies in the middle, a vertex or the control point of an arc, the motion fixes.
+    These are the edges `kept` (intp, k); corner k of `corners` is the one where edge k starts. Those among them that
+    motions map onto themselves have `reversals`: a motion that does so backwards, or None for what lies on a mirror.
+    That is one straight line, whatever elements take turns beside it. Of the others the points of the second half are
+    the images of those of the first half, and what lies in the middle, a vertex or the control point of an arc, the
+    motion fixes.
     """
     action, traced = builder.action, edges.traced
-    runs = _runs(builder, edges, kept, ends)
+    runs = _runs(builder, edges, kept, corners)
     if traced.nearly_touching:
         for k in range(len(kept)):
             if reversals.get(k, IDENTITY) is not None:
@@ -92,19 +93,19 @@ def represent(
             builder.fix(int(number[(begin[k] + end[k]) // 2]), motions)
     control = _controls(builder, traced, runs, arcs_of.motion == IDENTITY_CODE, fixing)
     vertices = Points(number[vertices.index], vertices.motion)
-    for corner, where in zip(ends, (begin, end), strict=True):
-        vertices.index[where], vertices.motion[where] = corner.index, corner.motion
+    for corner, where in ((kept, begin), (edges.following[kept], end)):
+        vertices.index[where], vertices.motion[where] = corners.index[corner], corners.motion[corner]
     return vertices, Points(control[arcs_of.index], arcs_of.motion), runs.arcs[arcs_of.index], runs.offsets
 
 
-def _runs(builder: Builder, edges: Edges, kept: Ints, ends: tuple[Points, Points]) -> _ArcRuns:
+def _runs(builder: Builder, edges: Edges, kept: Ints, corners: Points) -> _ArcRuns:
     """The arcs of edges and their vertices, those at the ends where the corners are."""
     counts = edges.counts[kept]
     arcs = edges.arcs[ranges(edges.offsets[kept], counts)]
     vertex = edges.traced.vertex[edges.around[ranges(edges.offsets[kept] + kept, counts + 1)]]
     runs = _ArcRuns(arcs, edges.traced.curved[arcs], vertex, offsets_of(counts))
-    located = builder.snapshot().locate(ends[0].and_then(ends[1]))
-    vertex[runs.begin], vertex[runs.end] = located[: len(kept)], located[len(kept) :]
+    located = builder.snapshot().locate(corners)
+    vertex[runs.begin], vertex[runs.end] = located[kept], located[edges.following[kept]]
     return runs
 
 

@@ -171,13 +171,12 @@ def build_quotient(action: Action, tiles: int, edges: Edges) -> Quotient:
         ring_offsets=edges.ring_offsets,
         tile_offsets=edges.tile[edges.ring_offsets[:-1]].searchsorted(np.arange(tiles + 1)),
     )
-    ends = corners.take(kept), corners.take(edges.following[kept])
     # An edge on a mirror is straight, and needs no other symmetry.
     reversals = {
         k: _reversal(stabilizer) if all(flips for _, flips in stabilizer[1:]) else None
         for k, stabilizer in symmetric.items()
     }
-    vertex, control, arcs, offsets = represent(builder, edges, kept, ends, reversals)
+    vertex, control, arcs, offsets = represent(builder, edges, kept, corners, reversals)
     curved = control.index >= 0
     return Quotient(
         representatives=builder.snapshot(),

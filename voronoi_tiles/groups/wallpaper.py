@@ -10,7 +10,7 @@ from __future__ import annotations
 import cmath
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
 from types import MappingProxyType
@@ -123,7 +123,7 @@ class WallpaperGroup:
 
     name: str
     system: System
-    operations: tuple[Operation, ...]
+    operations: tuple[Operation, ...] = field(hash=False)  # dozens of fractions: the name tells groups apart
 
     def __repr__(self) -> str:
         return f"<WallpaperGroup {self.name}: {self.system}, of order {self.order}>"
