@@ -3,9 +3,12 @@
 
 #include <math.h>
 #include <stdint.h>
-#include <string.h>
 
 #define SLACK 1e-9
+
+/* Of motion_codes.c. */
+void codes_translation(int64_t code, int64_t *s, int64_t *t);
+int64_t codes_moved(int64_t code, int64_t i, int64_t j);
 
 typedef struct {
     double x, y;
@@ -42,7 +45,21 @@ static extent extent_of(const point *across, point unit, int conj, int64_t bundl
     return e;
 }
 
-/* Write the copies, as far as there is room; their number.
+/* The translation of a motion. */
+static point shift_of(int64_t motion, point a, point b)
+{
+    int64_t s, t;
+    double i, j;
+    point shift;
+    codes_translation(motion, &s, &t);
+    i = (double)s / 2;
+    j = (double)t / 2;
+    shift.x = i * a.x + j * b.x;
+    shift.y = i * a.y + j * b.y;
+    return shift;
+}
+
+/* Write the copies, as far as there is room; their number, or -1 where a motion has no code.
 
    The motions are those of all bundles (`of`, ascending), in each the identity first. `lattice` are its vectors a, b, and
    p, q of its shortest basis; `reduced` are p and q over a and b. */
@@ -70,8 +87,8 @@ int64_t copies_near(int64_t count, const int64_t *motion, const double *units, c
         }
     for (m = 0; m < count; m++) {
         extent e = extent_of(across, unit[m], conj[m], of[m], nodes, (const point *)node, node_bundle);
-        double s = (double)motion[6 * m + 4] / 2, t = (double)motion[6 * m + 5] / 2, bound[3], away[3];
-        point shift = {s * a.x + t * b.x, s * a.y + t * b.y};
+        double bound[3], away[3];
+        point shift = shift_of(motion[m], a, b);
         double near_p, near_q;
         int64_t reach_p, reach_q;
         for (k = 0; k < 3; k++) {
@@ -87,7 +104,7 @@ int64_t copies_near(int64_t count, const int64_t *motion, const double *units, c
             for (j = -reach_q; j <= reach_q; j++) {
                 double along_p = (double)i - near_p, along_q = (double)j - near_q;
                 point step = {along_p * p.x + along_q * q.x, along_p * p.y + along_q * q.y};
-                int64_t x, y, place, copy[6];
+                int64_t x, y, moved, place;
                 int inside = 1;
                 for (k = 0; k < 3; k++)
                     inside &= fabs(away[k] + inner(across[k], step)) <= bound[k];
@@ -95,19 +112,16 @@ int64_t copies_near(int64_t count, const int64_t *motion, const double *units, c
                     continue;
                 x = (int64_t)along_p * reduced[0] + (int64_t)along_q * reduced[2];
                 y = (int64_t)along_p * reduced[1] + (int64_t)along_q * reduced[3];
-                memcpy(copy, motion + 6 * m, sizeof copy);
-                copy[4] += 2 * x;
-                copy[5] += 2 * y;
+                moved = codes_moved(motion[m], x, y);
+                if (moved < 0)
+                    return -1;
                 /* The identities come first: each is the first motion of its bundle, and never left out. */
-                place = (m == 0 || of[m] != of[m - 1]) && !copy[4] && !copy[5] ? of[m] : found++;
+                place = (m == 0 || of[m] != of[m - 1]) && !x && !y ? of[m] : found++;
                 if (place >= room)
                     continue;
-                memcpy(out_motion + 6 * place, copy, sizeof copy);
-                s = (double)copy[4] / 2;
-                t = (double)copy[5] / 2;
+                out_motion[place] = moved;
                 ((point *)out_unit)[place] = unit[m];
-                ((point *)out_shift)[place].x = s * a.x + t * b.x;
-                ((point *)out_shift)[place].y = s * a.y + t * b.y;
+                ((point *)out_shift)[place] = shift_of(moved, a, b);
                 out_conj[place] = conj[m];
                 out_bundle[place] = of[m];
             }

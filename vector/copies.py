@@ -9,13 +9,13 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, counts_of, offsets_of, starts
 from voronoi_tiles.base.kernels import BOOLS, COMPLEXES, INT, INTS, kernel
 from voronoi_tiles.base.neighbours import Neighbours
 from voronoi_tiles.base.tolerance import EPSILON, SAME_POINT
 from voronoi_tiles.designs.site import NodedSite
+from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, TOO_FAR, Codes, code_of, decode, moved
 from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, modulo_lattice
 
 # How much of a site's distance from the origin its images may be off by the rounding of coordinates there.
@@ -182,11 +182,11 @@ class Copies:
     """Copies of bundles of sites: unit[k] z + shift[k], or where `conj[k]` (bool) unit[k] conj(z) + shift[k].
 
     A bundle is the sites that are copied by the same motions; copy k is one of all sites of the bundle `bundle[k]`
-    (intp, n). `unit` and `shift` are complex128 (n,); `motions` (int64, n x 6) are the same as exact motions. The first
+    (intp, n). `unit` and `shift` are complex128 (n,); `motions` (int64, n) are the same as exact motions. The first
     copies are the identities: copy k is the bundle k where it was placed.
     """
 
-    motions: npt.NDArray[np.int64]
+    motions: Codes
     unit: Complexes
     shift: Complexes
     conj: Bools
@@ -218,7 +218,7 @@ def copies_near(action: Action, placed: list[Placed], nodes: Complexes, node_bun
     named = [*dict.fromkeys(site.representatives for site in placed)]
     linear = [action.linear[motion[:4]] for some in named for motion in some]
     motions = _Motions(
-        np.array([motion for some in named for motion in some]),
+        np.array([code_of(motion) for some in named for motion in some]),
         np.array([unit for unit, _ in linear]),
         np.array([conj for _, conj in linear]),
         np.repeat(np.arange(len(named)), [len(some) for some in named]),
@@ -231,11 +231,11 @@ def copies_near(action: Action, placed: list[Placed], nodes: Complexes, node_bun
 class _Motions(NamedTuple):
     """The motions of which copies are translates, bundle after bundle, the identity first in each.
 
-    `motion` (int64, n x 6) is z -> unit z, or unit conj(z) where `conj`, and a translation, of the bundle `bundle`
+    `motion` (int64, n) is z -> unit z, or unit conj(z) where `conj`, and a translation, of the bundle `bundle`
     (complex128, bool and intp, n).
     """
 
-    motion: npt.NDArray[np.int64]
+    motion: Codes
     unit: Complexes
     conj: Bools
     bundle: Ints
@@ -256,7 +256,7 @@ def _copies_near(action: Action, motions: _Motions, nodes: Complexes, node_bundl
         low[:, chosen], high[:, chosen] = _extents(nodes[node_bundle == number], along[:, chosen])
     least, most = low[:, still].min(axis=1, keepdims=True), high[:, still].max(axis=1, keepdims=True)
     bound = np.abs(across) ** 2 * (1 + 1e-9) + (high - low + most - least) / 2
-    shift = action.cartesian(motion[:, 4] / 2, motion[:, 5] / 2)
+    shift = _shift(action, motion)
     away = _inner(across, shift) + (low + high - least - most) / 2
     # By the inverse of the Gram matrix: how many steps along p and q lead near, and how many there are to try.
     product = p.conjugate() * q
@@ -268,12 +268,16 @@ def _copies_near(action: Action, motions: _Motions, nodes: Complexes, node_bundl
     offset = (away - vectors @ near)[:, :, None] + (vectors @ steps)[:, None]
     which, step = np.nonzero((np.abs(offset) <= bound[:, :, None]).all(axis=0))
     steps = np.array(action.reduced).T @ (steps[:, step] - near[:, which].astype(int))
-    motion = motion[which]
-    motion[:, 4:] += 2 * steps.T
-    order = np.argsort((motion != IDENTITY).any(axis=1), kind="stable")
+    motion = moved(motion[which], *steps)
+    order = np.argsort(motion != IDENTITY_CODE, kind="stable")
     motion, which = motion[order], which[order]
-    shift = action.cartesian(motion[:, 4] / 2, motion[:, 5] / 2)
-    return Copies(motion, unit[which], shift, conj[which], of[which])
+    return Copies(motion, unit[which], _shift(action, motion), conj[which], of[which])
+
+
+def _shift(action: Action, motion: Codes) -> Complexes:
+    """The translations of motions, as vectors."""
+    _, s, t = decode(motion)
+    return action.cartesian(s / 2, t / 2)
 
 
 def _copies_near_compiled(
@@ -285,9 +289,10 @@ def _copies_near_compiled(
     count, room = _ROOM, 0
     while room < count:
         room = count
-        motion, bundle = np.empty((room, 6), np.int64), np.empty(room, np.intp)
+        motion, bundle = np.empty(room, np.int64), np.empty(room, np.intp)
         unit, shift, conj = np.empty(room, complex), np.empty(room, complex), np.empty(room, bool)
         count = compiled(*given, room, motion, unit, shift, conj, bundle)
+        assert count >= 0, TOO_FAR
     return Copies(motion[:count], unit[:count], shift[:count], conj[:count], bundle[:count])
 
 

@@ -11,6 +11,21 @@ typedef struct {
     double x, y;
 } point;
 
+/* Twice the translation of a motion, in both coordinates. */
+void codes_translation(int64_t code, int64_t *s, int64_t *t)
+{
+    *s = ((code >> BITS) & MASK) - HALF;
+    *t = (code & MASK) - HALF;
+}
+
+/* The motion that applies another first, and then a translation by i and j cells; -1 where it has no code. */
+int64_t codes_moved(int64_t code, int64_t i, int64_t j)
+{
+    if (i > HALF / 4 || i < -HALF / 4 || j > HALF / 4 || j < -HALF / 4)
+        return -1;
+    return code + 2 * (i * ((int64_t)1 << BITS) + j);
+}
+
 /* The images of points, each under its motion and then a translation. Of each linear part `units` has the unit complex
    number, `signs` -1 where it conjugates, else 1; a and b are the lattice's vectors. */
 int64_t codes_images(int64_t count, const int64_t *code, const double *points, const double *units, const double *signs,

@@ -64,11 +64,15 @@ for _linear, _k in _NUMBER.items():
     _BY_KEY[_DIGITS @ _linear + 40] = _k << 2 * _BITS
 
 
+TOO_FAR = "a translation that no cell is skew enough for"
+"""What is said where a motion has no code."""
+
+
 def encode(motions: npt.ArrayLike) -> Codes:
     """The codes of motions, given as rows of six integers."""
     rows = np.asarray(motions, np.int64).reshape(-1, 6)
     shift = rows[:, 4:]
-    assert not len(rows) or np.abs(shift).max() <= _HALF // 2, "a translation that no cell is skew enough for"
+    assert not len(rows) or np.abs(shift).max() <= _HALF // 2, TOO_FAR
     return np.asarray(_BY_KEY[rows[:, :4] @ _DIGITS + 40] + (shift @ _PLACES + _ORIGIN))
 
 
@@ -111,6 +115,13 @@ def composed(outer: Codes | int, inner: Codes | int) -> Codes:
     one, (two, u, v) = outer >> 2 * _BITS, decode(inner)
     linear = _PRODUCT[one * len(LINEAR_PARTS) + two]
     return np.asarray(linear + (outer & _TRANSLATION) + _ALONG_A[one] * u + _ALONG_B[one] * v)
+
+
+def moved(codes: Codes, i: Ints, j: Ints) -> Codes:
+    """The motions that apply these first, and then translations by i and j along the lattice's vectors."""
+    steps = np.array((i, j))
+    assert not steps.size or np.abs(steps).max() <= _HALF // 4, TOO_FAR
+    return np.asarray(codes + 2 * (_PLACES @ steps))
 
 
 def inverted(codes: Codes) -> Codes:

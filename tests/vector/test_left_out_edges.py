@@ -7,7 +7,6 @@ import pytest
 
 from voronoi_tiles.vector.complex.left_out_edges import without
 from voronoi_tiles.vector.complex.traced import Traced
-from voronoi_tiles.vector.copies import Copies
 
 PARABOLA = (1j, (0j, 1 + 0j))
 """Focus and directrix: 2 y = x^2 + 1 goes through 1 + 1j, and as steeply as the diagonal."""
@@ -20,17 +19,14 @@ def ring(vertex: list[complex], curved: int | None = None) -> Traced:
     focus, directrix = PARABOLA
     return Traced(
         vertex=np.array(vertex, complex),
-        ring=none,
+        offsets=np.array([0, len(vertex)]),
         ring_tile=none[:1],
         site=none,
-        copy=none,
+        motion=none,
         curved=bent,
         focus=np.where(bent, focus, 0),
         directrix=np.where(bent[:, None], np.array(directrix), 0),
         nodes=np.full((len(vertex), 2), np.nan + 0j),
-        copies=Copies(
-            np.zeros((0, 6), np.int64), np.zeros(0, complex), np.zeros(0, complex), np.zeros(0, bool), none[:0]
-        ),
     )
 
 

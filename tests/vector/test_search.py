@@ -23,7 +23,8 @@ from voronoi_tiles.vector.cells.cells import Parts
 from voronoi_tiles.vector.cells.half_edges import Contour, trace_contour
 from voronoi_tiles.vector.cells.trace import OpenBoundaryError
 from voronoi_tiles.vector.copies import bundles, copies_near, place
-from voronoi_tiles.vector.motions import IDENTITY, Action
+from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, motion_of
+from voronoi_tiles.vector.motions import Action
 
 _THIRD = 60 * math.sqrt(3) / 6
 SPECIAL: dict[str, list[tuple[float, float, int]]] = {
@@ -96,7 +97,7 @@ def test_bundles_are_few() -> None:
     bundle = bundles(placed)
     assert bundle.tolist() == [0, 1, 1, 0, 2, 0]
     copies = copies_near(action, placed, union.nodes, bundle[union.node_site])
-    identity = (copies.motions == IDENTITY).all(axis=1)
+    identity = copies.motions == IDENTITY_CODE
     assert copies.bundle[identity].tolist() == [0, 1, 2]
     assert identity[:3].all()
     assert len(np.unique(np.column_stack((copies.bundle, copies.motions)), axis=0)) == len(copies)
@@ -113,7 +114,7 @@ def test_copies_reach_as_far_as_twice_the_cell_of_the_lattice() -> None:
     action = Action(read.group, read.lattice)
     placed, union = place(action, read.noded)
     copies = copies_near(action, placed, union.nodes, bundles(placed)[union.node_site])
-    found = {tuple(motion) for motion in copies.motions.tolist()}
+    found = {motion_of(code) for code in copies.motions.tolist()}
     points = union.nodes
     vectors = [action.cartesian(i, j) for i in range(-2, 3) for j in range(-2, 3) if (i, j) != (0, 0)]
     for motion in action.motions:

@@ -7,7 +7,6 @@ import pytest
 
 from voronoi_tiles.vector.complex.sharpening import sharpened
 from voronoi_tiles.vector.complex.traced import Traced
-from voronoi_tiles.vector.copies import Copies
 
 GAP = 2.0**-20
 
@@ -18,17 +17,14 @@ def arc(*, curved: bool) -> Traced:
     nodes = np.array([[-GAP / 2, GAP / 2]], complex)
     return Traced(
         vertex=np.array([64j]),
-        ring=none,
+        offsets=np.array([0, 1]),
         ring_tile=none,
         site=none,
-        copy=none,
+        motion=none,
         curved=np.array([curved]),
         focus=np.array([GAP * 1j]),
         directrix=np.array([[0, 1]], complex),
         nodes=np.full((1, 2), np.nan + 0j) if curved else nodes,
-        copies=Copies(
-            np.zeros((0, 6), np.int64), np.zeros(0, complex), np.zeros(0, complex), np.zeros(0, bool), none[:0]
-        ),
     )
 
 

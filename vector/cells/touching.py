@@ -12,6 +12,7 @@ from voronoi_tiles.base.errors import TouchingCopiesError
 from voronoi_tiles.base.tolerance import EPSILON, TOUCHING
 from voronoi_tiles.vector.cells.images import Images
 from voronoi_tiles.vector.copies import Placed, SiteUnion, bundles, copies_near, translation
+from voronoi_tiles.vector.motion_codes import motion_of
 from voronoi_tiles.vector.motions import Action, compose, to_operation
 
 if TYPE_CHECKING:
@@ -51,8 +52,8 @@ def refuse_touching(action: Action, names: tuple[str, ...], placed: list[Placed]
     i, j = int(base[least]), int(site[run[least]])
     line = shapely.shortest_line(here[i], there[which[least]])
     place = complex(*line.coords[0]) + complex(action.cartesian(*placed[i].shift))
-    a, b, c, d, s, t = copies.motions[copy[run[least]]].tolist()
-    drawn = compose(compose(translation(placed[i], 1), (a, b, c, d, s, t)), translation(placed[j], -1))
+    motion = motion_of(int(copies.motions[copy[run[least]]]))
+    drawn = compose(compose(translation(placed[i], 1), motion), translation(placed[j], -1))
     raise TouchingCopiesError(site=names[i], other=names[j], operation=to_operation(drawn), place=place)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from voronoi_tiles.base.arrays import Bools, Ints
 from voronoi_tiles.vector.complex.site_symmetry import SiteSymmetry
 from voronoi_tiles.vector.complex.traced import Traced
-from voronoi_tiles.vector.motion_codes import Codes, composed, images, inverted
+from voronoi_tiles.vector.motion_codes import composed, images, inverted
 from voronoi_tiles.vector.motions import Action
 
 # How near vertices must be to count as one, relative to the cell's size: far above rounding.
@@ -35,7 +35,6 @@ def cut_further(action: Action, symmetry: SiteSymmetry, traced: Traced, *, pinch
     cuts, done = cuts.copy(), np.zeros(len(traced), bool)
     before = np.empty(len(traced), np.intp)
     before[traced.following] = np.arange(len(traced))
-    tile, motions = traced.tile, traced.motions_beyond(np.arange(len(traced)))
     while waiting:
         arc = waiting.pop()
         if done[arc]:
@@ -43,22 +42,22 @@ def cut_further(action: Action, symmetry: SiteSymmetry, traced: Traced, *, pinch
         done[arc] = cuts[arc] = True
         # What a vertex is mapped to depends on the copies beyond its own arc and the one before.
         for faced in {arc, int(before[arc])}:
-            for on, facing, motion, image in _moved(action, symmetry, traced, arc, faced, motions):
-                at = (tile == on) & (traced.site == facing) & (motions == motion)
+            for on, facing, motion, image in _moved(action, symmetry, traced, arc, faced):
+                at = (traced.tile == on) & (traced.site == facing) & (traced.motion == motion)
                 waiting += np.flatnonzero(at & (np.abs(traced.vertex - image) <= limit)).tolist()
     return cuts
 
 
 def _moved(
-    action: Action, symmetry: SiteSymmetry, traced: Traced, arc: int, faced: int, motions: Codes
+    action: Action, symmetry: SiteSymmetry, traced: Traced, arc: int, faced: int
 ) -> list[tuple[int, int, int, complex]]:
     """The images of an arc's start under all motions that take its tile, or the copy beyond `faced`, to a base tile.
 
-    With each come this tile, the site beyond, its motion, and the point. `motions` are those beyond all arcs.
+    With each come this tile, the site beyond, its motion, and the point.
     """
     tile, site = int(traced.tile[arc]), int(traced.site[faced])
     own, theirs = (symmetry.stabilizer[slice(*symmetry.offsets[k : k + 2])] for k in (tile, site))
-    there = motions[faced : faced + 1]
+    there = traced.motion[faced : faced + 1]
     back = composed(theirs, inverted(there))
     rows = [
         (tile, site, own, symmetry.canonical(np.full(len(own), site), composed(own, there))),

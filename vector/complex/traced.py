@@ -20,7 +20,7 @@ from voronoi_tiles.vector.cells.pencils import Rows
 from voronoi_tiles.vector.cells.trace import Boundary
 from voronoi_tiles.vector.complex.handovers import sharpen_handovers
 from voronoi_tiles.vector.copies import Copies
-from voronoi_tiles.vector.motion_codes import Codes, encode
+from voronoi_tiles.vector.motion_codes import Codes
 
 NEARLY_TOUCHING = 1e-3
 """Two nodes, or a node and a line, this near to each other, relative to the distance R of a point, determine it badly
@@ -38,38 +38,45 @@ _CURVES = kernel(
 class Traced:
     """The traced boundaries of all tiles: n arcs, ring after ring and tile after tile, each with its tile on the left.
 
-    Arc k starts at `vertex[k]` (complex128) and ends where the next arc of the ring `ring[k]` (intp) starts; ring r
-    belongs to the tile `ring_tile[r]` (intp), whose outer rings come before its holes. Beyond the arc lies the copy
-    `copy[k]` of the site `site[k]` (intp): an index into `copies`. Where `curved[k]` (bool) the arc lies on the
+    Arc k starts at `vertex[k]` (complex128) and ends where the next arc of its ring starts; the arcs of ring r are those
+    from `offsets[r]` up to, not including, `offsets[r + 1]` (intp, r + 1). The ring belongs to the tile `ring_tile[r]`
+    (intp), whose outer rings come before its holes. Beyond the arc lies the copy of the site `site[k]` (intp) under the
+    motion `motion[k]` (int64). Where `curved[k]` (bool) the arc lies on the
     parabola with the focus `focus[k]` (complex128) and the directrix through the two points `directrix[k]` (complex128,
     n x 2); else on a line, and these are 0. `nodes[k]` (complex128, n x 2) are the two nodes between which it is the
     bisector, NaN where it is that of other elements.
     """
 
     vertex: Complexes
-    ring: Ints
+    offsets: Ints
     ring_tile: Ints
     site: Ints
-    copy: Ints
+    motion: Codes
     curved: Bools
     focus: Complexes
     directrix: Complexes
     nodes: Complexes
-    copies: Copies
 
     def __len__(self) -> int:
         """The number of arcs."""
         return len(self.vertex)
 
     def take(self, index: Ints) -> Traced:
-        """The boundaries of these arcs only, each ending where the next one starts."""
+        """The boundaries of these arcs only, ring after ring, each ending where the next one starts."""
         arrays = {name: getattr(self, name)[index] for name in _OF_ARCS}
-        return replace(self, **arrays)
+        ring = self.ring[index]
+        first = starts(ring)
+        return replace(self, offsets=np.append(first, len(ring)), ring_tile=self.ring_tile[ring[first]], **arrays)
 
-    @property
+    @cached_property
+    def ring(self) -> Ints:
+        """The ring of each arc, intp (n,)."""
+        return np.arange(len(self.ring_tile)).repeat(counts_of(self.offsets))
+
+    @cached_property
     def tile(self) -> Ints:
         """The tile of each arc, intp (n,)."""
-        return self.ring_tile[self.ring]
+        return self.ring_tile.repeat(counts_of(self.offsets))
 
     @cached_property
     def nearly_touching(self) -> frozenset[int]:
@@ -99,11 +106,6 @@ class Traced:
         return moved
 
     @cached_property
-    def offsets(self) -> Ints:
-        """Where the arcs of each ring begin, and where the last end, intp (r + 1)."""
-        return np.concatenate((starts(self.ring), [len(self)]))
-
-    @cached_property
     def following(self) -> Ints:
         """The next arc of each arc's ring, intp (n,)."""
         return next_in_ring(self.offsets)
@@ -113,12 +115,8 @@ class Traced:
         """Where the copy beyond is another one than before, bool (n,)."""
         changes = np.empty(len(self), bool)
         after = self.following
-        changes[after] = (self.copy[after] != self.copy) | (self.site[after] != self.site)
+        changes[after] = (self.motion[after] != self.motion) | (self.site[after] != self.site)
         return changes
-
-    def motions_beyond(self, arcs: Ints) -> Codes:
-        """The motions of the copies beyond arcs."""
-        return encode(self.copies.motions[self.copy[arcs]])
 
     @cached_property
     def middles(self) -> Complexes:
@@ -131,7 +129,7 @@ class Traced:
         return middle
 
 
-_OF_ARCS = ("vertex", "ring", "site", "copy", "curved", "focus", "directrix", "nodes")
+_OF_ARCS = ("vertex", "site", "motion", "curved", "focus", "directrix", "nodes")
 
 
 def with_curves(
@@ -153,15 +151,14 @@ def with_curves(
     sharpen_handovers(vertex, bounds, copy, copies, contour, item, ends)
     traced = Traced(
         vertex=vertex,
-        ring=np.arange(len(bounds) - 1).repeat(counts_of(bounds)),
+        offsets=bounds,
         ring_tile=node_site[first[0, bounds[:-1]]],
         site=node_site[first[1]],
-        copy=copy,
+        motion=copies.motions[copy],
         curved=curved,
         focus=np.where(curved, np.where(node_here, here[0], there[0]), 0),
         directrix=np.where(curved, np.where(node_here, there, here), 0).T,
         nodes=np.where(node_here & node_there, ends[0], np.nan).T,
-        copies=copies,
     )
     return traced if (traced.ring_tile[1:] > traced.ring_tile[:-1]).all() else _in_order(traced)
 
@@ -244,8 +241,7 @@ def _in_order(traced: Traced) -> Traced:
     chord = end[bent] - start[bent]
     twice[bent] += (tangent.real * chord.imag - tangent.imag * chord.real) * (2 / 3)
     order = np.lexsort((np.add.reduceat(twice, first) <= 0.0, traced.ring_tile))
-    rest = traced.take(ranges(first[order], sizes[order]))
-    return replace(rest, ring=np.repeat(np.arange(len(order)), sizes[order]), ring_tile=traced.ring_tile[order])
+    return traced.take(ranges(first[order], sizes[order]))
 
 
 def clearance(boundary: Boundary, rows: Rows, parts: Parts) -> float:
