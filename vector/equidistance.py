@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -58,23 +59,26 @@ def errors_of_distance(
     if not np.isfinite(points).all():  # of a result that is wrong
         return np.inf, np.inf
     tile = arcs.tile[of]
-    operations = [lattice.isometry(operation) for operation in group.operations]
     neighbour, site, isometries = _neighbours(lattice, tiles)
-    unit, shift, conj = inverses([*operations, *isometries])
-    beyond, first = neighbour[of], len(operations)
-    by = first + beyond
-    claims = Claims(
-        places=np.array((points, move(points, unit[by], shift[by], conj[by]))),
-        sites=np.array((tile, np.array(site)[beyond])),
-    )
+    beyond = neighbour[of]
+    unit, shift, conj = inverses(isometries)
+    back = move(points, unit[beyond], shift[beyond], conj[beyond])
+    claims = Claims(np.array((points, back)), np.array((tile, np.array(site)[beyond])))
     slack = _SLACK * limit
-    motions = unit[:first], shift[:first], conj[:first]
-    found = distances_of_claims(lattice, motions, BoxTree.of(lattice, start, end), sites, claims, slack)
+    found = distances_of_claims(
+        lattice, _motions(group, lattice), BoxTree.of(lattice, start, end), sites, claims, slack
+    )
     here, there = (
         sites.complete(distance, found[0] + slack, *side)
         for distance, *side in zip(found[1:], claims.places, claims.sites, strict=True)
     )
     return float(np.abs(here - there).max()), float((here - found[0]).max())
+
+
+@lru_cache(maxsize=16)
+def _motions(group: WallpaperGroup, lattice: Lattice) -> Motions:
+    """What undoes the group's operations: it serves all designs of this group on this lattice."""
+    return inverses([lattice.isometry(operation) for operation in group.operations])
 
 
 def _side_by_side(arcs: AllArcs, places: Complexes) -> Ints:

@@ -82,23 +82,35 @@ def make_rows(contour: Contour, covering_radius: float, without: Bools) -> Rows:
     axis = np.where(turn < np.pi / 2, 1j * (before + after), before - after)
     axis /= np.abs(axis)
     low_x, high_x = np.tan(turn / 2 * np.array((part / parts_of_corner, (part + 1) / parts_of_corner)) - turn / 4)
-    ray0, ray1, middle = _ray(axis, np.array((low_x, high_x, (low_x + high_x) / 2)))
-    count = len(half_edge)
-    return Rows(
-        half_edge=np.concatenate((half_edge, np.full(len(corner), -1))),
-        corner=np.concatenate((np.full(count, -1), corner)),
-        origin=np.concatenate((start, point)),
-        axis=np.concatenate((along, axis)),
-        low=np.concatenate((low, low_x)),
-        high=np.concatenate((high, high_x)),
-        base0=np.concatenate((start + low * along, point)),
-        ray0=np.concatenate((normal, ray0)),
-        base1=np.concatenate((np.where(high == length, end, start + high * along), point)),
-        ray1=np.concatenate((normal, ray1)),
-        base=np.concatenate((start + (low + high) / 2 * along, point)),
-        ray=np.concatenate((normal, middle)),
-        spread=np.concatenate(((high - low) / 2, np.zeros(len(corner)))),
+    count = len(half_edge) + len(corner)
+    rows = Rows(
+        half_edge=np.full(count, -1),
+        corner=np.full(count, -1),
+        origin=np.empty(count, complex),
+        axis=np.empty(count, complex),
+        low=np.empty(count),
+        high=np.empty(count),
+        base0=np.empty(count, complex),
+        ray0=np.empty(count, complex),
+        base1=np.empty(count, complex),
+        ray1=np.empty(count, complex),
+        base=np.empty(count, complex),
+        ray=np.empty(count, complex),
+        spread=np.zeros(count),
     )
+    straight, fan = slice(len(half_edge)), slice(len(half_edge), count)
+    rows.half_edge[straight], rows.corner[fan] = half_edge, corner
+    rows.origin[straight], rows.origin[fan] = start, point
+    rows.axis[straight], rows.axis[fan] = along, axis
+    rows.low[straight], rows.low[fan] = low, low_x
+    rows.high[straight], rows.high[fan] = high, high_x
+    rows.base0[straight], rows.ray0[straight] = start + low * along, normal
+    rows.base1[straight], rows.ray1[straight] = np.where(high == length, end, start + high * along), normal
+    rows.base[straight], rows.ray[straight] = start + (low + high) / 2 * along, normal
+    rows.base0[fan] = rows.base1[fan] = rows.base[fan] = point
+    rows.ray0[fan], rows.ray1[fan], rows.ray[fan] = _ray(axis, np.array((low_x, high_x, (low_x + high_x) / 2)))
+    rows.spread[straight] = (high - low) / 2
+    return rows
 
 
 def _divide(size: Floats) -> tuple[Ints, Ints, Floats]:

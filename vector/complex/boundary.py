@@ -25,7 +25,7 @@ from voronoi_tiles.vector.arcs import Neighbour
 from voronoi_tiles.vector.complex.quotient import Quotient
 from voronoi_tiles.vector.complex.representatives import OF_REPRESENTATIVES, Points, Representatives
 from voronoi_tiles.vector.complex.site_symmetry import SiteSymmetry
-from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, code_of, composed, images, inverted, reversing
+from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, code_of, images, inverted, reversing
 from voronoi_tiles.vector.motions import Motion, reverses_orientation
 from voronoi_tiles.vector.outline import Outline
 
@@ -73,9 +73,7 @@ class TileBoundaries:
         # Run through backwards, arc k starts where it ends else: at vertex k + 1.
         arc = quotient.offsets[edge] + np.where(back, counts[use] - 1 - place, place)
         start = arc + edge + back
-        motions = quotient.vertex.motion[start], quotient.control.motion[arc]
         by = uses.motion[use]
-        start_motion, control_motion = composed(np.array((by, by)), np.array(motions))
         use_offsets = offsets_of(counts)
         tiles = np.arange(len(uses.tile_offsets))
         tile = tiles[:-1].repeat(counts_of(uses.ring_offsets[uses.tile_offsets]))
@@ -83,8 +81,8 @@ class TileBoundaries:
         beside, site, beyond = np.array([*zip(*numbers, strict=True)])
         return cls(
             representatives=quotient.representatives,
-            start=Points(quotient.vertex.index[start], start_motion),
-            control=Points(quotient.control.index[arc], control_motion),
+            start=quotient.vertex.take(start).moved(by),
+            control=quotient.control.take(arc).moved(by),
             focus=quotient.focus[arc],
             directrix=np.ascontiguousarray(quotient.directrix[arc]),
             use_offsets=use_offsets,

@@ -38,13 +38,13 @@ _CURVES = kernel(
 class Traced:
     """The traced boundaries of all tiles: n arcs, ring after ring and tile after tile, each with its tile on the left.
 
-    Arc k starts at `vertex[k]` (complex128) and ends where the next arc of its ring starts; the arcs of ring r are those
-    from `offsets[r]` up to, not including, `offsets[r + 1]` (intp, r + 1). The ring belongs to the tile `ring_tile[r]`
-    (intp), whose outer rings come before its holes. Beyond the arc lies the copy of the site `site[k]` (intp) under the
-    motion `motion[k]` (int64). Where `curved[k]` (bool) the arc lies on the
-    parabola with the focus `focus[k]` (complex128) and the directrix through the two points `directrix[k]` (complex128,
-    n x 2); else on a line, and these are 0. `nodes[k]` (complex128, n x 2) are the two nodes between which it is the
-    bisector, NaN where it is that of other elements.
+    Arc k starts at `vertex[k]` (complex128) and ends where the next arc of its ring starts; the arcs of ring r are
+    those from `offsets[r]` up to, not including, `offsets[r + 1]` (intp, r + 1). The ring belongs to the tile
+    `ring_tile[r]` (intp), whose outer rings come before its holes. Beyond the arc lies the copy of the site `site[k]`
+    (intp) under the motion `motion[k]` (int64). Where `curved[k]` (bool) the arc lies on the parabola with the focus
+    `focus[k]` (complex128) and the directrix through the two points `directrix[k]` (complex128, n x 2); else on a line,
+    and these are 0. `nodes[k]` (complex128, n x 2) are the two nodes between which it is the bisector, NaN where it is
+    that of other elements.
     """
 
     vertex: Complexes

@@ -42,7 +42,7 @@ class Array:
     def from_param(self, array: NDArray[Any]) -> ctypes.Array[ctypes.c_char] | ctypes.c_void_p:
         """The array's address. Raises TypeError where it has another dtype, gaps, or stands between two addresses."""
         flags = array.flags
-        if array.dtype == self.dtype:
+        if array.dtype is self.dtype or array.dtype == self.dtype:
             if flags.carray:  # and can be written into
                 # ctypes' own view of the memory goes to C as its address; numpy takes ten times as long to tell that.
                 return _memory_of(array)
