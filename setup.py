@@ -33,6 +33,7 @@ SOURCES = [
     "vector/cells/hierarchy.c",
     "vector/cells/trace.c",
     "vector/complex/boundary.c",
+    "vector/complex/edges.c",
     "vector/complex/traced.c",
     "vector/copies.c",
     "vector/crossings.c",

@@ -1,4 +1,5 @@
-/* The outlines of tiles and the counterparts of their arcs: what `TileBoundaries` in boundary.py does, bit for bit. */
+/* The outlines of tiles and the counterparts of their arcs: what `TileBoundaries` in boundary.py does, bit for bit; and
+   where points are, as `Representatives` in representatives.py has it. */
 
 #include <math.h>
 #include <stdint.h>
@@ -75,6 +76,22 @@ static void follow(int64_t rings, const int64_t *offsets, int64_t *following)
     for (r = 0; r < rings; r++)
         for (k = offsets[r]; k < offsets[r + 1]; k++)
             following[k] = k + 1 < offsets[r + 1] ? k + 1 : offsets[r];
+}
+
+/* Write where points are, under a translation that comes after their motions. */
+int64_t representatives_located(int64_t count, const int64_t *index, const int64_t *motion, const double *position,
+                                const int64_t *row, int64_t width, const int64_t *fixing, int64_t parts,
+                                const int64_t *product, const int64_t *along, const double *units, const double *signs,
+                                double a_x, double a_y, double b_x, double b_y, int64_t identity, int64_t further_s,
+                                int64_t further_t, double *out)
+{
+    const plane p = {(const point *)position, row, width, fixing, parts, product, along, units, signs, a_x, a_y,
+                     b_x, b_y, further_s, further_t};
+    const images points = {index, motion};
+    int64_t k;
+    for (k = 0; k < count; k++)
+        ((point *)out)[k] = located(&p, identity, points, k);
+    return 0;
 }
 
 /* Write the arcs of all boundaries under a motion: start, control, end and focus, and both points of the directrix. */

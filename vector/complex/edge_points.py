@@ -34,6 +34,11 @@ class _ArcRuns:
     offsets: Ints
 
     @property
+    def starts(self) -> Ints:
+        """The vertex where each arc starts."""
+        return np.arange(len(self.arcs)) + np.arange(len(self.offsets) - 1).repeat(counts_of(self.offsets))
+
+    @property
     def begin(self) -> Ints:
         """The first vertex of each run."""
         return self.offsets[:-1] + np.arange(len(self.offsets) - 1)
@@ -102,9 +107,10 @@ def _runs(builder: Builder, edges: Edges, kept: Ints, corners: Points) -> _ArcRu
     """The arcs of edges and their vertices, those at the ends where the corners are."""
     counts = edges.counts[kept]
     arcs = edges.arcs[ranges(edges.offsets[kept], counts)]
-    vertex = edges.traced.vertex[edges.around[ranges(edges.offsets[kept] + kept, counts + 1)]]
+    vertex = np.empty(len(arcs) + len(kept), complex)
     runs = _ArcRuns(arcs, edges.traced.curved[arcs], vertex, offsets_of(counts))
     located = builder.snapshot().locate(corners)
+    vertex[runs.starts] = edges.traced.vertex[arcs]
     vertex[runs.begin], vertex[runs.end] = located[kept], located[edges.following[kept]]
     return runs
 
@@ -157,7 +163,7 @@ def _controls(
     Those in the middle of edges that the motions `fixing` map onto themselves are put where they are fixed.
     """
     bent = (runs.curved & own).nonzero()[0]
-    start = bent + np.arange(len(runs.begin)).repeat(counts_of(runs.offsets))[bent]
+    start = runs.starts[bent]
     arcs = runs.arcs[bent]
     position = parabola_controls(runs.vertex[start], runs.vertex[start + 1], traced.focus[arcs], traced.directrix[arcs])
     control = np.full(len(runs.curved), -1)

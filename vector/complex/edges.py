@@ -12,12 +12,22 @@ from functools import cached_property
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Ints, counting, counts_of, next_in_ring, offsets_of
+from voronoi_tiles.base.kernels import BOOLS, COMPLEXES, FLOAT, INT, INTS, kernel
 from voronoi_tiles.base.tolerance import PROOF_LIMIT
 from voronoi_tiles.vector.complex.edge_cuts import Cuts, cut_further
 from voronoi_tiles.vector.complex.left_out_edges import without
 from voronoi_tiles.vector.complex.site_symmetry import SiteSymmetry
 from voronoi_tiles.vector.complex.traced import Traced
-from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, composed, images, inverted, reversing
+from voronoi_tiles.vector.motion_codes import (
+    IDENTITY_CODE,
+    OF_PLANE,
+    Codes,
+    composed,
+    images,
+    inverted,
+    plane_of,
+    reversing,
+)
 from voronoi_tiles.vector.motions import Action
 
 # How far an edge may be from the image of its counterpart, relative to the cell's size. Where copies nearly touch,
@@ -25,6 +35,8 @@ from voronoi_tiles.vector.motions import Action
 PAIRING = 1e-3
 # An edge this short, on the same scale, may have come out in one tile only.
 _ONE_SIDED = 1e-6
+# What the compiled kernel takes, as in edges.c.
+_AGREE = kernel("complex_agree", INT, *[INTS] * 4, BOOLS, *[INTS] * 4, COMPLEXES, *OF_PLANE, FLOAT, BOOLS)
 
 
 @dataclass(frozen=True, eq=False)
@@ -172,6 +184,9 @@ def _without_short_edges(traced: Traced, limit: float) -> Edges:
     They are not paired yet, and end only where the copy beyond changes.
     """
     edges = _between(traced)
+    chord = traced.vertex[traced.following[edges.start]] - traced.vertex[edges.start]
+    if (np.abs(chord) > limit).all():  # nearly always: the first arcs alone go farther
+        return edges
     counts = edges.counts + 1
     extent = np.abs(traced.vertex[edges.around] - traced.vertex[edges.start].repeat(counts))
     long = np.maximum.reduceat(extent, edges.offsets[:-1] + np.arange(len(edges))) > limit
@@ -294,7 +309,17 @@ def _refuse_shared(edges: Edges) -> None:
 
 
 def _agree(action: Action, edges: Edges, links: Ints) -> Bools:
-    """Whether the images of edges under links plainly have the vertices of those that they lead to."""
+    """Whether the images of edges under links plainly have the vertices of those that they lead to.
+
+    A compiled kernel gives the same.
+    """
+    compiled = _AGREE()
+    if compiled is not None:
+        agree = np.empty(len(links), bool)
+        given = links, edges.source, edges.image, edges.by, edges.backwards, edges.offsets, edges.arcs
+        vertices = edges.start, edges.following, edges.traced.vertex, *plane_of(action)
+        compiled(len(links), *given, *vertices, _ONE_SIDED * action.size, agree)
+        return agree
     source, image = edges.source[links], edges.image[links]
     counts, first = edges.counts, edges.offsets[:-1] + np.arange(len(edges))
     here, there = counts[source], counts[image]
@@ -303,9 +328,10 @@ def _agree(action: Action, edges: Edges, links: Ints) -> Bools:
     other = np.minimum(np.where(edges.backwards[links][row], here[row] - place, place), there[row])
     vertex = edges.traced.vertex[edges.around]
     one, two = vertex[first[source][row] + place], vertex[first[image][row] + other]
-    gap = np.abs(images(action, edges.by[links][row], one) - two)
-    gap = np.maximum.reduceat(gap, offsets_of(here + 1)[:-1])
-    return np.asarray((here == there) & (gap <= _ONE_SIDED * action.size))
+    gap = images(action, edges.by[links][row], one) - two
+    limit = _ONE_SIDED * action.size
+    near = gap.real * gap.real + gap.imag * gap.imag <= limit * limit
+    return np.asarray((here == there) & np.logical_and.reduceat(near, offsets_of(here + 1)[:-1]))
 
 
 def _nearest(action: Action, edges: Edges, link: int, candidates: Ints) -> int:

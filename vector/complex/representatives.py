@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, Ints
-from voronoi_tiles.base.kernels import COMPLEXES, INT, INTS
+from voronoi_tiles.base.kernels import COMPLEXES, INT, INTS, kernel
 from voronoi_tiles.vector.motion_codes import (
     IDENTITY_CODE,
     OF_PLANE,
@@ -27,6 +27,7 @@ from voronoi_tiles.vector.motions import Action, Motion
 
 OF_REPRESENTATIVES = (COMPLEXES, INTS, INT, INTS, *OF_TABLES, *OF_PLANE)
 """The kinds of what compiled kernels take of representatives."""
+_LOCATED = kernel("representatives_located", INT, INTS, INTS, *OF_REPRESENTATIVES, INT, INT, INT, COMPLEXES)
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,8 +90,14 @@ class Representatives:
     def locate(self, points: Points, further: tuple[int, int] = (0, 0)) -> Complexes:
         """The positions of points, complex128 (n,); 0 where there is none.
 
-        `further` is twice a translation that comes after all motions, of any length.
+        `further` is twice a translation that comes after all motions, of any length. A compiled kernel gives the same
+        bits.
         """
+        compiled = _LOCATED()
+        if compiled is not None:
+            result = np.empty(len(points), complex)
+            compiled(len(points), points.index, points.motion, *self.given, IDENTITY_CODE, *further, result)
+            return result
         result = images(self.action, self.canonical(points), self.position[points.index], further)
         result[points.index < 0] = 0.0
         return result
