@@ -94,6 +94,6 @@ export function tracePart({ store }) {
             ),
         ]);
     };
-    store.subscribe(["trace", "unit", "tables", "design"], deferred(fill));
+    store.subscribe(["trace", "unit", "tables", "design"], deferred(fill), { calm: true });
     return make("div", {}, file, more);
 }
