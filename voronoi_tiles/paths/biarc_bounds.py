@@ -57,6 +57,11 @@ class _FittedCircles(NamedTuple):
     shift: Floats
 
     @classmethod
+    def leaving(cls, curvature: Floats, tx: Floats, ty: Floats) -> _FittedCircles:
+        """Through the origin with the unit tangent t there."""
+        return cls(curvature, -ty, tx, np.zeros(len(tx)))
+
+    @classmethod
     def tangent(cls, curvature: Floats, tx: Floats, ty: Floats, px: Floats, py: Floats) -> _FittedCircles:
         """Through p with the unit tangent t there; curvature > 0 turns left."""
         # F(d) = k |d - p|^2 / 2 - n (d - p), with the normal n = i t.
@@ -93,12 +98,10 @@ def fit(runs: SmoothRuns, run: Ints, low: Floats, high: Floats) -> Fit:
     ux, uy = np.where(apart, ends.x / safe, 1.0), np.where(apart, ends.y / safe, 0.0)
     alpha = np.arctan2(ux * ends.ay - uy * ends.ax, ux * ends.ax + uy * ends.ay)
     beta = np.arctan2(ux * ends.by - uy * ends.bx, ux * ends.bx + uy * ends.by)
-    frame = _ChordFrame(ux, uy, safe, alpha, beta)
-
     # The circle of all joints is that of the one arc; its tangent lies evenly between those of the curve.
     omega = (alpha - beta) / 2
-    zero = np.zeros(len(run))
-    joints = _FittedCircles.tangent(-2 * np.sin(omega) / safe, *frame.towards(omega), zero, zero)
+    frame = _ChordFrame(ux, uy, safe, alpha, beta, omega, np.sinc(omega / np.pi))
+    joints = _FittedCircles.leaving(-2 * np.sin(omega) / safe, *frame.towards(omega))
     single = _single_compiled(parts, joints, ux, uy, chord, omega) or _single(parts, joints, ux, uy, chord, omega)
     # Beyond the chord lies only what is near its ends, or a curve that runs round more than the arc.
     near = (np.minimum(single.arc, chord) + single.beyond) * np.abs(2 * np.sin(omega)) < safe
@@ -129,13 +132,18 @@ def _balanced(share: Floats, biarc: _Biarc) -> Floats:
 
 
 class _ChordFrame(NamedTuple):
-    """The unit chords of stretches, their lengths, and the angles from them to the curve's tangents at the ends."""
+    """The unit chords of stretches, their lengths, and the angles from them to the curve's tangents at the ends.
+
+    The one arc's tangent is at the angle `omega` from the chord, and `whole` is the chord's share of that arc's length.
+    """
 
     ux: Floats
     uy: Floats
     chord: Floats
     alpha: Floats
     beta: Floats
+    omega: Floats
+    whole: Floats
 
     def towards(self, angle: Floats) -> tuple[Floats, Floats]:
         """The unit vectors at angles to the chords."""
@@ -208,17 +216,15 @@ class _Biarc(NamedTuple):
 
 def _biarc(parts: StretchParts, ends: StretchEnds, frame: _ChordFrame, share: Floats) -> _Biarc:
     """The biarcs whose joints have these shares of the circle of joints before them."""
-    omega = (frame.alpha - frame.beta) / 2
+    omega, whole = frame.omega, frame.whole
     phi = omega * (1 - share)
-    whole = np.sinc(omega / np.pi)
     chord1 = frame.chord * share * np.sinc(omega * share / np.pi) / whole
     chord2 = frame.chord * (1 - share) * np.sinc(phi / np.pi) / whole
     turn1, turn2 = 2 * (phi - frame.alpha), 2 * (frame.beta + omega * share)
     x, y = (chord1 * u for u in frame.towards(phi))
     joint = _Joint(x, y, *frame.towards(2 * phi - frame.alpha))
-    zero = np.zeros(len(x))
     circles = (
-        _FittedCircles.tangent(2 * np.sin(turn1 / 2) / chord1, ends.ax, ends.ay, zero, zero),
+        _FittedCircles.leaving(2 * np.sin(turn1 / 2) / chord1, ends.ax, ends.ay),
         _FittedCircles.tangent(2 * np.sin(turn2 / 2) / chord2, ends.bx, ends.by, ends.x, ends.y),
     )
     error1, error2 = _double_compiled(parts, *circles, joint) or _double(parts, *circles, joint)
@@ -328,9 +334,9 @@ def _distances(x: Floats, y: Floats, values: Floats, circle: _FittedCircles) -> 
 
 def _crossing(parts: StretchParts, begins: Floats, ends: Floats, omega: Floats, at: StretchEnds) -> Floats:
     """Where on the circle of all joints the biarcs have theirs: the share of the angle that lies before it."""
-    inner = np.ones(len(parts.stretch), np.bool_)
-    inner[parts.first[:-1]] = inner[parts.first[1:] - 1] = False
-    crossing = np.flatnonzero(inner & ((begins > 0) != (ends > 0)))
+    crossing = np.flatnonzero((begins > 0) != (ends > 0))
+    of = parts.stretch[crossing]
+    crossing = crossing[(crossing != parts.first[of]) & (crossing != parts.first[of + 1] - 1)]
     share = np.full(len(omega), 0.5)
     if not len(crossing):
         return share
