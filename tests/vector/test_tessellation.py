@@ -553,6 +553,36 @@ def test_nearly_symmetric_sites_beside_mirrors_are_tiled(group: str) -> None:
     assert tiled("mirror twins", 16, seed=1, group=group) > 8
 
 
+@pytest.mark.parametrize(
+    "sites",
+    [
+        [
+            [{"segment": [[-2.250347247861652, -3.8977157700841665], [-0.5995184591362301, -8.693747900792049]]}],
+            [{"point": [3.302897348276513, 5.720786018525349]}],
+        ],
+        [
+            [{"segment": [[-5.556507305516682, 2.665056702518272e-09], [-2.0020574138455163, 2.665056702518272e-09]]}],
+            [{"segment": [[-13.682251819313725, 23.69835530839312], [-15.528743044996707, 22.63228310218877]]}],
+        ],
+        [
+            [
+                {"point": [-11.989617640934181, 20.76662691162449]},
+                {"segment": [[13.480344969866357, 23.348642441571435], [8.54669483365831, 26.197086675798584]]},
+                {"point": [-7.696646691509682, -13.330983083306428]},
+            ]
+        ],
+    ],
+    ids=["segment and point", "two segments", "one site"],
+)
+def test_strokes_that_all_but_touch_two_mirrors_are_tiled(sites: list[list[dict[str, Any]]]) -> None:
+    """On a mirror that far from a stroke a vertex is known badly: put there, it is on the curve that crosses it.
+
+    Along its tangent alone it would leave the curve, by the square of the way.
+    """
+    cell: dict[str, Any] = {"schema": 1, "group": "p31m", "cell": {"a": 60.0}}
+    assert Design.from_dict(cell | {"site": [{"strokes": site} for site in sites]}).tessellate().proof.passed
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", list(strategies.LATER))
 def test_later_kinds_of_designs_are_tiled(kind: str) -> None:

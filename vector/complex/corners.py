@@ -14,7 +14,7 @@ from voronoi_tiles.base.arrays import Ints
 from voronoi_tiles.base.components import components
 from voronoi_tiles.vector.complex.edges import Edges
 from voronoi_tiles.vector.complex.representatives import Builder, Points, fixed, on_mirror
-from voronoi_tiles.vector.complex.sharpening import sharpened, tangent
+from voronoi_tiles.vector.complex.sharpening import off_arc, sharpened, tangent
 from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, Codes, composed, inverted, motion_of
 from voronoi_tiles.vector.motions import IDENTITY, Action, Motion, compose, inverse, reverses_orientation
 
@@ -47,8 +47,13 @@ def find_corners(builder: Builder, edges: Edges) -> Points:
                 at = ends.sharpened(action, at, motion_of(int(motion[other])), other)
         stabilizer = _generated(fixing[corner])
         mirror = len(stabilizer) == 2 and any(map(reverses_orientation, stabilizer))
-        along = ends.across(corner) if mirror else None
-        where[place] = on_mirror(action, at, stabilizer, along) if along else fixed(action, at, stabilizer)
+        across = ends.across(corner) if mirror else None
+        if across:
+            if corner in near:  # far off the mirror: along its tangent it left the other edge
+                at = ends.onto(at, *across)
+            where[place] = on_mirror(action, at, stabilizer, ends.tangent(*across))
+        else:
+            where[place] = fixed(action, at, stabilizer)
         builder.fix(int(numbers[corner]), stabilizer)
     return Points(numbers[least], motion)
 
@@ -124,7 +129,7 @@ class _Ends:
         """
         ends = self.at(corner)
         for edge, place in ends:
-            arc = int((self.edges.start if place == 0 else self.edges.last)[edge])
+            arc = self.arc(edge, place)
             if edge in self._kept and arc in self.edges.traced.nearly_touching:
                 here = action.apply_to_point(motion, where)
                 others = [self.tangent(e, p) for e, p in ends if e != edge]
@@ -133,17 +138,22 @@ class _Ends:
                     where = action.apply_to_point(inverse(motion), there)
         return where
 
-    def across(self, corner: int) -> complex | None:
-        """The direction of an edge at a corner, of one that does not lie on a mirror."""
-        for edge, place in self.at(corner):
-            if edge not in self._on_mirror:
-                return self.tangent(edge, place)
-        return None
+    def across(self, corner: int) -> tuple[int, int] | None:
+        """An edge that ends at a corner and does not lie on a mirror."""
+        return next((end for end in self.at(corner) if end[0] not in self._on_mirror), None)
+
+    def onto(self, where: complex, edge: int, place: int) -> complex:
+        """A point put onto the arc at the start (place 0) or end (place -1) of an edge."""
+        off, normal = off_arc(self.edges.traced, self.arc(edge, place), where)
+        return where + off * normal
+
+    def arc(self, edge: int, place: int) -> int:
+        """The arc at the start (place 0) or end (place -1) of an edge."""
+        return int((self.edges.start if place == 0 else self.edges.last)[edge])
 
     def tangent(self, edge: int, place: int) -> complex:
         """The direction of an edge at its start (place 0) or end (place -1)."""
-        traced = self.edges.traced
-        arc = int((self.edges.start if place == 0 else self.edges.last)[edge])
+        traced, arc = self.edges.traced, self.arc(edge, place)
         start, end = traced.vertex[[arc, traced.following[arc]]].tolist()
         return tangent(traced, arc, start, end, at_start=place == 0)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from voronoi_tiles.base.arrays import Ints
-from voronoi_tiles.vector.complex.sharpening import off_bisector, off_parabola
+from voronoi_tiles.vector.complex.sharpening import off_arc
 from voronoi_tiles.vector.complex.traced import Traced
 
 # Steps of Newton's method: between lines one is enough, and on a parabola each squares the error.
@@ -30,7 +30,7 @@ def _crossing(boundary: Traced, before: int, after: int) -> complex:
     end, start = complex(boundary.vertex[boundary.following[before]]), complex(boundary.vertex[after])
     here = (end + start) / 2
     for _ in range(_STEPS):
-        (off, normal), (other_off, other_normal) = _off(boundary, before, here), _off(boundary, after, here)
+        (off, normal), (other_off, other_normal) = off_arc(boundary, before, here), off_arc(boundary, after, here)
         turn = (normal.conjugate() * other_normal).imag
         if turn == 0.0:
             return start
@@ -39,17 +39,3 @@ def _crossing(boundary: Traced, before: int, after: int) -> complex:
         if not abs(here - start) <= _FAR * abs(end - start):
             return start
     return here
-
-
-def _off(boundary: Traced, arc: int, here: complex) -> tuple[float, complex]:
-    """How far an arc's curve is from a point near its ends, and its unit normal there; 0 for an arc of no length."""
-    if boundary.curved[arc]:
-        return off_parabola(boundary, arc, here)
-    start, end = boundary.vertex[[arc, boundary.following[arc]]].tolist()
-    if arc in boundary.nearly_touching:
-        return off_bisector(boundary, arc, here)
-    length = abs(end - start)
-    if length == 0.0:
-        return 0.0, 0j
-    normal = 1j * (end - start) / length
-    return (normal.conjugate() * (start - here)).real, normal

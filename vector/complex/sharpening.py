@@ -60,6 +60,20 @@ def _gap(boundary: Traced, arc: int, here: complex) -> tuple[float, float]:
     return abs(((focus - first) * axis.conjugate()).imag), abs(here - focus)
 
 
+def off_arc(boundary: Traced, arc: int, here: complex) -> tuple[float, complex]:
+    """How far an arc's curve is from a point near its ends, and its unit normal there; 0 for an arc of no length."""
+    if boundary.curved[arc]:
+        return off_parabola(boundary, arc, here)
+    start, end = boundary.vertex[[arc, boundary.following[arc]]].tolist()
+    if arc in boundary.nearly_touching:
+        return off_bisector(boundary, arc, here)
+    length = abs(end - start)
+    if length == 0.0:
+        return 0.0, 0j
+    normal = 1j * (end - start) / length
+    return (normal.conjugate() * (start - here)).real, normal
+
+
 def off_bisector(boundary: Traced, arc: int, here: complex) -> tuple[float, complex]:
     """How far the bisector of two nodes is from a point, and its normal."""
     one, two = boundary.nodes[arc].tolist()
