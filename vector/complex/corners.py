@@ -49,7 +49,7 @@ def find_corners(builder: Builder, edges: Edges) -> Points:
         mirror = len(stabilizer) == 2 and any(map(reverses_orientation, stabilizer))
         across = ends.across(corner) if mirror else None
         if across:
-            if corner in near:  # far off the mirror: along its tangent it left the other edge
+            if corner in near:  # moved far along a tangent it may have left the curve
                 at = ends.onto(at, *across)
             where[place] = on_mirror(action, at, stabilizer, ends.tangent(*across))
         else:
