@@ -96,6 +96,11 @@ def test_a_killed_server(chromium: Any, tmp_path: Path) -> None:
         alert.get_by_text("The connection to the studio's server is lost.").wait_for()
         assert window.text == drawn
         assert list(copies.glob("*.json"))
+        # What is drawn on has no outlines any more: the live picture shows it.
+        assert window.page.locator("#picture").is_hidden()
+        window.page.locator("#overlay").focus()
+        window.page.keyboard.press("ArrowRight")
+        window.page.locator("#picture").wait_for(state="visible")
     assert path.read_text(encoding="utf-8") == TEXT
 
     with running(tmp_path, "bird.toml") as studio, opened(chromium, studio, viewport=SMALL) as window:
@@ -342,6 +347,7 @@ def test_a_new_design_in_a_file_of_its_own(window: Window, studio: Studio) -> No
     page.get_by_text("What is not saved of work/bird.toml is kept as a copy").wait_for()
     page.get_by_label("Name", exact=True).fill("leaf")
     page.get_by_role("button", name="Begin").click()
+    page.keyboard.press("Control+s")  # what is drawn is still the old one, for a moment
     page.locator("#file").get_by_text("work/leaf.toml").wait_for()
     page.get_by_role("dialog", name="Begin with an example").wait_for()
     page.keyboard.press("Escape")
@@ -360,5 +366,5 @@ def test_a_new_design_in_a_file_of_its_own(window: Window, studio: Studio) -> No
     page.get_by_role("button", name="New", exact=True).click()
     page.get_by_label("Name", exact=True).fill("bird")
     page.get_by_role("button", name="Begin").click()
-    page.get_by_text("work/bird.toml: is there already").wait_for()
+    page.get_by_role("dialog").get_by_text("work/bird.toml: is there already").wait_for()
     assert (window.text, page.locator("#file").inner_text()) == (before, "work/leaf.toml")

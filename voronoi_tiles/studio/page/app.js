@@ -46,6 +46,7 @@ function kept(name) {
 const store = new Store({
     design: EMPTY,
     revision: 0,
+    begun: 0,
     file: "",
     saved: true,
     selection: NOTHING,
@@ -342,9 +343,10 @@ store.subscribe(
 
 toolbox.pointed = (pointer) => store.set({ pointer });
 store.subscribe(
-    ["pointer", "unit"],
-    ({ pointer, unit }) => {
-        const parts = pointer?.map((part) => shown(part * shownFactor(store.state), unit));
+    ["pointer", "unit", "tables", "design"],
+    (state) => {
+        const { pointer, unit, tables } = state;
+        const parts = tables && pointer?.map((part) => shown(part * shownFactor(state), unit));
         element("pointer").textContent = parts ? `${parts.join(", ")} ${unit}` : "";
     },
     { calm: true },
@@ -416,13 +418,18 @@ store.subscribe(["job"], ({ job }) => {
     }
 });
 
-store.subscribe(["trace", "design"], ({ trace, design }) => {
-    store.set({ trace: inUnits(trace, design.units ?? "mm") });
-    if (home && trace.at) {
-        const { image: _, moves: __, ...laid } = trace;
-        localStorage.setItem(`voronoi_tiles trace ${home}`, JSON.stringify(laid));
-    }
-});
+store.subscribe(["design"], ({ trace, design }) => store.set({ trace: inUnits(trace, design.units ?? "mm") }));
+
+store.subscribe(
+    ["trace"],
+    ({ trace }) => {
+        if (home && trace.at) {
+            const { image: _, moves: __, ...laid } = trace;
+            localStorage.setItem(`voronoi_tiles trace ${home}`, JSON.stringify(laid));
+        }
+    },
+    { calm: true },
+);
 
 store.subscribe(["unit", "theme", "shown", "letters"], (state) => {
     localStorage.setItem(
@@ -444,7 +451,7 @@ const note = (text) => (text ? { message: text, remedy: "", quiet: true } : null
 
 link.on("opened", (message) => {
     keepsMine = false;
-    if (message.again) {
+    if (message.again && message.file === store.state.file) {
         link.sendNow();
         return;
     }

@@ -47,7 +47,7 @@ export function bench({ store, stage }) {
             }
         };
         // The stage has drawn it, or draws it in the next frame, before what is asked for now.
-        if (stage.drawn === exact) {
+        if (stage.shownExact === exact) {
             drawn();
         } else {
             requestAnimationFrame(drawn);

@@ -73,6 +73,8 @@ export class Link {
     scale = 8;
     /** @type {Map<string, ((message: any) => void)[]>} */
     #heard = new Map();
+    /** @type {{types: string[], done: (message: any) => void}[]} who waits for a message */
+    #awaited = [];
 
     /** @param {Store} store */
     constructor(store) {
@@ -90,6 +92,22 @@ export class Link {
         this.#heard.set(type, [...(this.#heard.get(type) ?? []), tell]);
     }
 
+    /**
+     * The next message of one of some types; null where the connection is lost before.
+     * @param {...string} types
+     * @returns {Promise<any>}
+     */
+    next(...types) {
+        return new Promise((done) => this.#awaited.push({ types, done }));
+    }
+
+    /** @param {any} message null: there will be none */
+    #answerNext(message) {
+        const answered = this.#awaited.filter(({ types }) => !message || types.includes(message.type));
+        this.#awaited = this.#awaited.filter((one) => !answered.includes(one));
+        answered.forEach(({ done }) => done(message));
+    }
+
     connect() {
         const socket = new WebSocket(`ws://${location.host}/ws${this.#store.state.file ? "?again=1" : ""}`);
         this.#socket = socket;
@@ -102,6 +120,7 @@ export class Link {
         socket.addEventListener("message", (event) => this.#receive(JSON.parse(event.data)));
         socket.addEventListener("close", (event) => {
             this.#socket = null;
+            this.#answerNext(null);
             if (event.code === TAKEN_OVER) {
                 this.#store.set({
                     trouble: {
@@ -209,7 +228,10 @@ export class Link {
 
     /** @param {any} message */
     #receive(message) {
-        const { exact, refusal, revision, product } = this.#store.state;
+        const { exact, refusal, revision, begun, product } = this.#store.state;
+        if (message.rev < begun) {
+            return;
+        }
         if (message.type === "outline" || (message.type === "refused" && message.lane === "outline")) {
             this.#answered(message.rev);
         }
@@ -240,5 +262,6 @@ export class Link {
                 break;
         }
         this.#heard.get(message.type)?.forEach((tell) => tell(message));
+        this.#answerNext(message);
     }
 }

@@ -19,6 +19,7 @@ import { UNLAID } from "./model/tracing.js";
  * @typedef {object} State
  * @property {Design} design what is drawn, as it is seen: during a drag not yet in the history
  * @property {number} revision counts the changes of `design`
+ * @property {number} begun the first revision of this design: answers to earlier ones are of another
  * @property {string} file the name of the design's file
  * @property {boolean} saved whether the file holds this design
  * @property {Selection} selection
@@ -226,7 +227,9 @@ export class Store {
     open(design, patch) {
         this.#history = new History(design);
         this.#kept = null;
-        this.#show(design, { selection: NOTHING, site: 0, dragging: false, exact: null, refusal: null, ...patch });
+        const none = { exact: null, refusal: null, product: null, jobRefusal: null };
+        const begun = this.#state.revision + 1;
+        this.#show(design, { selection: NOTHING, site: 0, dragging: false, begun, ...none, ...patch });
     }
 
     /**

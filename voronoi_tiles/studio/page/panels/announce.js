@@ -38,6 +38,9 @@ function inHand(hands, cross) {
         ["x", "y"]
             .map((name, axis) => `${name} ${shown(at[axis] * shownFactor(state), state.unit)} ${state.unit}`)
             .join(", ");
+    if (state.trace.moves && state.trace.at) {
+        return `Picture, ${place(state.trace.at)}`;
+    }
     if (cross) {
         return `Cross hair, ${place(cross)}`;
     }

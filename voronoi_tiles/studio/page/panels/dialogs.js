@@ -343,9 +343,16 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
                     {
                         label: "Begin",
                         first: true,
-                        run() {
+                        async run() {
                             link.sendNow();
-                            if (!link.send({ type: "new", name: name.value })) {
+                            // Until it is there, a save would go into the new file.
+                            const answer = link.next("opened", "trouble");
+                            const message = link.send({ type: "new", name: name.value }) ? await answer : null;
+                            if (message?.type === "trouble") {
+                                store.set({ trouble: null });
+                                throw new Error(`${message.message} ${message.remedy}`);
+                            }
+                            if (!message) {
                                 throw new Error("There is no connection to the studio's server: try again later.");
                             }
                         },

@@ -168,7 +168,11 @@ export function listen(hands, toolbox, canvas, run) {
 
     /** @param {KeyboardEvent} event */
     const plain = (event) => {
-        const moves = event.target instanceof HTMLElement && event.target.id === "move-picture" && ARROWS[event.key];
+        const moves =
+            store.state.trace.moves &&
+            event.target instanceof HTMLElement &&
+            event.target.id === "move-picture" &&
+            ARROWS[event.key];
         if ((event.target === canvas || moves) && onCanvas(event)) {
             return true;
         }

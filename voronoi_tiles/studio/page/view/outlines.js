@@ -25,7 +25,6 @@ import { roundedScale, screenPath } from "./paths.js";
  * @property {number} [opacity] Of the line.
  * @property {Colouring | boolean | null} [fill] Fill the tiles: true for colours by site and motion.
  * @property {boolean} [dark]
- * @property {() => void} [under] Draws what lies over the fill and under the lines, in the context as it was.
  */
 
 /** Most copies that are drawn: of more one could see nothing but lines. */
@@ -33,16 +32,117 @@ const MOST = 6000;
 
 /** @typedef {{path: Path2D, scale: number, centre: Point, radius: number}} Shape A path for a scale, and a circle about it. */
 
-/** @type {Map<string, Shape>} Of the paths that were drawn last. */
-let known = new Map();
-
 /** @typedef {{count: number, parts: Map<number, Path2D>, all: Path2D}} Copies Of each colour, and together; CSS pixels. */
 
-/** @type {Kept<Copies | null>} While strokes move under an outline, it is the same. */
-const kept = new Kept();
+/** The outlines of one canvas: while strokes move under them, their paths stay. */
+export class Outlines {
+    /** @type {Map<string, Shape>} Of the paths that were drawn last. */
+    #shapes = new Map();
+    /** @type {Kept<Copies | null>} */
+    #copies = new Kept();
+
+    /**
+     * The copies of tiles that meet the window; null where they are too many, and where there is no cell.
+     * @param {Camera} camera
+     * @param {Lattice} lattice
+     * @param {readonly Motion[]} motions
+     * @param {readonly Tile[]} tiles In the order of the sites.
+     * @param {Style} [style]
+     * @returns {Copies | null}
+     */
+    copies(camera, lattice, motions, tiles, { scale = 1, line = 1.5, fill = null } = {}) {
+        const causes = [lattice, motions, tiles, scale, line, fill, camera.scale, ...camera.centre, ...camera.size];
+        return this.#copies.get(causes, () => {
+            const basis = reducedBasis(lattice);
+            return basis && this.#placed(basis, camera, motions, tiles, { scale, line, fill });
+        });
+    }
+
+    /**
+     * @param {import("../gl/pattern.js").Basis} basis
+     * @param {Camera} camera
+     * @param {readonly Motion[]} motions
+     * @param {readonly Tile[]} tiles
+     * @param {{scale: number, line: number, fill: Style["fill"]}} style
+     * @returns {Copies | null}
+     */
+    #placed(basis, camera, motions, tiles, { scale, line, fill }) {
+        const finest = roundedScale(camera.scale) / scale;
+        this.#shapes = new Map(
+            tiles.map(({ path }) => {
+                const shape = this.#shapes.get(path);
+                return [path, shape?.scale === finest ? shape : shapeOf(path, finest)];
+            }),
+        );
+        const placements = tiles.flatMap(({ path, operations }) =>
+            operations.map((k) => ({ path, motion: motions[k] })),
+        );
+        const colours = coloursOf(typeof fill === "object" ? fill : null, placements.length, basis.rows);
+        const [width, height] = camera.size;
+        const k = camera.scale / scale;
+        /** @type {Copies} */
+        const copies = { count: 0, parts: new Map(), all: new Path2D() };
+        for (const [placement, { path, motion }] of placements.entries()) {
+            const { path: shape, centre, radius } = /** @type {Shape} */ (this.#shapes.get(path));
+            const { a, b, conj } = motion;
+            const sign = conj ? -1 : 1;
+            const middle = apply(motion, [centre[0] / scale, centre[1] / scale]);
+            for (const [i, j] of near(basis, camera, middle, radius / scale + line / camera.scale)) {
+                if (copies.count++ === MOST) return null;
+                const colour = fill ? colourAt(colours, placement, i, j) : -1;
+                const part = copies.parts.get(colour) ?? new Path2D();
+                copies.parts.set(colour, part);
+                const [x, y] = minus(plus(b, cartesian({ a: basis.p, b: basis.q }, [i, j])), camera.centre);
+                const [e, f] = [width / 2 + camera.scale * x, height / 2 - camera.scale * y];
+                // To CSS pixels, y down.
+                part.addPath(shape, new DOMMatrix([k * a[0], -k * a[1], -k * sign * a[1], -k * sign * a[0], e, f]));
+            }
+        }
+        for (const part of copies.parts.values()) copies.all.addPath(part);
+        return copies;
+    }
+}
 
 /**
- * Draw the copies of tiles that meet the window. The context's transform and styles are as before.
+ * Fill copies with their colours. The context's transform and styles are as before.
+ * @param {CanvasRenderingContext2D} context
+ * @param {Camera} camera
+ * @param {Copies} copies
+ * @param {Style} style
+ */
+export function fillCopies(context, { ratio }, { parts }, { dark = false }) {
+    context.save();
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    for (const [colour, part] of parts) {
+        context.fillStyle = css(tileColour(colour, dark));
+        context.fill(part, "evenodd");
+    }
+    context.restore();
+}
+
+/**
+ * Draw the lines of copies. The context's transform and styles are as before.
+ * @param {CanvasRenderingContext2D} context
+ * @param {Camera} camera
+ * @param {Copies} copies
+ * @param {Style} style
+ */
+export function strokeCopies(context, { ratio }, { all }, style) {
+    const { line = 1.5, dash = [], opacity = 1, dark = false, colour = css(inks(dark).border) } = style;
+    context.save();
+    context.setTransform(ratio, 0, 0, ratio, 0, 0);
+    context.lineWidth = line;
+    context.lineJoin = "round";
+    context.setLineDash(dash);
+    context.globalAlpha = opacity;
+    context.strokeStyle = colour;
+    // In one stroke: lines that two copies share are not darker than others.
+    context.stroke(all);
+    context.restore();
+}
+
+/**
+ * Draw the copies of tiles that meet the window, once.
  * @param {CanvasRenderingContext2D} context
  * @param {Camera} camera
  * @param {Lattice} lattice
@@ -52,75 +152,10 @@ const kept = new Kept();
  * @returns {number} How many copies were drawn; 0 also where they are too many.
  */
 export function drawOutlines(context, camera, lattice, motions, tiles, style = {}) {
-    const { scale = 1, line = 1.5, dash = [], opacity = 1, fill = null, dark = false } = style;
-    const causes = [lattice, motions, tiles, scale, line, fill, camera.scale, ...camera.centre, ...camera.size];
-    const copies = kept.get(causes, () => copiesOf(camera, lattice, motions, tiles, { scale, line, fill }));
-    context.save();
-    context.setTransform(camera.ratio, 0, 0, camera.ratio, 0, 0);
-    for (const [colour, part] of (fill && copies?.parts) || []) {
-        context.fillStyle = css(tileColour(colour, dark));
-        context.fill(part, "evenodd");
-    }
-    context.restore();
-    style.under?.();
-    if (copies && line > 0) {
-        context.save();
-        context.setTransform(camera.ratio, 0, 0, camera.ratio, 0, 0);
-        context.lineWidth = line;
-        context.lineJoin = "round";
-        context.setLineDash(dash);
-        context.globalAlpha = opacity;
-        context.strokeStyle = style.colour ?? css(inks(dark).border);
-        // In one stroke: lines that two copies share are not darker than others.
-        context.stroke(copies.all);
-        context.restore();
-    }
+    const copies = new Outlines().copies(camera, lattice, motions, tiles, style);
+    if (copies && style.fill) fillCopies(context, camera, copies, style);
+    if (copies && style.line !== 0) strokeCopies(context, camera, copies, style);
     return copies?.count ?? 0;
-}
-
-/**
- * @param {Camera} camera
- * @param {Lattice} lattice
- * @param {readonly Motion[]} motions
- * @param {readonly Tile[]} tiles
- * @param {{scale: number, line: number, fill: Style["fill"]}} style
- * @returns {Copies | null} Null where they are too many, and where there is no cell.
- */
-function copiesOf(camera, lattice, motions, tiles, { scale, line, fill }) {
-    const basis = reducedBasis(lattice);
-    if (!basis) return null;
-    const finest = roundedScale(camera.scale) / scale;
-    const shapes = new Map(
-        tiles.map(({ path }) => {
-            const shape = known.get(path);
-            return [path, shape?.scale === finest ? shape : shapeOf(path, finest)];
-        }),
-    );
-    known = shapes;
-    const placements = tiles.flatMap(({ path, operations }) => operations.map((k) => ({ path, motion: motions[k] })));
-    const colours = coloursOf(typeof fill === "object" ? fill : null, placements.length, basis.rows);
-    const [width, height] = camera.size;
-    const k = camera.scale / scale;
-    /** @type {Copies} */
-    const copies = { count: 0, parts: new Map(), all: new Path2D() };
-    for (const [placement, { path, motion }] of placements.entries()) {
-        const { path: shape, centre, radius } = /** @type {Shape} */ (shapes.get(path));
-        const { a, b, conj } = motion;
-        const sign = conj ? -1 : 1;
-        const middle = apply(motion, [centre[0] / scale, centre[1] / scale]);
-        for (const [i, j] of near(basis, camera, middle, radius / scale + line / camera.scale)) {
-            if (copies.count++ === MOST) return null;
-            const colour = fill ? colourAt(colours, placement, i, j) : -1;
-            const part = copies.parts.get(colour) ?? new Path2D();
-            copies.parts.set(colour, part);
-            const [x, y] = minus(plus(b, cartesian({ a: basis.p, b: basis.q }, [i, j])), camera.centre);
-            const [e, f] = [width / 2 + camera.scale * x, height / 2 - camera.scale * y];
-            // To CSS pixels, y down.
-            part.addPath(shape, new DOMMatrix([k * a[0], -k * a[1], -k * sign * a[1], -k * sign * a[0], e, f]));
-        }
-    }
-    for (const part of copies.parts.values()) copies.all.addPath(part);
-    return copies;
 }
 
 /**

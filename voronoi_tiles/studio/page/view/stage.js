@@ -6,7 +6,7 @@ import { boxOf, entriesOf, segmentsOf } from "../scene.js";
 import { isSameStroke } from "../model/design.js";
 import { cosets, latticeOf, motionsOf } from "../model/symmetry.js";
 import { Camera } from "./camera.js";
-import { drawOutlines } from "./outlines.js";
+import { Outlines, fillCopies, strokeCopies } from "./outlines.js";
 import { drawOverlay } from "./overlay.js";
 import { Morph } from "./morph.js";
 import { FLAT, roundedScale } from "./paths.js";
@@ -20,6 +20,8 @@ import { drawTrace } from "./trace.js";
 
 /** Outlines that the server makes this fast follow the pointer; milliseconds. */
 const QUICK_MS = 50;
+/** How many changes they may be behind. */
+const BEHIND = 8;
 
 export class Stage {
     camera = new Camera();
@@ -39,9 +41,10 @@ export class Stage {
     /** @type {{design: any, resolved: any, scale: number, sites: any[]} | null} */
     #sites = null;
     /** @type {State["exact"]} the outlines that were drawn last */
-    drawn = null;
+    shownExact = null;
+    #paths = new Outlines();
     /** @type {any} what the preview has drawn last */
-    #drawn = null;
+    #previewed = null;
     /** @type {any} the sites that the preview could not draw */
     #tooMuch = null;
     /** @type {any} the last colouring that came */
@@ -67,8 +70,9 @@ export class Stage {
             }
             this.redraw();
         });
-        store.subscribe(["design", "refusal", "selection", "shown", "tables", "theme", "dragging", "trace"], () =>
-            this.redraw(),
+        store.subscribe(
+            ["design", "refusal", "selection", "shown", "tables", "theme", "dragging", "trace", "connected"],
+            () => this.redraw(),
         );
         // What has come is drawn at once, for the screen's next picture, unless that is drawn in any case.
         store.subscribe(["exact"], () => this.#frame || this.#draw());
@@ -96,7 +100,7 @@ export class Stage {
     /** The frame times of the preview, and what draws it; null without WebGL. */
     bench() {
         const { lattice, motions } = this.symmetry();
-        return this.#drawPicture(lattice, motions) ? this.#preview?.bench(this.#drawn) : null;
+        return this.#drawPicture(lattice, motions) ? this.#preview?.bench(this.#previewed) : null;
     }
 
     get dark() {
@@ -170,14 +174,19 @@ export class Stage {
         this.#colouring = state.exact?.colouring ?? this.#colouring;
         const hasPicture = state.shown.colours && !this.#outlinesDo(state) && this.#drawPicture(lattice, motions);
         this.#picture.hidden = !hasPicture;
-        this.#outlines(context, state, state.shown.colours && !hasPicture, () =>
-            drawTrace(context, camera, state.trace),
-        );
+        const outlines = this.#outlines(state, state.shown.colours && !hasPicture);
+        if (outlines?.style.fill) {
+            fillCopies(context, camera, outlines.copies, outlines.style);
+        }
+        drawTrace(context, camera, state.trace);
+        if (outlines?.style.line) {
+            strokeCopies(context, camera, outlines.copies, outlines.style);
+        }
         const scene = { design: state.design, lattice, motions, entries: this.entries() };
         const seen = this.#morph.at(scene, performance.now());
         const hands = { ...this.hands, entries: () => seen.entries };
         drawOverlay(context, hands, this.toolbox, seen.motions, seen.lattice);
-        this.drawn = state.exact;
+        this.shownExact = state.exact;
         if (seen.moves) {
             this.redraw();
         }
@@ -188,9 +197,12 @@ export class Stage {
      * the processor that makes them would draw the other picture as well, several times slower.
      * @param {State} state
      */
-    #outlinesDo({ exact, refusal, revision }) {
-        const follow = exact && (exact.rev === revision || exact.ms < QUICK_MS);
-        return Boolean(this.#preview?.software && follow && !refusal);
+    #outlinesDo({ exact, refusal, revision, connected }) {
+        if (!exact || refusal || !this.#preview?.software) {
+            return false;
+        }
+        const close = connected && exact.ms < QUICK_MS && exact.rev >= revision - BEHIND;
+        return exact.rev === revision || close;
     }
 
     /**
@@ -204,9 +216,9 @@ export class Stage {
             return false;
         }
         const style = { dark: this.dark, border: 0, strokes: 0 };
-        this.#drawn = { lattice, motions, sites, camera: this.camera, colouring: this.#colouring, style };
+        this.#previewed = { lattice, motions, sites, camera: this.camera, colouring: this.#colouring, style };
         try {
-            this.#preview.draw(this.#drawn);
+            this.#preview.draw(this.#previewed);
         } catch (error) {
             console.warn(error);
             this.#tooMuch = sites;
@@ -217,28 +229,26 @@ export class Stage {
 
     /**
      * The exact outlines: whole lines where they are of what is drawn, grey and dashed where that has none.
-     * @param {CanvasRenderingContext2D} context
      * @param {State} state
      * @param {boolean} filled whether they are the picture
-     * @param {() => void} under draws what is to lie over the picture and under the lines
      */
-    #outlines(context, { exact, refusal, shown }, filled, under) {
-        if (!exact || !(shown.edges || filled)) {
-            under();
-            return;
+    #outlines({ exact, refusal, shown }, filled) {
+        if (!exact) {
+            return null;
         }
         const { lattice, motions } = this.symmetry(exact.design);
-        const style = getComputedStyle(document.documentElement);
-        drawOutlines(context, this.camera, lattice, motions, exact.tiles, {
+        const colours = getComputedStyle(document.documentElement);
+        const style = {
             scale: exact.scale,
             dark: this.dark,
-            under,
             // Lines of one pixel are quick where the processor draws.
             line: !shown.edges ? 0 : refusal || this.#preview?.software ? 1 : 1.6,
-            colour: style.getPropertyValue(refusal ? "--quiet" : "--text").trim(),
+            colour: colours.getPropertyValue(refusal ? "--quiet" : "--text").trim(),
             ...(refusal ? { dash: [5, 4], opacity: 0.7 } : {}),
-            ...(filled ? { fill: this.#colouring ?? true } : {}),
-        });
+            fill: filled ? (this.#colouring ?? true) : null,
+        };
+        const copies = this.#paths.copies(this.camera, lattice, motions, exact.tiles, style);
+        return copies && { copies, style };
     }
 
     /** @param {"cell" | "all" | "selection"} what */
