@@ -75,7 +75,7 @@ class Window:
         return found
 
     def load(self) -> None:
-        """Wait until the page has the server's design, after it was opened or reloaded; then the gallery is open, too."""
+        """Wait until a page that was opened or reloaded has the server's design; the gallery is open then, too."""
         self.page.wait_for_function(
             "() => window.studio && document.getElementById('file').textContent !== 'no design'"
         )

@@ -228,6 +228,17 @@ def test_comments_stay_where_the_group_does(file: Path, opens: Opens) -> None:
     assert file.read_text().splitlines()[0] == starter_text("p2").splitlines()[0]
 
 
+def test_what_is_neither_saved_nor_noted_is_not_left(file: Path, opens: Opens, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where no copies can be kept, and something is drawn."""
+    document = opens()
+    document.check_kept(moved(design_of(document)))  # copies can be kept
+    monkeypatch.setenv("XDG_STATE_HOME", str(file))
+    with closing(Document.open(file.name)) as other:
+        other.check_kept(design_of(other))
+        with pytest.raises(OutputError, match="no copy of it can be kept"):
+            other.check_kept(moved(design_of(other)))
+
+
 def test_a_name_in_a_folder_that_is_not_there_is_refused(tmp_path: Path) -> None:
     """A design that could not be saved is not begun."""
     with pytest.raises(DesignError, match="its folder is not there"):

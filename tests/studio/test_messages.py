@@ -51,7 +51,8 @@ def test_messages_are_read() -> None:
     assert read(type="thumbnail", rev=3, design=DESIGN) == ThumbnailMessage(3, DESIGN)
     assert read(type="save", rev=4, design=DESIGN, over=True) == SaveMessage(4, DESIGN, True)
     assert read(type="reload") == ReloadMessage()
-    assert (read(type="new"), read(type="new", name="leaf")) == (NewMessage(""), NewMessage("leaf"))
+    assert read(type="new", rev=5, design=DESIGN) == NewMessage(5, DESIGN, "")
+    assert read(type="new", rev=6, design=DESIGN, name="leaf") == NewMessage(6, DESIGN, "leaf")
 
 
 BROKEN = (
@@ -63,7 +64,7 @@ BROKEN = (
     *(f'{{"type": "design", "rev": 1, "design": {{}}, "tolerance": {t}}}' for t in ("0", "-1", '"1"', "true", "[]")),
     *(f'{{"type": "design", "rev": 1, "design": {{}}, "rest": {rest}}}' for rest in ("0", '"x"', "null", "[]")),
     *(f'{{"type": "job", "rev": 1, "design": {{}}, "job": {job}}}' for job in ("3", '"x"', "[1]", '{"kerf": {}}')),
-    *('{"type": "new", "name": 3}', '{"type": "new", "design": {}}'),
+    *('{"type": "new", "name": "leaf"}', '{"type": "new", "rev": 1, "design": {}, "name": 3}'),
     *('{"type": "reload", "rev": 1}', '{"type": "design", "rev": 1, "design": {}, "job": {}}'),
     *('{"type": "job", "rev": 1, "design": {}, "limits": 3}', '{"type": "save", "rev": 1, "design": {}, "over": 1}'),
 )

@@ -10,8 +10,10 @@ import subprocess
 import sys
 import time
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
+from urllib.parse import quote
 
 import pytest
 from helpers.outlines import CommandLine
@@ -72,18 +74,27 @@ def test_a_design_is_answered_by_its_outline(studio: RunningStudio) -> None:
         assert told(page)["error"]["key"] == "sheet"
 
 
+def home_of(opened: Mapping[str, Any]) -> str:
+    """How a page that comes again names the design that it has."""
+    return quote(f"{opened['folder']}/{opened['file']}")
+
+
 def test_a_page_that_is_reloaded_is_served(studio: RunningStudio) -> None:
     """One page at a time: the newer takes the place of the older, which is told so; one that comes again goes on."""
     with studio.page() as older:
         told(older)
         with studio.page() as newer:
-            assert told(newer)["type"] == "opened"
+            opened = told(newer)
+            assert opened["type"] == "opened"
             with pytest.raises(ConnectionClosed) as caught:
                 told(older)
             assert caught.value.rcvd is not None
             assert caught.value.rcvd.code == 4001
-    with studio.page(query="?again=1") as page:
+    with studio.page(query=f"?again={home_of(opened)}") as page:
         assert told(page)["again"] is True
+    for other in ("", "1", home_of({**opened, "file": "leaf.toml"})):
+        with studio.page(query=f"?again={other}") as page:
+            assert told(page)["again"] is False
 
 
 @pytest.mark.slow
@@ -213,9 +224,10 @@ def test_what_changed_while_the_page_was_away_is_not_overwritten(studio: Running
     file = folder / "bird.toml"
     before = file.read_text(encoding="utf-8")
     with studio.page() as page:
-        design = told(page)["design"]
+        opened = told(page)
+    design = opened["design"]
     file.write_text(before.replace("60", "62"), encoding="utf-8")
-    with studio.page(query="?again=1") as page:
+    with studio.page(query=f"?again={home_of(opened)}") as page:
         assert told(page)["design"] == design
         tell(page, "save", rev=1, design={**design, "cell": {"a": 63}})
         assert told(page, "conflict")["design"]["cell"]["a"] == 62

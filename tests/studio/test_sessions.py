@@ -30,6 +30,7 @@ class Keeper:
     def __init__(self) -> None:
         self.noted: list[Mapping[str, Any]] = []
         self.full = False
+        self.is_kept = True
         self.change: dict[str, Any] | None = None
         self.closed = False
 
@@ -52,6 +53,12 @@ class Keeper:
         if self.full:
             raise OutputError("the disk is full", remedy="Make room.")
         self.noted.append(design)
+
+    def check_kept(self, design: Mapping[str, Any]) -> None:
+        """Refuse to leave what is neither saved nor noted."""
+        assert design
+        if not self.is_kept:
+            raise OutputError("no copy of it can be kept", remedy="Save it first.")
 
     def changed(self) -> dict[str, Any] | None:
         """What others have done, once."""
@@ -135,12 +142,16 @@ def test_a_new_design_takes_the_place_of_one_that_is_noted(monkeypatch: pytest.M
     """What is not saved is noted, then the file is let go; where the new one cannot be begun, nothing has changed."""
 
     async def story(desk: Desk, keeper: Keeper, page: Page, _serving: asyncio.Task[None]) -> None:
-        page.say(type="new", name="bird")
-        await until(lambda: "trouble" in [message["type"] for message in page.heard])
+        page.say(type="new", rev=1, design={"number": 0}, name="bird")
+        await until(lambda: "refused" in [message["type"] for message in page.heard])
         held: Any = desk.document
         assert held is keeper
-        page.say(type="design", rev=1, design={"number": 1})
-        page.say(type="new", name="leaf")
+        keeper.is_kept = False
+        page.say(type="new", rev=2, design={"number": 1}, name="leaf")
+        await until(lambda: [message.get("lane") for message in page.heard].count("new") == 2)
+        assert held is desk.document
+        keeper.is_kept = True
+        page.say(type="new", rev=3, design={"number": 1}, name="leaf")
         await until(lambda: [message["type"] for message in page.heard].count("opened") == 2)
         assert (keeper.noted[-1], keeper.closed) == ({"number": 1}, True)
         begun: Any = desk.document

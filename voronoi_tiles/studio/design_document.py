@@ -181,6 +181,14 @@ class Document:
         else:
             self._recovery.write(design, next(iter(self._state()), None))
 
+    def check_kept(self, design: Mapping[str, Any]) -> None:
+        """Refuse to leave a design that is neither saved nor noted. Raises OutputError."""
+        if self._recovery.trouble and not same(self._design, design):
+            raise OutputError(
+                f"{self._shown} is not saved, and no copy of it can be kept: {self._recovery.trouble}",
+                remedy="Save it first, or download it under Share.",
+            )
+
     def changed(self) -> dict[str, Any] | None:
         """What another program has made of the file, once for each change; None where there is nothing new.
 

@@ -106,8 +106,10 @@ class ReloadMessage:
 
 @dataclass(frozen=True)
 class NewMessage:
-    """A new design to be begun, in a file of this name beside that of the design."""
+    """A new design to be begun, in a file of this name beside that of the design, which is kept as it is drawn."""
 
+    rev: int
+    design: Table
     name: str
 
 
@@ -122,7 +124,7 @@ _KEYS: Final[Mapping[str, tuple[str, ...]]] = {
     "thumbnail": ("rev", "design"),
     "save": ("rev", "design", "over"),
     "reload": (),
-    "new": ("name",),
+    "new": ("rev", "design", "name"),
     "bye": (),
 }
 """The types of messages, and the keys that each has beside its type."""
@@ -154,8 +156,6 @@ def read_message(table: Table) -> Message:
     if keys is None:
         raise _broken(f"a message has the unknown type {shown(kind)}")
     refuse_others(table, ("type", *keys))
-    if kind == "new":
-        return NewMessage(read_text(table, "name", ""))
     if not keys:
         return ReloadMessage() if kind == "reload" else ByeMessage()
     rev, design = _rev(table), read_design(table)
@@ -166,6 +166,8 @@ def read_message(table: Table) -> Message:
             return JobMessage(rev, design, read_job(table), _table(table, "limits"))
         case "thumbnail":
             return ThumbnailMessage(rev, design)
+        case "new":
+            return NewMessage(rev, design, read_text(table, "name", ""))
         case _:
             return SaveMessage(rev, design, _flag(table, "over", default=False))
 

@@ -9,7 +9,7 @@ from typing import Any, Final
 from voronoi_tiles.base.errors import DesignError, TouchingCopiesError, VoronoiTilesError
 from voronoi_tiles.studio.messages import Table
 
-_LANES: Final = {"design": "outline", "job": "job", "thumbnail": "thumbnail", "save": "save"}
+_LANES: Final = {"design": "outline", "job": "job", "thumbnail": "thumbnail", "save": "save", "new": "new"}
 """The lanes of the messages that are refused; what is wrong with others is trouble."""
 
 _BUG: Final = "This is a bug in voronoi-tiles: please report it, with the design."

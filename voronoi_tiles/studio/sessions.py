@@ -63,24 +63,28 @@ class Desk:
 
         return await asyncio.shield(kept())
 
-    async def opened(self, *, again: bool = False, recover: bool = True) -> dict[str, Any]:
+    async def opened(self, *, again: str = "", recover: bool = True) -> dict[str, Any]:
         """The message "opened": the file as it is now, with what can be recovered.
 
-        To a page that comes `again`, and has what it has drawn, the file stays as it was read last: what others have
-        made of it meanwhile is still a change. Raises VoronoiTilesError.
+        To a page that comes `again` with this file, and has what it has drawn, the file stays as it was read last: what
+        others have made of it meanwhile is still a change. Raises VoronoiTilesError.
         """
-        if not (again and self._opened):
+        same = bool(again) and again == "{folder}/{file}".format_map({"folder": "", "file": "", **self._opened})
+        if not same:
             call = self.document.opened if recover else self.document.reload
             self._opened = await self.keeper(call)
             self.know(self._opened.get("design"))
-        return {"type": "opened", **self._opened, "again": again}
+        return {"type": "opened", **self._opened, "again": same}
 
-    async def begin(self, name: str) -> dict[str, Any]:
+    async def begin(self, name: str, design: Table) -> dict[str, Any]:
         """Begin a new design beside this one, which is closed; what is not saved of it is noted. The message "opened".
 
-        Raises VoronoiTilesError, after which nothing has changed.
+        `design` is what the page has drawn. Raises VoronoiTilesError, after which nothing has changed: also where
+        that is not saved, and no copy of it can be kept.
         """
+        self.note(design)
         await self.note_now()
+        await self.keeper(self.document.check_kept, design)
         old, self.document = self.document, await self.keeper(self.document.beside, name)
         self._newest, self._own = None, set()
         await self.keeper(old.close)
@@ -195,7 +199,7 @@ class Session:
         """Serve the page until it is gone."""
         await self._websocket.accept()
         try:
-            await self.send(await self._desk.opened(again="again" in self._websocket.query_params))
+            await self.send(await self._desk.opened(again=self._websocket.query_params.get("again", "")))
         except VoronoiTilesError as error:
             await self.send(refusal({}, error))
         try:
@@ -238,8 +242,8 @@ class Session:
                 await self.send({**saved, "rev": rev})
             case ReloadMessage():
                 await self.send(await desk.opened(recover=False))
-            case NewMessage(name):
-                await self.send(await desk.begin(name))
+            case NewMessage(_, design, name):
+                await self.send({**await desk.begin(name, design), "begun": True})
             case ByeMessage():
                 await desk.note_now()
 

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { letterOf, letterProblem } from "../../../voronoi_tiles/studio/page/tools/letters.js";
+import { letterOf, letterProblem, lettersOf } from "../../../voronoi_tiles/studio/page/tools/letters.js";
 import { TOOLS } from "../../../voronoi_tiles/studio/page/tools/toolbox.js";
 
 const [select, pen] = TOOLS;
@@ -22,4 +22,9 @@ test("a letter goes to one tool only, and none that the page has another use for
     assert.equal(letterProblem(select, "p", { pen: "q" }), null);
     for (const letter of ["e", "g", "k", "j"]) assert.match(letterProblem(pen, letter, {}), /does something else/);
     for (const letter of ["", " ", "?", "+", ".", "ab", "Q"]) assert.match(letterProblem(pen, letter, {}), /Give one/);
+});
+
+test("of the letters that were kept only those that make sense are taken", () => {
+    assert.deepEqual(lettersOf({ pen: "q", select: 5, hand: "e", line: "q", other: "x" }), { pen: "q" });
+    for (const junk of [null, undefined, 3, "x", []]) assert.deepEqual(lettersOf(junk), {});
 });

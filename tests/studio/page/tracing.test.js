@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { UNLAID, cornersOf, inUnits, pulled } from "../../../voronoi_tiles/studio/page/model/tracing.js";
+import { UNLAID, cornersOf, inUnits, laidOf, pulled } from "../../../voronoi_tiles/studio/page/model/tracing.js";
 import { assertNear, frozen } from "./helpers.js";
 
 const PICTURE = { width: 400, height: 200 };
@@ -54,4 +54,16 @@ test("it stays where it is when the design gets other units", () => {
     assert.deepEqual(rest, { units: "in", turn: 30, opacity: 0.4 });
     assert.equal(inUnits(laid, "mm"), laid);
     assert.equal(inUnits(UNLAID, "cm").at, null);
+});
+
+test("of what was kept of a place only what makes sense is taken", () => {
+    const laid = { at: [1, 2], width: 30, units: "in", turn: 5, opacity: 0.5 };
+    assert.deepEqual(laidOf({ ...laid, image: {}, moves: true }), laid);
+    for (const junk of [null, 3, {}, { ...laid, at: { a: 1 } }, { ...laid, width: null }, { ...laid, units: "x" }])
+        assert.deepEqual(laidOf(junk), {});
+});
+
+test("units that there are not leave a place where it is", () => {
+    const laid = { ...UNLAID, at: [1, 2], width: 3 };
+    assert.equal(inUnits(laid, "furlong"), laid);
 });

@@ -5,11 +5,11 @@ import { Link } from "./link.js";
 import { copied, siteNames } from "./model/design.js";
 import { joinSelected } from "./model/joining.js";
 import { shown } from "./model/lengths.js";
-import { inUnits } from "./model/tracing.js";
+import { inUnits, laidOf } from "./model/tracing.js";
 import { NOTHING, NO_TRACE, Store, shownFactor } from "./store.js";
 import { BREAKS, TOOLS, Toolbox } from "./tools/toolbox.js";
 import { listen } from "./tools/keys.js";
-import { letterOf } from "./tools/letters.js";
+import { letterOf, lettersOf } from "./tools/letters.js";
 import { SheetView } from "./view/sheet.js";
 import { Stage } from "./view/stage.js";
 import { clipboard } from "./clipboard.js";
@@ -43,6 +43,13 @@ function kept(name) {
     }
 }
 
+/** How the page looked last time, as far as that makes sense. */
+function habits() {
+    const found = kept("voronoi_tiles studio") ?? {};
+    const own = Object.fromEntries(Object.entries(found).filter(([key]) => HABITS.includes(key)));
+    return { ...own, letters: lettersOf(own.letters) };
+}
+
 const store = new Store({
     design: EMPTY,
     revision: 0,
@@ -62,13 +69,12 @@ const store = new Store({
     unit: "mm",
     shown: { elements: true, cell: true, grid: false, copies: true, region: false, colours: true, edges: true },
     theme: "",
-    letters: {},
     trace: NO_TRACE,
     connected: true,
     dragging: false,
     pointer: null,
     trouble: null,
-    ...kept("voronoi_tiles studio"),
+    ...habits(),
 });
 
 const stage = new Stage(
@@ -179,6 +185,9 @@ const COMMANDS = {
     "select-all": () =>
         store.set({ tool: "select", selection: { strokes: stage.entries().map((entry) => entry.ref), nodes: [] } }),
     join() {
+        if (store.state.dragging) {
+            return;
+        }
         const joined = joinSelected(store.settled, store.state.selection);
         if (joined) {
             store.edit("join", () => joined.design, { selection: { strokes: [joined.ref], nodes: [] } });
@@ -451,20 +460,31 @@ const note = (text) => (text ? { message: text, remedy: "", quiet: true } : null
 
 link.on("opened", (message) => {
     keepsMine = false;
-    if (message.again && message.file === store.state.file) {
+    const found = `${message.folder}/${message.file}`;
+    if (message.again) {
         link.sendNow();
         return;
     }
+    if (home && home !== found && !message.begun) {
+        link.leave();
+        store.set({
+            trouble: {
+                message: `The studio draws ${message.file} now, begun in another page.`,
+                remedy: `Load this page again to go on there. What was drawn here until the connection was lost is kept, and offered when ${store.state.file} is opened again.`,
+            },
+        });
+        return;
+    }
     const trouble = note(message.note);
-    if (store.state.file === message.file) {
+    if (home === found) {
         // What others have made of the file was asked for: undo leads back.
         store.edit("take theirs", () => message.design, { selection: NOTHING });
         store.set({ file: message.file, trouble });
     } else {
         store.open(message.design, { file: message.file, trouble });
         stage.fit();
-        home = `${message.folder}/${message.file}`;
-        const trace = { ...NO_TRACE, ...kept(`voronoi_tiles trace ${home}`) };
+        home = link.home = found;
+        const trace = { ...NO_TRACE, ...laidOf(kept(`voronoi_tiles trace ${home}`)) };
         store.set({ job: kept(`voronoi_tiles job ${home}`), trace });
     }
     store.keep(message.saved ? message.design : null);

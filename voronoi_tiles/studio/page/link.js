@@ -69,11 +69,14 @@ export class Link {
     /** @type {Map<number, Design>} what was sent, by its revision, until an answer to a later one has come */
     #designs = new Map();
     #asksJobs = false;
+    /** the design's folder and file, once the page has it */
+    home = "";
     /** pixels a unit: what is dragged is flattened to a quarter of a pixel */
     scale = 8;
     /** @type {Map<string, ((message: any) => void)[]>} */
     #heard = new Map();
-    /** @type {{types: string[], done: (message: any) => void}[]} who waits for a message */
+    #left = false;
+    /** @type {{isMeant: (message: any) => boolean, done: (message: any) => void}[]} who waits for a message */
     #awaited = [];
 
     /** @param {Store} store */
@@ -93,23 +96,30 @@ export class Link {
     }
 
     /**
-     * The next message of one of some types; null where the connection is lost before.
-     * @param {...string} types
+     * The next message that is meant; null where the connection is lost before.
+     * @param {(message: any) => boolean} isMeant
      * @returns {Promise<any>}
      */
-    next(...types) {
-        return new Promise((done) => this.#awaited.push({ types, done }));
+    next(isMeant) {
+        return new Promise((done) => this.#awaited.push({ isMeant, done }));
+    }
+
+    /** Leave the server, and do not come again. */
+    leave() {
+        this.#left = true;
+        this.#socket?.close();
     }
 
     /** @param {any} message null: there will be none */
     #answerNext(message) {
-        const answered = this.#awaited.filter(({ types }) => !message || types.includes(message.type));
+        const answered = this.#awaited.filter(({ isMeant }) => !message || isMeant(message));
         this.#awaited = this.#awaited.filter((one) => !answered.includes(one));
         answered.forEach(({ done }) => done(message));
     }
 
     connect() {
-        const socket = new WebSocket(`ws://${location.host}/ws${this.#store.state.file ? "?again=1" : ""}`);
+        const again = this.home ? `?again=${encodeURIComponent(this.home)}` : "";
+        const socket = new WebSocket(`ws://${location.host}/ws${again}`);
         this.#socket = socket;
         socket.addEventListener("open", () => {
             this.#tries = 0;
@@ -131,6 +141,9 @@ export class Link {
                 return;
             }
             this.#store.set({ connected: false });
+            if (this.#left) {
+                return;
+            }
             setTimeout(() => this.connect(), AGAIN_MS[Math.min(this.#tries++, AGAIN_MS.length - 1)]);
         });
     }
@@ -229,7 +242,8 @@ export class Link {
     /** @param {any} message */
     #receive(message) {
         const { exact, refusal, revision, begun, product } = this.#store.state;
-        if (message.rev < begun) {
+        const isOfDesign = message.type === "outline" || message.type === "product" || message.type === "refused";
+        if (isOfDesign && message.rev < begun && message.lane !== "thumbnail" && message.lane !== "new") {
             return;
         }
         if (message.type === "outline" || (message.type === "refused" && message.lane === "outline")) {

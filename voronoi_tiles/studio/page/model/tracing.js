@@ -27,9 +27,22 @@ export const UNLAID = Object.freeze({ at: null, width: 0, units: "mm", turn: 0, 
  * @returns {T}
  */
 export function inUnits(laid, units) {
-    if (laid.units === units) return laid;
+    if (laid.units === units || !(units in MILLIMETRES)) return laid;
     const factor = MILLIMETRES[laid.units] / MILLIMETRES[units];
     return { ...laid, at: laid.at && scaled(laid.at, factor), width: laid.width * factor, units };
+}
+
+/**
+ * What was kept of where a picture lies, as far as it makes sense.
+ *
+ * @param {any} kept
+ * @returns {Partial<Laid>}
+ */
+export function laidOf(kept) {
+    const { at, width, units, turn, opacity } = kept ?? {};
+    const numbers = [at?.[0], at?.[1], width, turn, opacity];
+    const isWhole = numbers.every(Number.isFinite) && width > 0 && units in MILLIMETRES;
+    return isWhole ? { at: [at[0], at[1]], width, units, turn, opacity: Math.min(1, Math.max(0, opacity)) } : {};
 }
 
 /** The least width; units. */

@@ -63,21 +63,21 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
     /**
      * @param {string} title
      * @param {(Node | string)[]} content
-     * @param {{label: string, first?: boolean, run?: (signal: AbortSignal) => unknown}[]} actions the last closes without
-     *     doing anything, and gives up what one before it is doing
+     * @param {{label: string, first?: boolean, whole?: boolean, run?: (signal: AbortSignal) => unknown}[]} actions the
+     *     last closes without doing anything, and gives up what one before it is doing, but for what is done as a whole
      */
     const open = (title, content, actions) => {
         const said = make("p", { class: "error", role: "alert" });
         const working = make("p", { class: "note", role: "status" });
         const stop = new AbortController();
-        const buttons = actions.map(({ label, first, run }) =>
+        const buttons = actions.map(({ label, first, whole, run }) =>
             make(
                 "button",
                 {
                     type: "button",
                     class: first ? "first" : "",
                     onclick: async () => {
-                        if (run && box.ariaBusy) {
+                        if (box.ariaBusy && (run || box.dataset.whole)) {
                             return;
                         }
                         try {
@@ -85,6 +85,7 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
                             const done = run?.(stop.signal);
                             if (done instanceof Promise) {
                                 box.ariaBusy = "true";
+                                box.dataset.whole = whole ? "yes" : "";
                                 working.replaceChildren(make("progress", { "aria-hidden": true }), " Working");
                                 await done;
                             }
@@ -105,6 +106,7 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
             "dialog",
             {
                 "aria-labelledby": "dialog-title",
+                oncancel: (/** @type {Event} */ event) => box.ariaBusy && box.dataset.whole && event.preventDefault(),
                 onclose: () => {
                     stop.abort();
                     box.remove();
@@ -343,14 +345,16 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
                     {
                         label: "Begin",
                         first: true,
+                        // Until it is there, what is drawn or saved would be of neither.
+                        whole: true,
                         async run() {
-                            link.sendNow();
-                            // Until it is there, a save would go into the new file.
-                            const answer = link.next("opened", "trouble");
-                            const message = link.send({ type: "new", name: name.value }) ? await answer : null;
-                            if (message?.type === "trouble") {
-                                store.set({ trouble: null });
-                                throw new Error(`${message.message} ${message.remedy}`);
+                            const { revision: rev } = store.state;
+                            const asked = { type: "new", rev, design: store.settled, name: name.value };
+                            const message = link.send(asked)
+                                ? await link.next(({ begun, lane }) => begun || lane === "new")
+                                : null;
+                            if (message?.error) {
+                                throw new Error(`${message.error.message} ${message.error.remedy}`);
                             }
                             if (!message) {
                                 throw new Error("There is no connection to the studio's server: try again later.");

@@ -9,6 +9,23 @@ import { TOOLS } from "./toolbox.js";
 export const COMMAND_LETTERS = { e: "toggle-elements", g: "toggle-grid", k: "toggle-copies", j: "join" };
 
 /**
+ * What was kept of the letters, as far as it makes sense.
+ * @param {any} kept
+ * @returns {Letters}
+ */
+export function lettersOf(kept) {
+    /** @type {Record<string, string>} */
+    const given = {};
+    for (const tool of TOOLS) {
+        const letter = kept?.[tool.name];
+        if (typeof letter === "string" && !letterProblem(tool, letter, given)) {
+            given[tool.name] = letter;
+        }
+    }
+    return given;
+}
+
+/**
  * The letter of a tool, a small one.
  * @param {import("./tool.js").Tool} tool
  * @param {Letters} given

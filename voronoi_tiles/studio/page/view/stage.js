@@ -20,8 +20,8 @@ import { drawTrace } from "./trace.js";
 
 /** Outlines that the server makes this fast follow the pointer; milliseconds. */
 const QUICK_MS = 50;
-/** How many changes they may be behind. */
-const BEHIND = 8;
+/** For how long they may be behind; milliseconds. */
+const LATE_MS = 100;
 
 export class Stage {
     camera = new Camera();
@@ -43,6 +43,9 @@ export class Stage {
     /** @type {State["exact"]} the outlines that were drawn last */
     shownExact = null;
     #paths = new Outlines();
+    /** when they were last seen to follow; milliseconds */
+    #newest = 0;
+    #late = 0;
     /** @type {any} what the preview has drawn last */
     #previewed = null;
     /** @type {any} the sites that the preview could not draw */
@@ -201,8 +204,14 @@ export class Stage {
         if (!exact || refusal || !this.#preview?.software) {
             return false;
         }
-        const close = connected && exact.ms < QUICK_MS && exact.rev >= revision - BEHIND;
-        return exact.rev === revision || close;
+        const now = performance.now();
+        if (exact !== this.shownExact || exact.rev === revision) {
+            this.#newest = now;
+        } else {
+            clearTimeout(this.#late);
+            this.#late = window.setTimeout(() => this.redraw(), LATE_MS);
+        }
+        return exact.rev === revision || (connected && exact.ms < QUICK_MS && now - this.#newest < LATE_MS);
     }
 
     /**
