@@ -33,9 +33,12 @@ class Keeper:
         self.is_kept = True
         self.change: dict[str, Any] | None = None
         self.closed = False
+        self.broken = False
 
     def opened(self) -> dict[str, Any]:
         """What is open."""
+        if self.broken:
+            raise DesignError("is no design", file=self.name)
         return {"file": "bird.toml", "design": naming("../on-disk.svg"), "recovery": {"design": naming("../noted.svg")}}
 
     def beside(self, name: str) -> Keeper:
@@ -144,12 +147,11 @@ def test_a_new_design_takes_the_place_of_one_that_is_noted(monkeypatch: pytest.M
     async def story(desk: Desk, keeper: Keeper, page: Page, _serving: asyncio.Task[None]) -> None:
         page.say(type="new", rev=1, design={"number": 0}, name="bird")
         await until(lambda: "refused" in [message["type"] for message in page.heard])
-        held: Any = desk.document
-        assert held is keeper
         keeper.is_kept = False
         page.say(type="new", rev=2, design={"number": 1}, name="leaf")
         await until(lambda: [message.get("lane") for message in page.heard].count("new") == 2)
-        assert held is desk.document
+        held: Any = desk.document
+        assert held is keeper
         keeper.is_kept = True
         page.say(type="new", rev=3, design={"number": 1}, name="leaf")
         await until(lambda: [message["type"] for message in page.heard].count("opened") == 2)
@@ -158,6 +160,25 @@ def test_a_new_design_takes_the_place_of_one_that_is_noted(monkeypatch: pytest.M
         page.say(type="design", rev=2, design={"number": 2})
         await until(lambda: {"number": 2} in begun.noted)
         assert {"number": 2} not in keeper.noted
+
+    at_desk(story, monkeypatch)
+
+
+def test_nothing_has_changed_where_a_new_design_cannot_be_opened(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Somebody may put a broken file there after it was seen that there is none: that is let go, and said."""
+
+    async def story(desk: Desk, keeper: Keeper, page: Page, _serving: asyncio.Task[None]) -> None:
+        other = Keeper()
+        other.broken = True
+        monkeypatch.setattr(keeper, "beside", lambda _name: other)
+        with pytest.raises(DesignError, match="is no design"):
+            await desk.begin("leaf", {"number": 0})
+        held: Any = desk.document
+        assert held is keeper
+        assert (keeper.closed, other.closed) == (False, True)
+        desk.check_files(naming("../on-disk.svg"), {})
+        page.say(type="design", rev=1, design={"number": 1})
+        await until(lambda: {"number": 1} in keeper.noted)
 
     at_desk(story, monkeypatch)
 

@@ -95,10 +95,10 @@ class Document:
 
         The suffix may be left out. Raises DesignError where the name is none, or taken.
         """
-        folder = os.path.dirname(self._shown)  # noqa: PTH120 - any name
-        if not name.strip():
+        folder, name = os.path.dirname(self._shown), name.strip()  # noqa: PTH120 - any name
+        if not name:
             return Document.open(None, folder=folder or os.curdir)
-        file = name.strip() if name.strip().lower().endswith((".toml", ".json")) else f"{name.strip()}.toml"
+        file = name if name.lower().endswith((".toml", ".json")) else f"{name}.toml"
         if not (_NAME.fullmatch(file) and file.isprintable()):
             raise DesignError("is no name of a file", file=shown(name), remedy="Give a short one without / and :.")
         path = os.path.join(folder, file)  # noqa: PTH118 - same

@@ -85,10 +85,17 @@ class Desk:
         self.note(design)
         await self.note_now()
         await self.keeper(self.document.check_kept, design)
-        old, self.document = self.document, await self.keeper(self.document.beside, name)
+        new = await self.keeper(self.document.beside, name)
+        try:
+            opened = await self.keeper(new.opened)  # somebody may have put a broken file there meanwhile
+        except BaseException:
+            await self.keeper(new.close)
+            raise
+        old, self.document, self._opened = self.document, new, opened
         self._newest, self._own = None, set()
+        self.know(opened.get("design"))
         await self.keeper(old.close)
-        return await self.opened()
+        return {"type": "opened", **opened, "again": False}
 
     def know(self, design: Table | None) -> None:
         """Remember what files the design on disk names: these may be read, wherever they are.
