@@ -190,10 +190,21 @@ def test_everything_by_the_keyboard(window: Window) -> None:
     for _ in range(4):
         page.keyboard.press("Shift+ArrowRight")
     page.keyboard.press("Enter")
+    assert "Enter places a point, Ctrl+Enter ends it" in page.locator("#hint").inner_text()
     page.keyboard.press("Control+Enter")
+    page.get_by_role("button", name=f"Line {count + 1}", expanded=True).wait_for()
+    page.keyboard.press("Enter")
+    page.keyboard.press("Shift+ArrowUp")
+    page.keyboard.press("Enter")
+    page.keyboard.press("Control+Enter")
+    assert len(window.design["site"][0]["strokes"]) == count + 2
+    page.keyboard.press("Delete")
     assert len(window.design["site"][0]["strokes"]) == count + 1
     segment = window.design["site"][0]["strokes"][-1]["segment"]
+    window.choose(f"Line {count + 1}")
+    page.locator("#overlay").focus()
     page.keyboard.press("v")
+    assert "place" not in page.locator("#hint").inner_text()
     page.keyboard.press("Shift+ArrowRight")
     moved = window.design["site"][0]["strokes"][-1]["segment"]
     assert [[x - 1, y] for x, y in moved] == [pytest.approx(point) for point in segment]

@@ -46,7 +46,7 @@ export const HELP = [
             { keys: "Tab, Shift+Tab", does: "the next point, the one before" },
             {
                 keys: "J",
-                does: "join two ends that are selected, or the nearest ends of two selected strokes; close one",
+                does: "join two ends that are selected, or the nearest ends of two selected strokes; close the one selected",
             },
             { keys: "Drag an end onto another", does: "join them; a point onto the next one takes it out" },
             { keys: "Delete, Shift+Delete", does: "take out: the curve heals; or is cut there" },
@@ -141,10 +141,8 @@ export function listen(hands, toolbox, canvas, run) {
             hands.redraw();
             return true;
         }
-        if (toolbox.tool.draws && (event.key === "Enter" || event.key === " ") && toolbox.cross) {
-            if (event.key === "Enter" && event.ctrlKey) {
-                return toolbox.tool.key_down?.("Enter", event, hands) ?? false;
-            }
+        const ends = event.ctrlKey || event.metaKey;
+        if (toolbox.tool.draws && (event.key === " " || (event.key === "Enter" && !ends)) && toolbox.cross) {
             toolbox.placeAtCross();
             return true;
         }
@@ -228,7 +226,7 @@ export function listen(hands, toolbox, canvas, run) {
         }
         const ctrl = event.ctrlKey || event.metaKey;
         const done =
-            ctrl && !ARROWS[event.key]
+            ctrl && !ARROWS[event.key] && event.key !== "Enter"
                 ? withCtrl(event.key.toLowerCase(), event)
                 : !types(event.target) && plain(event);
         if (done) {

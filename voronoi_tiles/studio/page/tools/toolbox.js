@@ -44,8 +44,8 @@ export class Toolbox {
     #fingers = new Map();
     /** @type {import("../model/snapping.js").Snapped | null} */
     snapped = null;
-    /** @type {Point | null} the keyboard's cross hair, in the drawing */
-    cross = null;
+    /** @type {Point | null} */
+    #cross = null;
 
     /**
      * @param {HTMLCanvasElement} canvas that pointers and keys come to
@@ -77,6 +77,25 @@ export class Toolbox {
         return this.#aside ? byName.hand : image && moves ? trace : byName[this.#current];
     }
 
+    /** @returns {Point | null} the keyboard's cross hair, in the drawing */
+    get cross() {
+        return this.#cross;
+    }
+
+    set cross(at) {
+        const had = this.#cross;
+        this.#cross = at;
+        if (!at !== !had) {
+            this.#hint();
+        }
+    }
+
+    /** Say what the tool in hand waits for: where there is a cross hair, Enter has another use. */
+    #hint() {
+        const { help } = this.tool;
+        this.#hands.hint(this.#cross ? help.replace("Enter ends", "Enter places a point, Ctrl+Enter ends") : help);
+    }
+
     /** @param {string} name */
     #take(name) {
         if (name !== this.#current) {
@@ -89,9 +108,9 @@ export class Toolbox {
 
     /** Show what the tool in hand waits for. */
     #show() {
-        this.cross = null;
+        this.#cross = null;
+        this.#hint();
         this.#canvas.style.cursor = this.tool.cursor;
-        this.#hands.hint(this.tool.help);
         this.#hands.redraw();
     }
 
