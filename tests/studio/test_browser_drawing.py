@@ -351,11 +351,43 @@ def test_ends_are_joined_without_dragging(window: Window) -> None:
     page.keyboard.press("j")
     assert window.strokes == [{"polyline": [*WING, start]}]
     page.locator("#panel-drawing").get_by_role("button", name="Close", exact=True).click()
-    assert window.strokes == [{"polyline": WING, "closed": True}]
+    assert window.strokes == [{"polyline": [*WING, start], "closed": True}]
+    refused = page.get_by_text("Nothing here can be joined.")
     page.locator("#overlay").focus()
+    for key in ("Escape", "Control+z"):
+        page.keyboard.press("j")
+        refused.wait_for()
+        page.keyboard.press(key)
+        refused.wait_for(state="detached")
+
+
+def test_the_ends_that_are_chosen_are_joined(window: Window) -> None:
+    """Those far from each other, by two clicks and one with Shift; the list's strokes stay chosen at another click."""
+    page = window.page
+    page.keyboard.press("l")
+    for place in ((30, 12), (26, 20)):
+        window.click(*place)
+    page.keyboard.press("Enter")
+    start, end = window.strokes[1]["segment"]
+    page.keyboard.press("v")
+    window.click(13, 6.5)
+    window.click(6, 9)
+    with held(window, "Shift"):
+        window.click(30, 12)
+    page.locator(".point.chosen").nth(1).wait_for()
     page.keyboard.press("j")
-    page.get_by_text("Nothing here can be joined.").wait_for()
-    page.get_by_role("button", name="Close", exact=True).click()
+    [joined] = window.strokes
+    assert joined == {"polyline": [WING[2], WING[1], start, end]}
+    for modifier, names in (
+        (None, ["Line 1"]),
+        ("Shift", []),
+        ("Shift", ["Line 1"]),
+        ("Control", []),
+        (None, ["Line 1"]),
+    ):
+        page.locator(".stroke").click(modifiers=[modifier] if modifier else [])
+        page.locator(f".stroke[aria-expanded={'true' if names else 'false'}]").wait_for()
+        assert chosen(window) == names
 
 
 def test_a_rubber_band_takes_strokes_and_then_points(window: Window) -> None:

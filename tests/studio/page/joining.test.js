@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { joinNodes, joinSelected } from "../../../voronoi_tiles/studio/page/model/joining.js";
+import { joinNodes, joinSelected, whyNotJoined } from "../../../voronoi_tiles/studio/page/model/joining.js";
 import { nearestOn, pointOn } from "../../../voronoi_tiles/studio/page/model/nearest.js";
 import { nodesOf } from "../../../voronoi_tiles/studio/page/model/nodes.js";
 import { cubicsOf, kindOf, placementOf } from "../../../voronoi_tiles/studio/page/model/strokes.js";
@@ -224,10 +224,62 @@ test("what is selected is joined: two nodes, the ends of a stroke, the nearest e
     assert.deepEqual(nearest.design.site[1].strokes, [{ polyline: [[8, 30], ...LINE] }, strokes[2]]);
     const nodes = [ref(0, 3), ref(2, 0)];
     assert.deepEqual(joinSelected(design, { strokes: all, nodes }), joinNodes(design, ...nodes));
-    assert.deepEqual(joinSelected(design, { strokes: [all[0]], nodes: [ref(0, 1)] }).design.site[1].strokes[0], {
-        polyline: LINE.slice(0, 3),
-        closed: true,
-    });
+    // An end that is selected alone is the one of its stroke, though another one is nearer.
+    const chosen = joinSelected(design, { strokes: all.slice(0, 2), nodes: [ref(0, 3)] });
+    assert.deepEqual(chosen.design.site[1].strokes[0], { polyline: [...LINE.slice(0, 3), LINE[3], [8, 30]] });
+    const inner = joinSelected(design, { strokes: all.slice(0, 2), nodes: [ref(0, 1)] });
+    assert.deepEqual(inner, nearest, "no end");
     for (const some of [[], all]) assert.equal(joinSelected(design, { strokes: some, nodes: [] }), null);
     assert.equal(joinSelected(design, { strokes: [all[1]], nodes: [] }), null);
+});
+
+test("a stroke is closed by a piece from its end to its start, and none of its points is lost", () => {
+    const two = { hermite: OPEN[3].hermite.slice(0, 2), tangents: OPEN[3].tangents.slice(0, 2) };
+    for (const [stroke, made] of [
+        [{ polyline: LINE.slice(0, 3) }, { polyline: LINE.slice(0, 3), closed: true }],
+        [
+            { catmull_rom: LINE, alpha: 0.5 },
+            { catmull_rom: LINE, alpha: 0.5, closed: true },
+        ],
+        [{ bspline: LINE }, { bspline: LINE, closed: true }],
+        [{ bezier: CURVE }, { bezier: [...CURVE, CURVE[6], CURVE[0], CURVE[0]] }],
+        [OPEN[4], { path: `${OPEN[4].path} L 3 4` }],
+        // As the pen does at a click on the first point.
+        [two, { hermite: [...two.hermite, two.hermite[0]], tangents: [...two.tangents, two.tangents[0]] }],
+        [{ segment: LINE.slice(0, 2) }, null],
+        [{ polyline: LINE.slice(0, 2) }, null],
+        [{ bezier: [LINE[0], LINE[0], LINE[1], LINE[1]] }, null],
+    ]) {
+        const design = designOf([stroke]);
+        const ends = anchors(stroke).map(({ node }) => ref(0, node));
+        const before = JSON.stringify(design);
+        for (const nodes of [[], [ends[0], ends.at(-1)], [ends.at(-1), ends[0]], [ends[0]]]) {
+            const joined = joinSelected(design, { strokes: [{ site: 1, stroke: 0 }], nodes });
+            assert.deepEqual(joined && joined.design.site[1].strokes, made && [made], JSON.stringify([stroke, nodes]));
+        }
+        assert.equal(JSON.stringify(design), before);
+    }
+});
+
+test("ends that meet become one where a stroke is closed", () => {
+    const nearly = { polyline: [...LINE, [1.2, 2.1]] };
+    const selection = { strokes: [{ site: 1, stroke: 0 }], nodes: [] };
+    const closed = (reach) => joinSelected(designOf([nearly]), selection, reach).design.site[1].strokes[0];
+    assert.deepEqual(closed(0.5), { polyline: LINE, closed: true });
+    assert.deepEqual(closed(0.1), { ...nearly, closed: true });
+    const there = designOf([{ polyline: [...LINE, LINE[0]] }]);
+    assert.deepEqual(joinSelected(there, selection).design.site[1].strokes, [{ polyline: LINE, closed: true }]);
+    // Enlarged by its place, the ends are farther apart than they are written.
+    const large = designOf([{ ...nearly, scale: 10 }]);
+    assert.deepEqual(joinSelected(large, selection, 0.5).design.site[1].strokes, [
+        { ...nearly, scale: 10, closed: true },
+    ]);
+});
+
+test("why nothing is joined is said of what is selected", () => {
+    const design = designOf([{ polyline: LINE }, { catmull_rom: LINE }, { segment: [LINE[0], LINE[1]] }]);
+    const why = (...strokes) => whyNotJoined(design, { strokes, nodes: [] });
+    assert.match(why(ref(0), ref(1)), /^Curves through points, .* join no others/);
+    assert.match(why(ref(0), { site: 0, stroke: 0 }), /^These strokes are of two sites/);
+    for (const some of [[], [ref(2)], [ref(0), ref(1), ref(2)]]) assert.match(why(...some), /^Select an open stroke/);
 });

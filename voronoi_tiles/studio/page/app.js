@@ -3,11 +3,11 @@
 
 import { Link } from "./link.js";
 import { copied, siteNames } from "./model/design.js";
-import { joinSelected } from "./model/joining.js";
+import { joinSelected, whyNotJoined } from "./model/joining.js";
 import { shown } from "./model/lengths.js";
 import { inUnits, laidOf } from "./model/tracing.js";
 import { NOTHING, NO_TRACE, Store, shownFactor } from "./store.js";
-import { BREAKS, TOOLS, Toolbox } from "./tools/toolbox.js";
+import { BREAKS, MEETS, TOOLS, Toolbox } from "./tools/toolbox.js";
 import { listen } from "./tools/keys.js";
 import { letterOf, lettersOf } from "./tools/letters.js";
 import { SheetView } from "./view/sheet.js";
@@ -150,12 +150,6 @@ const ask = dialogs(element("dialogs"), {
     },
 });
 
-const NOTHING_TO_JOIN = {
-    message: "Nothing here can be joined.",
-    remedy: "Select an open stroke of three points or more, or two strokes of one site, or an end of each with Shift: lines and pen curves join others.",
-    quiet: true,
-};
-
 /** @type {Record<string, () => void>} */
 const COMMANDS = {
     undo() {
@@ -185,14 +179,16 @@ const COMMANDS = {
     "select-all": () =>
         store.set({ tool: "select", selection: { strokes: stage.entries().map((entry) => entry.ref), nodes: [] } }),
     join() {
-        if (store.state.dragging) {
+        const { selection, dragging } = store.state;
+        if (dragging) {
             return;
         }
-        const joined = joinSelected(store.settled, store.state.selection);
+        const joined = joinSelected(store.settled, selection, MEETS / stage.camera.scale);
         if (joined) {
             store.edit("join", () => joined.design, { selection: { strokes: [joined.ref], nodes: [] } });
         } else {
-            store.set({ trouble: NOTHING_TO_JOIN });
+            const remedy = whyNotJoined(store.settled, selection);
+            store.set({ trouble: { message: "Nothing here can be joined.", remedy, quiet: true } });
         }
     },
     double() {

@@ -40,7 +40,7 @@ import { UNLAID } from "./model/tracing.js";
  * @property {boolean} connected
  * @property {boolean} dragging whether `design` is still in the hand
  * @property {readonly [number, number] | null} pointer where in the drawing it is
- * @property {Trouble | null} trouble what else there is to say, until it is closed
+ * @property {Trouble | null} trouble what else there is to say, until it is closed; where quiet, until the next change
  */
 
 /** @typedef {{keys: readonly string[], tell: (state: State) => void, calm: boolean}} Listener */
@@ -239,6 +239,8 @@ export class Store {
     #show(design, patch) {
         const site = Math.min(this.#state.site, design.site.length - 1);
         const saved = this.#history.design === this.#kept;
-        this.set({ design, revision: this.#state.revision + 1, site, saved, ...patch });
+        // What was only said is of the design before.
+        const trouble = this.#state.trouble?.quiet && !patch.dragging ? null : this.#state.trouble;
+        this.set({ design, revision: this.#state.revision + 1, site, saved, trouble, ...patch });
     }
 }

@@ -2,17 +2,18 @@
 /** A node laid onto another: what closes a stroke, makes one of two, or takes the node out. */
 
 import { chainsOf, isClosed, numbered, strokesOf, withKind } from "./chains.js";
-import { isSameStroke, mapPoints, removeStrokes, replaceStroke, strokeAt } from "./design.js";
+import { isSameNode, isSameStroke, mapPoints, removeStrokes, replaceStroke, strokeAt } from "./design.js";
 import { nodesOf } from "./nodes.js";
 import { apply, compose, distance, inverse, minus, same, tidyPlus } from "./plane.js";
 import { deleteNodes } from "./reshaping.js";
-import { kindOf, placementIn, placementOf, pointsOf } from "./strokes.js";
+import { kindOf, placementIn, placementOf, pointsOf, tangentsOf } from "./strokes.js";
 
 /** @typedef {import("./plane.js").Point} Point */
 /** @typedef {import("./design.js").Design} Design */
 /** @typedef {import("./design.js").Stroke} Stroke */
 /** @typedef {import("./design.js").Ref} Ref */
 /** @typedef {import("./design.js").NodeRef} NodeRef */
+/** @typedef {{strokes: readonly Ref[], nodes: readonly NodeRef[]}} Selection */
 
 /** @typedef {{anchors: number[], closed: boolean}} Run the numbers of the anchors along a curve */
 /** @typedef {{design: Design, ref: Ref}} Joined the design, and the stroke that was made */
@@ -141,6 +142,27 @@ function joinedTo(stroke, from, other, onto) {
         : made;
 }
 
+/**
+ * A stroke whose end leads back to its start, all points as they are: on a line, but as its kind has it where that runs
+ * through points; null where that would be a line there and back.
+ *
+ * @param {Stroke} stroke open, of one curve
+ * @returns {Stroke | null}
+ */
+function closedStroke(stroke) {
+    const kind = kindOf(stroke);
+    const points = pointsOf(stroke);
+    if (!isChain(stroke)) return points.length < LEAST_CLOSED ? null : { ...stroke, closed: true };
+    const [chain] = chainsOf(stroke);
+    const [start, end] = [chain[0], chain[chain.length - 1]];
+    if (chain.length === 4 && same(start, chain[1]) && same(chain[2], end)) return null;
+    if (kind === "hermite") {
+        const tangents = tangentsOf(stroke);
+        return { ...stroke, hermite: [...points, points[0]], tangents: [...tangents, tangents[0]] };
+    }
+    return strokesOf(stroke, [[...chain, end, start, start]])[0];
+}
+
 /** The nodes at both ends of an open stroke of one curve, the first 0; none of others. @type {(s: Stroke) => number[]} */
 function endsOf(stroke) {
     const [run, ...others] = runsOf(stroke);
@@ -149,25 +171,78 @@ function endsOf(stroke) {
 }
 
 /**
- * The design with what is selected joined: the first of two nodes laid onto the second; else the two ends of one stroke,
- * or of two strokes those that are nearest to each other. Null where nothing can be, and of more strokes.
+ * The nodes at both ends of an open stroke of one curve, the first one first; none of others.
  *
  * @param {Design} design
- * @param {{strokes: readonly Ref[], nodes: readonly NodeRef[]}} selection
+ * @param {Ref} ref
+ */
+export function shownEnds(design, { site, stroke }) {
+    const found = strokeAt(design, { site, stroke });
+    const numbers = found ? endsOf(found) : [];
+    const shown = found && numbers.length ? nodesOf(found, placementOf(design.site[site], found)) : [];
+    return shown.filter(({ node }) => numbers.includes(node)).map((node) => ({ ...node, site, stroke }));
+}
+
+/**
+ * The design with an open stroke closed; null where it cannot be. Ends that meet become one.
+ *
+ * @param {Design} design
+ * @param {Ref} ref
+ * @param {number} reach how far apart ends are that meet
  * @returns {Joined | null}
  */
-export function joinSelected(design, { strokes, nodes }) {
-    if (nodes.length === 2) return joinNodes(design, nodes[0], nodes[1]);
-    if (strokes.length > 2) return null;
-    const ends = strokes.flatMap((ref) => {
-        const stroke = strokeAt(design, ref);
-        const shown = stroke ? nodesOf(stroke, placementOf(design.site[ref.site], stroke)) : [];
-        const numbers = stroke ? endsOf(stroke) : [];
-        return shown.filter(({ node }) => numbers.includes(node)).map(({ node, at }) => ({ ...ref, node, at }));
+function closeStroke(design, ref, reach) {
+    const [start, end] = shownEnds(design, ref);
+    if (!start) return null;
+    const met = distance(start.at, end.at) <= reach ? joinNodes(design, end, start) : null;
+    const { site, stroke } = ref;
+    const made = closedStroke(design.site[site].strokes[stroke]);
+    return met ?? (made && { design: replaceStroke(design, ref, made), ref: { site, stroke } });
+}
+
+/**
+ * The design with what is selected joined: the first of two nodes laid onto the second; else one stroke closed, or of
+ * two strokes the ends that are nearest to each other, of one that has an end selected that end. Null where nothing can
+ * be, and of more strokes.
+ *
+ * @param {Design} design
+ * @param {Selection} selection
+ * @param {number} [reach] how far apart the ends of one stroke are that become one: others are joined by a further piece
+ * @returns {Joined | null}
+ */
+export function joinSelected(design, { strokes, nodes }, reach = 0) {
+    const isChosen = (/** @type {NodeRef} */ end) => nodes.some((node) => isSameNode(node, end));
+    if (nodes.length === 2) {
+        const isOne = shownEnds(design, nodes[0]).filter(isChosen).length === 2;
+        return isOne ? closeStroke(design, nodes[0], reach) : joinNodes(design, nodes[0], nodes[1]);
+    }
+    if (strokes.length === 1) return closeStroke(design, strokes[0], reach);
+    if (strokes.length !== 2) return null;
+    const [onto, from] = strokes.map((ref) => {
+        const ends = shownEnds(design, ref);
+        return ends.some(isChosen) ? ends.filter(isChosen) : ends;
     });
-    return ends
-        .flatMap((onto, k) => ends.slice(k + 1).map((from) => ({ from, onto, apart: distance(from.at, onto.at) })))
-        .filter(({ from, onto }) => strokes.length === 1 || !isSameStroke(from, onto))
+    return onto
+        .flatMap((to) => from.map((end) => ({ end, to, apart: distance(end.at, to.at) })))
         .sort((one, other) => one.apart - other.apart)
-        .reduce((found, { from, onto }) => found ?? joinNodes(design, from, onto), /** @type {Joined | null} */ (null));
+        .reduce((found, { end, to }) => found ?? joinNodes(design, end, to), /** @type {Joined | null} */ (null));
+}
+
+/**
+ * Why `joinSelected` joins nothing, and what to do.
+ *
+ * @param {Design} design
+ * @param {Selection} selection
+ * @returns {string}
+ */
+export function whyNotJoined(design, { strokes, nodes }) {
+    const refs = nodes.length === 2 ? nodes : strokes;
+    if (refs.length === 2 && refs[0].site !== refs[1].site) {
+        return "These strokes are of two sites: the list of strokes has a field that gives one to the other's site.";
+    }
+    const joins = (/** @type {Stroke | undefined} */ stroke) => stroke && (isStraight(stroke) || isChain(stroke));
+    if (refs.length === 2 && !refs.every((ref) => joins(strokeAt(design, ref)))) {
+        return "Curves through points, B-splines, circles, points and drawings join no others: lines, pen curves and SVG paths do.";
+    }
+    return "Select an open stroke of three points or more, or two open strokes of one site, or an end of each with Shift.";
 }

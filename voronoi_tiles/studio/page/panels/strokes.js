@@ -177,11 +177,10 @@ export class StrokePanel extends HTMLElement {
                 "aria-expanded": chosen,
                 "data-key": `stroke ${ref.site} ${ref.stroke}`,
                 onclick: (/** @type {MouseEvent} */ event) => {
-                    const others = event.shiftKey
-                        ? state.selection.strokes.filter((other) => !isSameStroke(other, ref))
-                        : [];
+                    const more = event.shiftKey || event.ctrlKey || event.metaKey;
+                    const others = more ? state.selection.strokes.filter((other) => !isSameStroke(other, ref)) : [];
                     store.set({
-                        selection: { strokes: chosen ? others : [...others, ref], nodes: [] },
+                        selection: { strokes: more && chosen ? others : [...others, ref], nodes: [] },
                         site: ref.site,
                         tool: "select",
                     });

@@ -175,7 +175,11 @@ export function listen(hands, toolbox, canvas, run) {
             return true;
         }
         if (event.key === "Escape") {
-            return toolbox.tool.cancel?.(hands) ?? false;
+            const said = store.state.trouble?.quiet ?? false;
+            if (said) {
+                store.set({ trouble: null });
+            }
+            return toolbox.tool.cancel?.(hands) || said;
         }
         if (toolbox.tool.key_down?.(event.key, event, hands)) {
             return true;

@@ -2,7 +2,7 @@
 // Select, move and edit: strokes, and the nodes and handles of those that are selected.
 
 import { addStroke, isSameNode, isSameStroke, moveStrokes, removeStrokes, replaceStroke } from "../model/design.js";
-import { joinNodes } from "../model/joining.js";
+import { joinNodes, shownEnds } from "../model/joining.js";
 import { nearestCopy, nearestNode, nearestStroke, nodesIn, strokesIn } from "../model/hit.js";
 import { deleteNodes, insertNode, moveNodes, pullHandles, toggleSmooth } from "../model/nodes.js";
 import { distance } from "../model/plane.js";
@@ -131,7 +131,7 @@ export const select = {
     title: "Select",
     icon: "select",
     cursor: "default",
-    help: "Click a stroke, drag its points; ends join where they meet. Double click puts in a point, or smooths a corner.",
+    help: "Click a stroke, drag its points; ends of lines and pen curves join where they meet. Double click puts in a point, or smooths a corner.",
     down(touch, hands) {
         const { store } = hands;
         const { selection } = store.state;
@@ -148,7 +148,14 @@ export const select = {
         if (hit) {
             const ref = bare(hit.ref);
             const strokes = clicked(selection.strokes, ref, isSameStroke, touch.shift);
-            store.set({ selection: { strokes, nodes: [] }, site: ref.site });
+            // With Shift the ends that are selected stay so, and the one that is clicked is another: J joins them.
+            const kept = touch.shift
+                ? selection.nodes.filter((node) => strokes.some((one) => isSameStroke(one, node)))
+                : [];
+            const ends = kept.length && strokes.includes(ref) ? shownEnds(store.settled, ref) : [];
+            const shown = ends.map((node) => ({ ...node, ref }));
+            const end = nearestNode(shown, touch.raw, touch.reach);
+            store.set({ selection: { strokes, nodes: end ? [...kept, nodeRef(end)] : kept }, site: ref.site });
             // A copy leads to its stroke, which is dragged by itself.
             drag = own ? { ...still, kind: "strokes", from: touch.raw } : still;
             return;
@@ -191,7 +198,8 @@ export const select = {
                 ),
             );
         } else {
-            const { selection } = store.state;
+            const { strokes, nodes } = store.state.selection;
+            const selection = { strokes, nodes: drag.kind === "nodes" ? nodes : [] };
             store.preview((design) =>
                 onto && isSameStroke(onto, drag.node.ref)
                     ? (joinNodes(design, nodeRef(drag.node), onto)?.design ?? design)

@@ -29,6 +29,9 @@ const TOUCH_REACH = 22;
 /** The share of the reach within which points are drawn to others. */
 const SNAPS = 0.7;
 
+/** How far apart ends are that meet; pixels. */
+export const MEETS = MOUSE_REACH * SNAPS;
+
 /** @type {Record<string, Tool>} */
 const byName = Object.fromEntries(TOOLS.map((tool) => [tool.name, tool]));
 
