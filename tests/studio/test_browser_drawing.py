@@ -378,6 +378,12 @@ def test_the_ends_that_are_chosen_are_joined(window: Window) -> None:
     page.keyboard.press("j")
     [joined] = window.strokes
     assert joined == {"polyline": [WING[2], WING[1], start, end]}
+    # A row that is chosen has the colour of the tool in hand, under the pointer as well.
+    alike = """is => {
+        const places = [".stroke:hover", "[data-tool][aria-pressed=true]"];
+        const [row, tool] = places.map((place) => document.querySelector(place));
+        return row && (getComputedStyle(row).backgroundColor === getComputedStyle(tool).backgroundColor) === is;
+    }"""
     for modifier, names in (
         (None, ["Line 1"]),
         ("Shift", []),
@@ -387,6 +393,7 @@ def test_the_ends_that_are_chosen_are_joined(window: Window) -> None:
     ):
         page.locator(".stroke").click(modifiers=[modifier] if modifier else [])
         page.locator(f".stroke[aria-expanded={'true' if names else 'false'}]").wait_for()
+        page.wait_for_function(alike, arg=bool(names))
         assert chosen(window) == names
 
 
