@@ -695,7 +695,7 @@ def test_a_tile_is_made_as_wide_as_it_shall_be(window: Window) -> None:
 
 
 def test_a_tool_gets_another_letter(window: Window) -> None:
-    """In the help: a letter that is taken is said, tooltips follow, the browser keeps it; and back again."""
+    """In the help, which says so: the tool that has it gets the other, tooltips follow, the browser keeps it."""
     page = window.page
     pen = page.locator("[data-tool=pen]")
 
@@ -707,18 +707,27 @@ def test_a_tool_gets_another_letter(window: Window) -> None:
     page.keyboard.press("q")  # goes into no field
     page.get_by_label("Letter of Pen", exact=True).focus()
     page.keyboard.press("l")
-    page.get_by_role("alert").get_by_text("L is the letter of “Line”").wait_for()
-    assert letters() == ("Pen (P)", "p")
+    page.locator("[data-tool=line][title='Line (P)']").wait_for()
+    assert letters() == ("Pen (L)", "l")
+    assert page.get_by_label("Letter of Line", exact=True).input_value() == "P"
+    page.get_by_text("Type over a letter to change it").wait_for()
+    page.keyboard.press("Backspace")
+    page.keyboard.press("g")
+    page.get_by_role("alert").get_by_text("G does something else").wait_for()
     page.keyboard.press("Backspace")
     page.keyboard.press("q")
-    assert page.get_by_text("is the letter of").count() == 0
+    assert page.get_by_text("does something else").count() == 0
     page.keyboard.press("Escape")
     assert letters() == ("Pen (Q)", "q")
     page.keyboard.press("p")
+    page.locator("[data-tool=line][aria-pressed=true]").wait_for()
     assert pen.get_attribute("aria-pressed") == "false"
     page.keyboard.press("q")
     assert pen.get_attribute("aria-pressed") == "true"
-    assert page.evaluate("() => JSON.parse(localStorage.getItem('voronoi_tiles studio')).letters") == {"pen": "q"}
+    assert page.evaluate("() => JSON.parse(localStorage.getItem('voronoi_tiles studio')).letters") == {
+        "pen": "q",
+        "line": "p",
+    }
     page.keyboard.press("?")
     page.get_by_role("button", name="Reset the letters").click()
     assert page.get_by_label("Letter of Pen", exact=True).input_value() == "P"

@@ -1,7 +1,7 @@
 // @ts-check
 // The tools' letters in the help, where they are changed.
 
-import { letterOf, letterProblem } from "../tools/letters.js";
+import { letterOf, letterProblem, withLetter } from "../tools/letters.js";
 import { TOOLS } from "../tools/toolbox.js";
 import { make } from "./elements.js";
 
@@ -23,11 +23,12 @@ export function lettersPart(store) {
             onfocus: () => input.select(),
             oninput() {
                 const letter = input.value.toLowerCase();
-                const problem = letterProblem(tool, letter, store.state.letters);
+                const problem = letterProblem(letter);
                 said.textContent = problem ?? "";
                 input.setAttribute("aria-invalid", String(problem !== null));
                 if (!problem) {
-                    store.set({ letters: { ...store.state.letters, [tool.name]: letter } });
+                    store.set({ letters: withLetter(tool, letter, store.state.letters) });
+                    showAll();
                 }
             },
             onblur: () => show(),
@@ -38,6 +39,7 @@ export function lettersPart(store) {
         };
         return { tool, input, show };
     });
+    const showAll = () => fields.forEach(({ show }) => show());
     const said = make("p", { class: "error", role: "alert" });
     const reset = make(
         "button",
@@ -45,7 +47,7 @@ export function lettersPart(store) {
             type: "button",
             onclick() {
                 store.set({ letters: {} });
-                fields.forEach(({ show }) => show());
+                showAll();
                 said.textContent = "";
             },
         },
@@ -55,6 +57,7 @@ export function lettersPart(store) {
         "section",
         {},
         make("h3", {}, "Tools"),
+        make("p", { class: "note" }, "Type over a letter to change it; a tool that has the new one gets the old one."),
         make(
             "dl",
             { class: "keys" },

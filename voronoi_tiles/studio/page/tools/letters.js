@@ -14,12 +14,12 @@ export const COMMAND_LETTERS = { e: "toggle-elements", g: "toggle-grid", k: "tog
  * @returns {Letters}
  */
 export function lettersOf(kept) {
-    /** @type {Record<string, string>} */
-    const given = {};
+    /** @type {Letters} */
+    let given = {};
     for (const tool of TOOLS) {
         const letter = kept?.[tool.name];
-        if (typeof letter === "string" && !letterProblem(tool, letter, given)) {
-            given[tool.name] = letter;
+        if (typeof letter === "string" && !letterProblem(letter)) {
+            given = withLetter(tool, letter, given);
         }
     }
     return given;
@@ -33,20 +33,25 @@ export function lettersOf(kept) {
 export const letterOf = (tool, given) => given[tool.name] ?? tool.key;
 
 /**
- * Why a tool cannot have a letter, null where it can.
- * @param {import("./tool.js").Tool} tool
+ * Why no tool can have a letter, null where one can.
  * @param {string} letter
- * @param {Letters} given
  * @returns {string | null}
  */
-export function letterProblem(tool, letter, given) {
+export function letterProblem(letter) {
     if (!/^[\p{Ll}\p{Lo}\p{Nd}]$/u.test(letter)) {
         return "Give one letter or digit.";
     }
-    const shown = letter.toUpperCase();
-    if (letter in COMMAND_LETTERS) {
-        return `${shown} does something else, as the lists here say.`;
-    }
-    const other = TOOLS.find((one) => one !== tool && letterOf(one, given) === letter);
-    return other ? `${shown} is the letter of “${other.title}”: give that another one first.` : null;
+    return letter in COMMAND_LETTERS ? `${letter.toUpperCase()} does something else, as the lists here say.` : null;
+}
+
+/**
+ * The letters after a tool was given one; another tool that had it gets the one that this tool had.
+ * @param {import("./tool.js").Tool} tool
+ * @param {string} letter
+ * @param {Letters} given
+ * @returns {Letters}
+ */
+export function withLetter(tool, letter, given) {
+    const other = TOOLS.find((one) => letterOf(one, given) === letter);
+    return { ...given, ...(other && { [other.name]: letterOf(tool, given) }), [tool.name]: letter };
 }
