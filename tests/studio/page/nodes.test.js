@@ -546,3 +546,44 @@ test("the nearest point of a curve is nearer than all that are sampled", () => {
     }
     assert.equal(nearestOn(new Float64Array(0), [0, 0]), null);
 });
+
+/** The digits behind the point that a number is written with. */
+const digits = (value) => (String(value).split(".")[1] ?? "").length;
+
+test("what the pen and pulled handles make is written as short as what they are made of", () => {
+    const own = placementOf({}, {});
+    for (let k = 1; k < 200; k++) {
+        const [x, y] = [(7 * k + 1) / 10, (3 * k - 50) / 10];
+        const points = [
+            { at: [5.3, 0.1], in: [-x, -y], out: [x, y] },
+            { at: [y, x], in: [-0.7, -x], out: [0.7, x] },
+            { at: [30.7, 8.9], in: [-y, 0.3], out: [y, -0.3] },
+        ];
+        const drawn = penStroke(points, own);
+        const broken = penStroke([points[0], { ...points[1], in: [x, 0.9] }, points[2]], own);
+        const to = [(7 * k + 4) / 10, y];
+        const pulled = pullHandles(drawn, own, 3, to);
+        const corner = pullHandles({ polyline: points.map(({ at: place }) => place) }, own, 1, [x, y]);
+        for (const stroke of [drawn, broken, pulled, corner])
+            for (const value of Object.values(stroke).flat(2)) assert.ok(digits(value) <= 1, JSON.stringify(stroke));
+        assertNear(drawn.tangents[0], [3 * x, 3 * y], 1e-12);
+        assertNear(pulled.tangents[1], [3 * (to[0] - y), 3 * (y - x)], 1e-12);
+    }
+});
+
+test("a point that is put into a line or a curve through points is written short where that is asked for", () => {
+    for (const kind of ["segment", "polyline", "catmull_rom", "bspline"]) {
+        const points = [
+            [1, 2],
+            [7, 5],
+            [3, 9],
+            [-2, 4],
+        ].slice(0, kind === "segment" ? 2 : 4);
+        const stroke = { [kind]: points };
+        const [exact, short] = [0, 1e-3].map((pixel) => insertNode(stroke, 0, 1 / 3, pixel));
+        const [at, to] = [exact, short].map((one) => one[kindOf(one)].find((point) => !points.includes(point)));
+        assert.ok(to.every((value) => digits(value) <= 3));
+        assertNear(to, at, 5.1e-4);
+        assert.equal(exact[kindOf(exact)].length, short[kindOf(short)].length);
+    }
+});

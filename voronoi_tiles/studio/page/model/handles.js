@@ -2,7 +2,7 @@
 /** The handles of anchors: pulled out, taken back, made even, and as the pen draws them. */
 
 import { anchorOf, asBezier, chainsOf, handlesOf, isClosed, isSmooth, numbered, strokesOf } from "./chains.js";
-import { inverse, length, minus, plus, same, scaled, turned, unit } from "./plane.js";
+import { inverse, length, minus, plus, same, scaled, tidyMinus, tidyPlus, tidyScaled, turned, unit } from "./plane.js";
 import { kindOf, pointsOf, tangentsOf, unplace } from "./strokes.js";
 
 /** @typedef {import("./plane.js").Point} Point */
@@ -25,7 +25,7 @@ export function pullHandles(stroke, placement, node, to) {
     const handle = unplace(placement, to);
     return withAnchor(stroke, node, (chain, anchor) => {
         const [before, after] = handlesOf(chain, anchor);
-        const other = minus(scaled(chain[anchor], 2), handle);
+        const other = tidyMinus(scaled(chain[anchor], 2), handle);
         // At the end of an open chain the handle before is the one in the hand.
         return after < 0 ? [handle, null] : [before < 0 ? null : other, handle];
     });
@@ -120,7 +120,7 @@ function withAnchor(stroke, node, handles) {
 function withTangent(stroke, index, at, [before, after]) {
     const points = pointsOf(stroke);
     const isTwin = (/** @type {number} */ k) => index === 0 && k === points.length - 1 && isClosed(points);
-    const tangent = after ? scaled(minus(after, at), 3) : scaled(minus(at, before ?? at), 3);
+    const tangent = tidyScaled(after ? tidyMinus(after, at) : tidyMinus(at, before ?? at), 3);
     return { ...stroke, tangents: tangentsOf(stroke).map((old, k) => (k === index || isTwin(k) ? tangent : old)) };
 }
 
@@ -149,9 +149,9 @@ export function penStroke(points, placement) {
     const isEven = points.every((point, k) => k === 0 || k === last || same(point.in, scaled(point.out, -1)));
     const closes = last > 0 && same(points[0].at, points[last].at);
     if (isEven && (!closes || same(points[last].in, scaled(points[0].out, -1)))) {
-        const tangents = own.map(({ before, after }, k) => scaled(k < last ? after : scaled(before, -1), 3));
+        const tangents = own.map(({ before, after }, k) => tidyScaled(k < last ? after : scaled(before, -1), 3));
         return { hermite: own.map(({ at }) => at), tangents };
     }
-    const chain = own.flatMap(({ at, before, after }) => [plus(at, before), at, plus(at, after)]);
+    const chain = own.flatMap(({ at, before, after }) => [tidyPlus(at, before), at, tidyPlus(at, after)]);
     return { bezier: chain.slice(1, -1) };
 }

@@ -174,5 +174,11 @@ export function tidySum(x, y) {
 /** A point moved by a vector, each coordinate a tidy sum. @type {(p: Point, by: Point) => Point} */
 export const tidyPlus = (p, by) => [tidySum(p[0], by[0]), tidySum(p[1], by[1])];
 
+/** The vector from q to p, each coordinate a tidy sum. @type {(p: Point, q: Point) => Point} */
+export const tidyMinus = (p, q) => tidyPlus(p, scaled(q, -1));
+
 /** The product of two numbers with at most 15 significant digits. @type {(x: number, y: number) => number} */
 export const tidyProduct = (x, y) => Number((x * y).toPrecision(15));
+
+/** A vector times a number, each coordinate a tidy product. @type {(p: Point, factor: number) => Point} */
+export const tidyScaled = (p, factor) => [tidyProduct(p[0], factor), tidyProduct(p[1], factor)];

@@ -4,6 +4,7 @@
 import { asBezier, chainsOf, isClosed, numbered, pieces, strokesOf, withKind } from "./chains.js";
 import { between, length, minus, plus, same, scaled } from "./plane.js";
 import { pointOn } from "./nearest.js";
+import { rounded } from "./snapping.js";
 import { cubicsOf, kindOf, pointsOf, tangentsOf } from "./strokes.js";
 
 /** @typedef {import("./plane.js").Point} Point */
@@ -22,9 +23,10 @@ const LEAST = { segment: [2, 2], polyline: [2, 3], catmull_rom: [2, 3], bspline:
  * @param {Stroke} stroke
  * @param {number} piece
  * @param {number} t
+ * @param {number} [pixel] what a listed point is rounded by, as one that is placed is; 0: not at all
  * @returns {Stroke}
  */
-export function insertNode(stroke, piece, t) {
+export function insertNode(stroke, piece, t, pixel = 0) {
     const kind = kindOf(stroke);
     switch (kind) {
         case "point":
@@ -43,7 +45,8 @@ export function insertNode(stroke, piece, t) {
             if (8 * piece >= cubics.length) return stroke;
             // The piece k of a B-spline is near its points k + 1 and k + 2.
             const place = (piece + (kind === "bspline" ? 2 : 1)) % (points.length + 1);
-            points.splice(place, 0, pointOn(cubics, piece, t));
+            const at = pointOn(cubics, piece, t);
+            points.splice(place, 0, pixel ? rounded(at, pixel) : at);
             return kind === "segment" ? withKind(stroke, "polyline", points) : { ...stroke, [kind]: points };
         }
     }

@@ -194,7 +194,7 @@ export const select = {
             const { node } = drag;
             store.preview((design) =>
                 changeNodes(design, [nodeRef(node)], (stroke, entry) =>
-                    pullHandles(stroke, entry.placement, node.node, touch.raw),
+                    pullHandles(stroke, entry.placement, node.node, rounded(touch.raw, 1 / hands.camera.scale)),
                 ),
             );
         } else {
@@ -274,7 +274,13 @@ export const select = {
                     replaceStroke(
                         design,
                         bare(hit.ref),
-                        insertNode(design.site[hit.ref.site].strokes[hit.ref.stroke], hit.piece, hit.t),
+                        // As finely that a straight line stays one to the eye.
+                        insertNode(
+                            design.site[hit.ref.site].strokes[hit.ref.stroke],
+                            hit.piece,
+                            hit.t,
+                            touch.reach / 1000,
+                        ),
                     ),
                 { selection: { strokes: [bare(hit.ref)], nodes: [] } },
             );

@@ -3,6 +3,8 @@
 
 import { addStroke } from "../model/design.js";
 import { fit } from "../model/freehand.js";
+import { tidyProduct } from "../model/plane.js";
+import { rounded } from "../model/snapping.js";
 import { placementOf, unplace } from "../model/strokes.js";
 
 /**
@@ -53,6 +55,14 @@ export const point = {
 /** @type {Point | null} */
 let middle = null;
 
+/**
+ * The radius of a circle whose rim is at a touch.
+ * @param {Point} centre
+ * @param {import("./tool.js").Touch} touch
+ * @param {Hands} hands
+ */
+const radiusTo = ([x, y], { at }, { camera }) => rounded([Math.hypot(at[0] - x, at[1] - y), 0], 1 / camera.scale)[0];
+
 /** @type {Tool} */
 export const circle = {
     name: "circle",
@@ -75,12 +85,12 @@ export const circle = {
             return;
         }
         const centre = middle;
-        const radius = Math.hypot(touch.at[0] - centre[0], touch.at[1] - centre[1]);
+        const radius = radiusTo(centre, touch, hands);
         if (radius > touch.reach / 4) {
             add(
                 hands,
                 "circle",
-                (unplaced, factor) => ({ circle: unplaced(centre), radius: radius * factor }),
+                (unplaced, factor) => ({ circle: unplaced(centre), radius: tidyProduct(radius, factor) }),
                 "preview",
             );
         }
@@ -88,10 +98,13 @@ export const circle = {
     up(touch, hands) {
         // A click without a drag: the rim is clicked next.
         const centre = middle;
-        const radius = centre ? Math.hypot(touch.at[0] - centre[0], touch.at[1] - centre[1]) : 0;
+        const radius = centre ? radiusTo(centre, touch, hands) : 0;
         if (centre && radius > touch.reach / 2) {
             middle = null;
-            add(hands, "circle", (unplaced, factor) => ({ circle: unplaced(centre), radius: radius * factor }));
+            add(hands, "circle", (unplaced, factor) => ({
+                circle: unplaced(centre),
+                radius: tidyProduct(radius, factor),
+            }));
         }
     },
     cancel(hands) {
