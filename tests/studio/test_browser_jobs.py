@@ -116,13 +116,24 @@ def test_errors_stand_by_their_fields(window: Window) -> None:
     gap.fill("1 +")
     page.wait_for_function("() => document.querySelector('report-panel [role=alert]')")
     assert gap.input_value() == "1 +"
-    gap.fill("")
     gap.blur()
-    alert.get_by_text("no whole tile fits on the sheet").wait_for()
-    assert marked.count() == 0
+    wrong = panel.locator("[data-key=job-gap]:invalid")
+    wrong.wait_for()
     sheet.fill(JOB["sheet"])
     sheet.press("Enter")
+    panel.get_by_text("no whole tile fits on the sheet").wait_for(state="detached")
+    assert wrong.input_value() == "1 +"  # also in the panel that was made anew
+    assert "Write a length such as 12.5mm" in alert.inner_text()
+    assert alert.get_attribute("id") in (wrong.get_attribute("aria-describedby") or "").split()
+    assert marked.evaluate_all("all => all.map((one) => one.id)") == [gap.get_attribute("id")]
+    page.keyboard.press("Control+e")
+    page.locator("#banner").get_by_text("Gap, mm, under Job, cannot be read: 1 +").wait_for()
+    assert page.get_by_role("dialog").count() == 0
+    page.locator("#banner").get_by_role("button", name="Close").click()
+    gap.fill("")
+    gap.blur()
     alert.wait_for(state="detached")
+    assert marked.count() == 0
 
 
 def test_every_field_is_explained(window: Window) -> None:

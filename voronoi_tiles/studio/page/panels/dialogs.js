@@ -216,6 +216,18 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
 
         export() {
             const { tables, job, file } = store.state;
+            /** @type {HTMLInputElement | null} */
+            const unread = document.querySelector("job-panel input:invalid");
+            if (unread) {
+                const label = unread.labels?.[0].textContent;
+                store.set({
+                    trouble: {
+                        message: `${label}, under Job, cannot be read: ${unread.value || "it is empty"}`,
+                        remedy: "Mend it there, or press Escape in it, and export again.",
+                    },
+                });
+                return;
+            }
             const stem = file.replace(/\.[^.]*$/, "") || "tiles";
             const name = make("input", { type: "text", ".value": stem, autocomplete: "off" });
             const format = make(

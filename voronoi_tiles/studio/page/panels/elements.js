@@ -41,16 +41,31 @@ let count = 0;
  */
 export function field(label, control, { help, error } = {}) {
     const id = (control.id ||= `field-${++count}`);
-    const wrong = error && make("p", { class: "error", role: "alert", id: `${id}-error` }, error);
     const means = help && make("p", { class: "note", id: `${id}-help` }, help);
-    const said = [wrong, means].filter(Boolean).map((one) => one.id);
-    if (said.length) {
-        control.setAttribute("aria-describedby", said.join(" "));
+    const box = make("div", { class: "field" }, make("label", { for: id }, label), control, means);
+    if (means) {
+        control.setAttribute("aria-describedby", means.id);
     }
-    if (wrong) {
-        control.setAttribute("aria-invalid", "true");
+    if (error) {
+        mark(control, error);
     }
-    return make("div", { class: "field" }, make("label", { for: id }, label), control, wrong, means);
+    return box;
+}
+
+/**
+ * Say below a control what is wrong with it; without a text, nothing is.
+ * @param {HTMLElement} control
+ * @param {string | null} [error]
+ */
+export function mark(control, error) {
+    const id = `${(control.id ||= `field-${++count}`)}-error`;
+    const said = (control.getAttribute("aria-describedby") ?? "").replace(id, "").trim();
+    document.getElementById(id)?.remove();
+    if (error) {
+        control.after(make("p", { class: "error", role: "alert", id }, error));
+    }
+    control.setAttribute("aria-invalid", String(Boolean(error)));
+    control.setAttribute("aria-describedby", `${error ? id : ""} ${said}`.trim());
 }
 
 /** The label of an option of a job. @param {string} name */
@@ -66,14 +81,16 @@ export const inLabels = (text) =>
     );
 
 /**
- * A field for a length, which takes arithmetic and units: "12.5mm + 1/4in".
+ * A field for a length, which takes arithmetic and units: "12.5mm + 1/4in". What cannot be read stays in it, `:invalid`,
+ * with the reason below it.
  * @param {number | null} value millimetres, or in `unit`
  * @param {string} unit what it is shown in, and what a bare number means
- * @param {(value: number) => void} change called with the number in `unit`
+ * @param {(value: number) => void} change called with the number in `unit`; may throw what is wrong with it
  * @param {Record<string, any>} [attributes]
+ * @param {() => void} [empty] called where nothing is left in it; without this it needs a length
  * @returns {HTMLInputElement}
  */
-export function lengthField(value, unit, change, attributes = {}) {
+export function lengthField(value, unit, change, attributes = {}, empty) {
     const input = make("input", {
         type: "text",
         inputmode: "decimal",
@@ -84,27 +101,39 @@ export function lengthField(value, unit, change, attributes = {}) {
         ".defaultValue": value === null ? "" : shown(value, unit),
     });
     const old = input.value;
+    const say = (/** @type {string} */ error) => {
+        input.setCustomValidity(error);
+        mark(input, error);
+    };
     const read = () => {
-        if (input.value === old) {
-            return;
-        }
         try {
-            change(evaluate(input.value, unit));
+            if (empty && !input.value.trim()) {
+                empty();
+            } else if (input.value !== old) {
+                change(evaluate(input.value, unit));
+            }
             input.defaultValue = input.value;
-            input.setCustomValidity("");
+            say("");
         } catch (error) {
-            input.setCustomValidity(error instanceof Error ? error.message : String(error));
-            input.reportValidity();
+            say(error instanceof Error ? error.message : String(error));
         }
     };
     input.addEventListener("change", read);
     input.addEventListener("keydown", (/** @type {KeyboardEvent} */ event) => {
         if (event.key === "Escape") {
             input.value = old;
-            input.setCustomValidity("");
+            say("");
         }
     });
     return input;
+}
+
+/** A length that is above zero. Throws an Error for people. @param {number} length */
+export function above(length) {
+    if (length > 0) {
+        return length;
+    }
+    throw new Error("This has to be above zero.");
 }
 
 /**
@@ -132,17 +161,29 @@ export function deferred(run, home) {
 }
 
 /**
- * Replace what an element holds and keep the focus on the control of the same data-key.
+ * Replace what an element holds and keep the focus on the control of the same data-key. A text that could not be read
+ * stays in its field, unless that is of something else by now.
  * @param {HTMLElement} parent
  * @param {Node[]} children
  */
 export function refill(parent, children) {
+    const unread = /** @type {HTMLInputElement[]} */ ([...parent.querySelectorAll("input:invalid")]);
     const active = document.activeElement;
     const key = active instanceof HTMLElement && parent.contains(active) ? active.dataset.key : undefined;
     const scroll = parent.parentElement?.scrollTop ?? 0;
     parent.replaceChildren(...children);
+    /** @param {string} name */
+    const control = (name) =>
+        /** @type {HTMLElement | null} */ (parent.querySelector(`[data-key="${CSS.escape(name)}"]`));
+    for (const { dataset, defaultValue, value } of unread) {
+        const again = control(dataset.key ?? "");
+        if (again instanceof HTMLInputElement && again.defaultValue === defaultValue) {
+            again.value = value;
+            again.dispatchEvent(new Event("change"));
+        }
+    }
     if (key) {
-        const again = /** @type {HTMLElement | null} */ (parent.querySelector(`[data-key="${CSS.escape(key)}"]`));
+        const again = control(key);
         again?.focus();
         if (again instanceof HTMLInputElement && again.type === "text") {
             again.select();

@@ -175,8 +175,8 @@ export class JobPanel extends HTMLElement {
                 unit,
                 (length) => this.#set(name, length * mm),
                 { "data-key": key, placeholder: "automatic" },
+                () => this.#set(name, undefined),
             );
-            input.addEventListener("change", () => input.value.trim() || this.#set(name, undefined));
             return field(`${label}, ${unit}`, input, said);
         }
         const input = make("input", {

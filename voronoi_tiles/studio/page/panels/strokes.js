@@ -18,7 +18,7 @@ import {
 import { joinSelected } from "../model/joining.js";
 import { moveNodes } from "../model/nodes.js";
 import { NOTHING, shownFactor } from "../store.js";
-import { lengthField, make, refill } from "./elements.js";
+import { lengthField, make, mark, refill } from "./elements.js";
 
 /**
  * @typedef {import("./panels.js").Context} Context
@@ -117,13 +117,10 @@ export class StrokePanel extends HTMLElement {
             "aria-label": `Name of site ${i + 1}`,
             "data-key": `name ${i}`,
             ".value": name,
-            oninput: () => field.setCustomValidity(""),
             onchange: () => {
                 const problem = nameProblem(state.design, i, field.value);
-                if (problem) {
-                    field.setCustomValidity(problem);
-                    field.reportValidity();
-                } else {
+                mark(field, problem);
+                if (!problem) {
                     store.edit("rename", (design) => renameSite(design, i, field.value));
                 }
             },

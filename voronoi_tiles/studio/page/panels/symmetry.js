@@ -6,7 +6,7 @@ import { shownFactor } from "../store.js";
 import { setGroup } from "../model/regroup.js";
 import { groupOf } from "../model/symmetry.js";
 import { drawThumbnail } from "../view/thumbnail.js";
-import { deferred, field, lengthField, make, refill } from "./elements.js";
+import { above, deferred, field, lengthField, make, refill } from "./elements.js";
 import { tracePart } from "./trace.js";
 
 /**
@@ -266,12 +266,8 @@ export class SymmetryPanel extends HTMLElement {
                     tile[name] * scale,
                     unit,
                     (wanted) => {
-                        if (wanted > 0) {
-                            const times = Number(
-                                (((design.scale ?? 1) * wanted) / (tile[name] * scale)).toPrecision(12),
-                            );
-                            store.edit("size", (old) => ({ ...old, scale: times }));
-                        }
+                        const times = (((design.scale ?? 1) * above(wanted)) / (tile[name] * scale)).toPrecision(12);
+                        store.edit("size", (old) => ({ ...old, scale: Number(times) }));
                     },
                     { "data-key": name },
                 ),

@@ -5,7 +5,7 @@ import { latticeOf } from "../model/symmetry.js";
 import { length, plus, scaled } from "../model/plane.js";
 import { shownFactor } from "../store.js";
 import { setTrace } from "../tools/trace.js";
-import { deferred, field, lengthField, make, refill } from "./elements.js";
+import { above, deferred, field, lengthField, make, refill } from "./elements.js";
 
 /**
  * The controls of the picture.
@@ -66,7 +66,7 @@ export function tracePart({ store }) {
         const width = lengthField(
             trace.width * factor,
             unit,
-            (value) => value > 0 && setTrace(store, { width: value / factor }),
+            (value) => setTrace(store, { width: above(value) / factor }),
             { "data-key": "picture width" },
         );
         const turn = make("input", {
