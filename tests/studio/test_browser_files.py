@@ -253,6 +253,31 @@ def test_a_drawing_is_dropped_and_opened(window: Window, tmp_path: Path) -> None
     assert window.text == before
 
 
+def test_a_design_is_opened(window: Window, studio: Studio, tmp_path: Path) -> None:
+    """In the place of what is drawn, the file from Share, too; undo leads back, and the file stays the same one."""
+    page = window.page
+    before = window.text
+    page.get_by_role("button", name="Share").click()
+    with page.expect_download() as found:
+        page.get_by_role("button", name="Download the file").click()
+    page.locator("dialog").wait_for(state="detached")
+    text = Path(found.value.path()).read_text(encoding="utf-8")
+    (tmp_path / "other.toml").write_text(
+        text.replace("{ polyline", '{ file = "eye.svg" }, { polyline'), encoding="utf-8"
+    )
+    page.get_by_role("button", name="Open").click()
+    page.get_by_label("File", exact=True).set_input_files(tmp_path / "other.toml")
+    page.wait_for_function("() => window.studio.design().site[0].strokes.length === 2")
+    page.locator("#banner").get_by_text(
+        f"other.toml names 'eye.svg', not to be found from {studio.folder}/work"
+    ).wait_for()
+    assert page.locator("#file").inner_text() == "work/bird.toml"
+    page.get_by_role("button", name="Undo").click()
+    assert window.text == before
+    assert saved_state(window) == "saved"
+    page.locator("#banner").get_by_role("button", name="Close").click()
+
+
 def test_copy_cut_and_paste(window: Window) -> None:
     """Strokes come back as they are; other programs get SVG, and theirs is taken."""
     page = window.page

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from pathlib import Path
 from typing import Any
 
@@ -49,6 +50,29 @@ def test_files_of_ours_open_again(tmp_path: Path, name: str, suffix: str) -> Non
     assert all(isinstance(value, str | int | float) for value in answer["job"].values())
     assert vt.Job(**answer["job"]) == job
     assert answer["notes"] == []
+
+
+@pytest.mark.parametrize("name", ["bird.toml", "BIRD.JSON"])
+def test_a_design_opens(tmp_path: Path, name: str) -> None:
+    """As it is, without a job; the files that it names are looked for beside the design that is drawn."""
+    text = """schema = 1
+group = "p4"  # by hand
+cell = { a = 60 }
+[[site]]
+name = "bird"
+strokes = [{ polyline = [[6.0, 9.0], [20, 4.0]] }, { file = "leaf.svg" }]
+art = "eye.svg"
+"""
+    (tmp_path / "eye.svg").write_text(LEAF)
+    design = tomllib.loads(text)
+    data = text if name.endswith("toml") else json.dumps(design)
+    answer = dropped(data.encode(), f"folder/{name}", 1.0, str(tmp_path))
+    assert answer["design"] == design
+    assert "job" not in answer
+    [note] = answer["notes"]
+    assert note == f"{name} names 'leaf.svg', not to be found from {tmp_path}: copy it there."
+    (tmp_path / "leaf.svg").write_text(LEAF)
+    assert dropped(data.encode(), name, 1.0, str(tmp_path)) == {"design": design, "notes": []}
 
 
 def test_a_drawing_becomes_strokes() -> None:
@@ -110,6 +134,22 @@ def test_what_is_nothing_to_draw_with_is_refused(data: bytes, said: str) -> None
     with pytest.raises(DesignError, match=said) as error:
         dropped(data, "../x\x07y", 1.0)
     assert error.value.file == "x\\x07y"
+
+
+@pytest.mark.parametrize(
+    ("data", "name", "said"),
+    [
+        (b"group = 'p1'\ncell = {", "a.toml", "line|not valid|TOML"),
+        (b"group = 'p1'\ncell = 5", "a.toml", "cell: must be a table"),
+        (b'{"schema": 1, "group": "p4", "tiles": []}', "tiles.json", "the outlines of tiles, not their design"),
+        (b"\xff", "a.json", "not a text in UTF-8"),
+    ],
+)
+def test_designs_that_cannot_be_opened_are_refused(data: bytes, name: str, said: str) -> None:
+    """As the command line refuses them, by their name."""
+    with pytest.raises(DesignError, match=said) as error:
+        dropped(data, name, 1.0)
+    assert error.value.file == name
 
 
 @pytest.mark.parametrize(

@@ -139,14 +139,14 @@ class _Routes:
         return await _answered(request, written)
 
     async def drop(self, request: Request) -> Response:
-        """What is in a drawing, or a file of ours, that was dropped onto the page."""
+        """What is in a drawing, a design, or a file of ours that was dropped onto the page."""
         asked = {name: request.query_params.get(name, "") for name in ("name", "units")}
         data = await _body_of(request, DROP_MAX)
         if data is None:
             return _failed(_TOO_LARGE, 413)
         if asked["units"] not in UNIT_MM:
             return _failed({"message": "The units of the design are missing.", "remedy": "Load the page again."}, 422)
-        answer = await self._desk.jobs.ask({"task": "drop", **asked}, data)
+        answer = await self._desk.jobs.ask({"task": "drop", **asked, "folder": self._desk.document.folder}, data)
         if answer.error is not None:
             return _failed(answer.error, 422)
         return Response(answer.body, media_type="application/json")

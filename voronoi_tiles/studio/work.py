@@ -87,11 +87,11 @@ def coupon(request: Request, _body: bytes) -> Done:
 
 
 def drop(request: Request, body: bytes) -> Done:
-    """What a drawing, or a file of ours, that is dropped onto the page holds."""
+    """What a drawing, a design, or a file of ours that is dropped onto the page holds."""
     from voronoi_tiles.base.units import UNIT_MM
     from voronoi_tiles.studio.drop import dropped
 
-    return text_of(dropped(body, request["name"], UNIT_MM[request["units"]]))
+    return text_of(dropped(body, request["name"], UNIT_MM[request["units"]], request["folder"]))
 
 
 def _file(name: str, data: bytes) -> Done:

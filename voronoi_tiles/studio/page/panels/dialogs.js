@@ -151,7 +151,7 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
         ).json();
         if (answer.design) {
             begin(answer.design);
-            store.set({ job: answer.job ?? {} });
+            store.set({ job: answer.job ?? store.state.job });
         } else {
             paste(store, trueSize(answer.strokes), 0);
         }
@@ -381,7 +381,7 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
         open() {
             const input = make("input", {
                 type: "file",
-                accept: ".svg,.svgz,.dxf,.pdf,.lbrn2",
+                accept: ".toml,.json,.svg,.svgz,.dxf,.pdf,.lbrn2",
                 onchange: () => input.closest("dialog").querySelector("button.first").click(),
             });
             const address = make("input", { type: "text", autocomplete: "off", spellcheck: "false" });
@@ -391,7 +391,7 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
                     make(
                         "p",
                         {},
-                        "An SVG or DXF drawing becomes strokes of the site in hand. A file that was exported from here opens as the design and the job that it was made of.",
+                        "A design (TOML or JSON) takes the place of what is drawn; undo leads back. So does an SVG, DXF, PDF or LightBurn file that was exported from here, with the job that it was made of. Another SVG or DXF drawing becomes strokes of the site in hand.",
                     ),
                     field("File", input),
                     field("Or a link from Share", address),
