@@ -584,6 +584,16 @@ def test_group_and_cell_by_the_keyboard(window: Window) -> None:
     for _ in range(4):
         page.get_by_role("button", name="Undo").click()
     assert window.text == before
+    # What was moved is said of what is there alone.
+    note = page.locator("symmetry-panel").get_by_text("in p4m its copies would touch")
+    page.locator("[data-group=p4m]").click()
+    note.wait_for()
+    page.get_by_role("button", name="Undo").click()
+    note.wait_for(state="detached")
+    page.get_by_role("button", name="Redo").click()
+    note.wait_for()
+    page.get_by_role("button", name="Undo").click()
+    assert window.text == before
 
 
 def test_strokes_come_from_the_group_before(window: Window) -> None:

@@ -47,7 +47,7 @@ export class SymmetryPanel extends HTMLElement {
     #waiting = [];
     /** @type {{rev: number, group: string, design: any}} the last picture that was asked for; they are numbered */
     #asked = { rev: 0, group: "", design: null };
-    /** @type {{from: any, made: any} | null} the design before groups were tried, and what the last one made of it */
+    /** @type {{from: any, made: any, note: string} | null} the design before groups were tried, what the last one made of it */
     #tried = null;
 
     /** @param {Context} context */
@@ -92,6 +92,7 @@ export class SymmetryPanel extends HTMLElement {
             button.setAttribute("aria-checked", String(on));
             button.tabIndex = on ? 0 : -1;
         }
+        this.#note.textContent = this.#tried?.made === state.design ? this.#tried.note : "";
         this.#heading.textContent = `Group ${inWords(groupOf(state.design, state.tables))}`;
         refill(this.#cell, this.#cellFields(state));
         clearTimeout(this.#timer);
@@ -156,8 +157,7 @@ export class SymmetryPanel extends HTMLElement {
         const from = this.#origin;
         const { design, note } = this.#inGroup(from, name);
         store.edit("group", () => design);
-        this.#tried = { from, made: store.settled };
-        this.#note.textContent = note;
+        this.#tried = { from, made: store.settled, note };
     }
 
     /** Ask for pictures of this drawing in all groups, where they are looked at. */
