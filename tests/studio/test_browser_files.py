@@ -368,6 +368,7 @@ def test_a_new_design_in_a_file_of_its_own(window: Window, studio: Studio) -> No
     page = window.page  # which ends with the new one: this test is the last
     draw_a_line(window)
     drawn = window.strokes
+    page.get_by_role("tab", name="Report").click()
     page.get_by_role("button", name="New", exact=True).click()
     page.get_by_text("What is not saved of work/bird.toml is kept as a copy").wait_for()
     page.get_by_label("Name", exact=True).fill("leaf")
@@ -381,6 +382,16 @@ def test_a_new_design_in_a_file_of_its_own(window: Window, studio: Studio) -> No
     assert page.get_by_role("button", name="Undo").is_disabled()
     leaf = studio.folder / "work/leaf.toml"
     assert not leaf.exists()
+    assert page.get_by_role("tab", name="Drawing").get_attribute("aria-selected") == "true"
+    page.get_by_role("tab", name="Symmetry").click()
+    page.locator("[data-group=p2]").click()
+    page.reload()
+    window.load()
+    recovery = page.get_by_role("dialog", name="Something was not saved")
+    recovery.get_by_text("It was never saved.").wait_for()
+    assert recovery.get_by_role("button", name="Begin anew").is_visible()
+    recovery.get_by_role("button", name="Take the copy").click()
+    assert window.design["group"] == "p2"
     window.save()
     assert tomllib.loads(leaf.read_text(encoding="utf-8")) == window.design
     assert tomllib.loads((studio.folder / "work/bird.toml").read_text(encoding="utf-8")) == DESIGN

@@ -189,9 +189,11 @@ def test_a_new_design_is_begun_beside_another(file: Path, opens: Opens) -> None:
         assert leaf.path == str(file.parent / "leaf.toml")
         assert leaf.opened()["saved"] is False
         assert not Path(leaf.path).exists()
-        for name in ("taken", "taken.toml", file.name, "leaf"):
-            with pytest.raises(DesignError, match="is there already, or is drawn now"):
+        for name in ("taken", "taken.toml", file.name):
+            with pytest.raises(DesignError, match="is there already"):
                 document.beside(name)
+        with pytest.raises(DesignError, match="that a studio has open"):
+            document.beside("leaf")
         with closing(document.beside("")) as free, closing(document.beside("")) as next_free:
             assert [Path(one.path).name for one in (free, next_free)] == ["design.toml", "design-2.toml"]
     for name in ("../leaf", "a/b.toml", "c:leaf", ".hidden", "le\naf", "\0", "..", "x" * 200):

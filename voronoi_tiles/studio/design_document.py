@@ -107,7 +107,10 @@ class Document:
             if not document._recovery.holder:
                 return document
             document.close()  # a studio, this one it may be, has a new design of this name
-        raise DesignError("is there already, or is drawn now", file=path, remedy="Give the new design another name.")
+            what = "is the name of a design that a studio has open"
+        else:
+            what = "is there already"
+        raise DesignError(what, file=path, remedy="Give the new design another name.")
 
     def opened(self, *, recover: bool = True) -> dict[str, Any]:
         """The design as it is in the file now, which counts as read: what a page that opens is told.

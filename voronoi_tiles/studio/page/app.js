@@ -478,6 +478,7 @@ link.on("opened", (message) => {
         store.set({ file: message.file, trouble });
     } else {
         store.open(message.design, { file: message.file, trouble });
+        openTab(/** @type {HTMLButtonElement} */ (element("tab-drawing")));
         stage.fit();
         home = link.home = found;
         const trace = { ...NO_TRACE, ...laidOf(kept(`voronoi_tiles trace ${home}`)) };
@@ -486,7 +487,7 @@ link.on("opened", (message) => {
     store.keep(message.saved ? message.design : null);
     const shared = openShared();
     if (message.recovery) {
-        ask.recover(message.recovery);
+        ask.recover(message);
     } else if (!shared && !message.saved) {
         void ask.gallery();
     }

@@ -344,7 +344,7 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
 
         begin() {
             const { file, saved } = store.state;
-            const name = make("input", { type: "text", placeholder: "design.toml", autocomplete: "off" });
+            const name = make("input", { type: "text", autocomplete: "off" });
             const kept = `What is not saved of ${file} is kept as a copy, which is offered when it is opened again.`;
             open(
                 "New design",
@@ -465,18 +465,21 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
             box.querySelector("footer button")?.focus({ preventScroll: true });
         },
 
-        /** @param {{design: any, at: string}} recovery */
-        recover({ design, at }) {
+        /** @param {{recovery: {design: any, at: string}, saved: boolean}} message */
+        recover({ recovery: { design, at }, saved }) {
             open(
                 "Something was not saved",
                 [
                     make(
                         "p",
                         {},
-                        `A copy of what was drawn last, at ${new Date(at).toLocaleString()}, is newer than the file.`,
+                        `There is a copy of what was drawn last, at ${new Date(at).toLocaleString()}. ${saved ? "It is newer than the file." : "It was never saved."}`,
                     ),
                 ],
-                [{ label: "Take the copy", first: true, run: () => begin(design) }, { label: "Stay with the file" }],
+                [
+                    { label: "Take the copy", first: true, run: () => begin(design) },
+                    { label: saved ? "Stay with the file" : "Begin anew" },
+                ],
             );
         },
 
