@@ -79,7 +79,7 @@ export function tracePart({ store }) {
         const button = (/** @type {string} */ label, /** @type {() => void} */ onclick, more = {}) =>
             make("button", { type: "button", "data-key": label, onclick, ...more }, label);
         refill(place, [
-            make("div", { class: "point" }, make("span", {}, "Middle"), coordinate(0), coordinate(1)),
+            make("div", { class: "field point" }, make("span", {}, "Middle"), coordinate(0), coordinate(1)),
             field(`Picture width, ${unit}`, width),
             field("Picture turn, degrees", turn),
             make(
