@@ -172,11 +172,13 @@ def test_touching_copies_are_shown_where_they_touch(window: Window) -> None:
     page.keyboard.press("Enter")
     window.wait("refused")
     assert "touches" in page.get_by_role("alert").first.inner_text()
+    assert page.locator("#measure").inner_text() == ""
     page.locator("#picture").wait_for(state="visible")
     page.keyboard.press("Control+z")
     page.keyboard.press("Control+z")
     window.wait()
     assert page.locator("#banner").is_hidden()
+    assert " x " in page.locator("#measure").inner_text()
 
 
 def test_everything_by_the_keyboard(window: Window) -> None:

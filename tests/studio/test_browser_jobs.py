@@ -170,6 +170,16 @@ def test_files_are_those_of_the_command_line(window: Window, studio: Studio, tmp
             found.save_as(tmp_path / "bird.svg")
 
     before = window.design
+    fillet = page.get_by_label("Fillet, mm")
+    page.get_by_role("tab", name="Job").click()
+    for length in ("1", "0"):
+        fillet.fill(length)
+        fillet.press("Enter")
+    page.keyboard.press("Control+e")
+    said = page.get_by_role("dialog").get_by_text("The job: ").inner_text()
+    assert "sheet 300x200mm" in said
+    assert "fillet" not in said
+    page.keyboard.press("Escape")
     page.get_by_role("tab", name="Drawing").click()
     window.choose("Line 1")
     page.locator("#overlay").focus()
@@ -181,6 +191,7 @@ def test_files_are_those_of_the_command_line(window: Window, studio: Studio, tmp
     page.get_by_label("File", exact=True).set_input_files(tmp_path / "bird.svg")
     page.locator("dialog").wait_for(state="detached")
     assert window.design == before
+    assert page.get_by_label("Sheet", exact=True).input_value() == "300x200mm"
     again = download(window, "svg")
     assert Path(again.path()).read_bytes() == (tmp_path / "bird.svg").read_bytes()
 
@@ -198,6 +209,7 @@ def test_an_export_can_be_given_up(window: Window) -> None:
     page.keyboard.press("Control+e")
     dialog = page.get_by_role("dialog")
     dialog.get_by_text("What takes longer than 10 s is given up").wait_for()
+    assert "LightBurn (lbrn2)" in page.get_by_label("Format").inner_text()
     page.get_by_label("Format").select_option("png")
     dialog.get_by_text("A picture of the plane, 1600 pixels on its longer side").wait_for()
     page.get_by_role("button", name="Download").click()

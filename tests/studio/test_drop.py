@@ -49,6 +49,7 @@ def test_files_of_ours_open_again(tmp_path: Path, name: str, suffix: str) -> Non
     assert vt.Design.from_dict(answer["design"]) == vt.Design.loads(design.source)
     assert all(isinstance(value, str | int | float) for value in answer["job"].values())
     assert vt.Job(**answer["job"]) == job
+    assert answer["job"].get("sheet") in (None, "120x80mm", "123.5x80mm")  # as one types them
     assert answer["notes"] == []
 
 

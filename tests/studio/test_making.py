@@ -129,6 +129,8 @@ def test_the_page_is_shown_what_is_cut() -> None:
     assert any("twice" in note for note in shown["notes"])
     apart = {**job, "gap": 2}
     assert "duplicate" not in {finding["kind"] for finding in product(3, design, apart, {}, "bird")["findings"]}
+    tight = product(3, design, {**job, "gap": 20}, {}, "bird")["notes"]
+    assert [note for note in tight if re.fullmatch(r"With a gap of 10 mm \d+ tiles would fit", note)]
     few, many = (product(3, design, apart, {"neck": neck}, "bird")["found"] for neck in (0, "3mm"))
     assert few < many
 

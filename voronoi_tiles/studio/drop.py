@@ -121,5 +121,6 @@ def _job(recipe: Mapping[str, Any]) -> dict[str, str | float | bool]:
             case str() | bool() | int() | float():
                 job[name] = value
             case [int() | float() as x, int() | float() as y]:
-                job[name] = f"{x!r},{y!r}" if name == "offset" else f"{x!r}x{y!r}mm"
+                across, up = (repr(size).removesuffix(".0") for size in (x, y))
+                job[name] = f"{across},{up}" if name == "offset" else f"{across}x{up}mm"
     return job

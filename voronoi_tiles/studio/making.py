@@ -64,7 +64,9 @@ def product(
     drawing = made.drawing
     layers, whole = _shown_layers(drawing)
     findings = _findings(drawing, limits)
-    notes = [*tiling.design.notes, *made.notes, *([made.hint] if made.hint else [])]
+    notes = [*tiling.design.notes, *made.notes]
+    if made.hint:
+        notes.append(re.sub(r"^with `gap='([\d.]+)mm'`", r"With a gap of \1 mm", made.hint))
     if not whole:
         notes.append("there is more than can be shown here; the file has it all")
     return {

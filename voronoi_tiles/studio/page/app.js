@@ -328,8 +328,8 @@ store.subscribe(
 
 store.subscribe(
     ["exact", "refusal", "unit", "tables", "design"],
-    ({ exact, unit, tables, design }) => {
-        if (!exact || !tables) {
+    ({ exact, refusal, unit, tables, design }) => {
+        if (!exact || !tables || refusal) {
             element("measure").textContent = "";
             return;
         }

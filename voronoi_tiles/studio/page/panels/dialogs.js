@@ -233,7 +233,9 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
             const format = make(
                 "select",
                 {},
-                ...tables.formats.map((/** @type {string} */ one) => make("option", {}, one)),
+                ...tables.formats.map((/** @type {string} */ one) =>
+                    make("option", { value: one }, one === "lbrn2" ? "LightBurn (lbrn2)" : one),
+                ),
             );
             const { picture, seconds } = tables.limits;
             const bounds = make("p", { class: "note" });

@@ -120,8 +120,10 @@ export class JobPanel extends HTMLElement {
      */
     #set(name, value) {
         const { store } = this.#context;
-        const { [name]: _, ...rest } = store.state.job;
-        store.set({ job: value === undefined ? rest : { ...rest, [name]: value } });
+        const { job, tables } = store.state;
+        const { [name]: _, ...rest } = job;
+        const usual = tables.job.find((/** @type {Option} */ option) => option.name === name).default;
+        store.set({ job: value === undefined || value === usual ? rest : { ...rest, [name]: value } });
     }
 
     /**

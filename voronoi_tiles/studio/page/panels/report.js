@@ -85,7 +85,7 @@ export class ReportPanel extends HTMLElement {
             product.found
                 ? make("ol", {}, ...alike(findings).map((same, k) => this.#finding(same, k)))
                 : make("p", {}, "Nothing would spoil the cut."),
-            ...notes.map((note) => make("p", { class: "note" }, note)),
+            ...notes.map((note) => make("p", { class: "note" }, inLabels(note))),
         ]);
     }
 
