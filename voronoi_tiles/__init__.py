@@ -51,6 +51,7 @@ if TYPE_CHECKING:
     from voronoi_tiles.fabrication.job import Job
     from voronoi_tiles.fabrication.job_options import JobError
     from voronoi_tiles.fabrication.product import Product
+    from voronoi_tiles.formats.burns import Burn
     from voronoi_tiles.formats.page import Drawing, Layer
     from voronoi_tiles.formats.shapes import Dots, DrawingError, ReadDrawing, Shape
     from voronoi_tiles.groups.wallpaper import GROUPS, Lattice, WallpaperGroup
@@ -73,6 +74,7 @@ __all__ = [
     "Arc",
     "ArgumentError",
     "Art",
+    "Burn",
     "CheckError",
     "CheckReport",
     "Design",
@@ -164,6 +166,7 @@ _HOMES = {
     "voronoi_tiles.fabrication.job": "Job",
     "voronoi_tiles.fabrication.job_options": "JobError",
     "voronoi_tiles.fabrication.product": "Product",
+    "voronoi_tiles.formats.burns": "Burn",
     "voronoi_tiles.formats.page": "Drawing Layer",
     "voronoi_tiles.formats.shapes": "Dots DrawingError ReadDrawing Shape",
     "voronoi_tiles.groups.wallpaper": "GROUPS Lattice WallpaperGroup",

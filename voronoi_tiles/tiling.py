@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from voronoi_tiles.pictures.rendering import RenderOptions
     from voronoi_tiles.raster.renderer import Choice, Method, Provenance
 
-FileFormat = Literal["svg", "json", "dxf", "pdf", "lbrn2"]
+FileFormat = Literal["svg", "json", "dxf", "pdf", "lbrn2", "gcode"]
 FORMATS: tuple[FileFormat, ...] = get_args(FileFormat)
 
 
@@ -239,7 +239,7 @@ class Tiling:
                 raise ArgumentError(f"no text can be made as {file_format!r}", remedy="Use svg or json.")
 
     def make(self, job: Job | None = None, file_format: str = "svg") -> Product:
-        """The drawing of a job for a format of files ("svg", "dxf", "pdf", "lbrn2").
+        """The drawing of a job for a format of files ("svg", "dxf", "pdf", "lbrn2", "gcode").
 
         Raises JobError where the job cannot be done.
 
@@ -340,8 +340,8 @@ class Tiling:
 
         `job` says what is to be made of the tiles (sheet, kerf, ...), `edges` is a short way to a job that says only
         this; with neither, SVG and JSON hold the exact tiles where they lie in the plane. The format is that of the
-        suffix (.svg, .dxf, .pdf, .lbrn2, .json), or `file_format`. With `colours="files"` there is a file for each
-        colour: name-1.svg, name-2.svg, ... A cross-check's report goes into the file.
+        suffix (.svg, .dxf, .pdf, .lbrn2, .gcode or .nc, .json), or `file_format`. With `colours="files"` there is a
+        file for each colour: name-1.svg, name-2.svg, ... A cross-check's report goes into the file.
 
         Raises OutputError where the suffix is another, the file cannot be written, or is one that the job reads;
         JobError for a job that cannot be done, or that comes with JSON; and CheckError, before anything is written,
@@ -368,7 +368,7 @@ class Tiling:
         if form == "json":
             raise JobError(
                 "a JSON document holds the exact outlines of one of each tile, and no sheet",
-                remedy="Write svg, dxf, pdf or lbrn2, or leave the other options out.",
+                remedy="Write svg, dxf, pdf, lbrn2 or gcode, or leave the other options out.",
             )
         evidence = None if check is None else self.evidence(check)
         return write_products(self.design, self.tessellation, name, form, job or Job(), evidence)

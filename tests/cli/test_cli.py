@@ -195,7 +195,7 @@ def test_a_failed_proof_is_exit_code_1_and_no_file(tmp_path: Path) -> None:
     [
         ([], "Missing argument"),
         (["bird.toml"], "Missing option '-o'"),
-        (["bird.toml", "-o", "out.dxf9"], ".pdf or .lbrn2, or --format."),
+        (["bird.toml", "-o", "out.dxf9"], ".pdf or .lbrn2 or .gcode, or --format."),
         (["bird.toml", "-o", "out.svg", "--format", "json"], "contradict each other"),
         (["", "-o", "out.svg"], "the name of the design is empty"),
         (["bird.toml", "-o", "out"], ".svg or .json"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import shutil
 import sys
 from collections.abc import Callable
@@ -19,6 +20,7 @@ from voronoi_tiles import Design, Job
 from voronoi_tiles.cli import main as cli
 from voronoi_tiles.designs.starters import starter_text
 from voronoi_tiles.formats.reading import read_drawing
+from voronoi_tiles.formats.recipe import recipe_of
 from voronoi_tiles.preflight import preflight
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
@@ -123,6 +125,7 @@ def test_all_options_of_a_job_reach_it(here: Path, call: Call) -> None:
         *("--rotate", "30", "--offset", "3mm,-1cm", "--edges", "pieces", "--gap", "2", "--kerf", "0.15mm"),
         *("--fillet", "0.5mm", "--tabs", "0.3mm", "--accuracy", "0.01mm", "--curves", "arc", "--preset", "lightburn"),
         *("--labels", "site", "--label-height", "2mm", "--marks", "--bar", "--colors", "layers", "--art", "none"),
+        *("--feed", "300,score=9", "--power", "800"),
     )
     assert result.exit_code == 0, result.stderr
     text = (here / "a.svg").read_text()
@@ -141,6 +144,8 @@ def test_all_options_of_a_job_reach_it(here: Path, call: Call) -> None:
         "accuracy": 0.01,
         "curves": "arc",
         "preset": "lightburn",
+        "feed": "300,score=9",
+        "power": "800",
         "labels": "site",
         "label_height": 2.0,
         "marks": True,
@@ -236,7 +241,7 @@ def test_bad_input(here: Path, call: Call, options: list[str], message: str) -> 
         check_refused(call("report", "squares.toml", *options), here, before, message)
 
 
-@pytest.mark.parametrize("preset_form", [("glowforge", "dxf"), ("redcut", "lbrn2"), ("cnc", "pdf")])
+@pytest.mark.parametrize("preset_form", [("glowforge", "dxf"), ("redcut", "lbrn2"), ("cnc", "pdf"), ("cnc", "gcode")])
 def test_presets_refuse_what_they_do_not_read(here: Path, call: Call, preset_form: tuple[str, str]) -> None:
     """The message names the format to use instead."""
     preset, form = preset_form
@@ -294,10 +299,35 @@ def test_report(call: Call) -> None:
     assert call("report", "squares.toml", "--cut-speed", "0").exit_code == 2
 
 
+def test_gcode_says_how_it_burns_or_is_not_written(here: Path, call: Call) -> None:
+    """By options or by a preset; two suffixes; a preflight finds nothing in it, and its recipe is the job's."""
+    before = set(here.rglob("*"))
+    sheet = ("--sheet", "90x90mm", "--kerf", "0.2")
+    refused = call("export", "squares.toml", "-o", "a.gcode", *sheet)
+    check_refused(refused, here, before, "needs --feed and --power of cut. Give --feed cut=300 in mm/min and --power")
+    for wrong in ("fast", "cut=0", "cut=1,cut=2", "engraved=3", "300,", "nan"):
+        refused = call("export", "squares.toml", "-o", "a.nc", *sheet, "--feed", wrong, "--power", "800")
+        check_refused(refused, here, before, f"--feed '{wrong}' cannot be")
+    (here / "wood.toml").write_text("feed = { cut = 300, engrave = 3000 }\npower = { cut = 8000, engrave = 99 }\n")
+    refused = call("export", "squares.toml", "-o", "a.nc", *sheet, "--preset", "wood.toml")
+    assert "--power of 8000 for cut is more than the machine's 1000" in refused.stderr
+    with (here / "wood.toml").open("a") as preset:
+        preset.write("power_max = 10000\n")
+    made = call("export", "squares.toml", "-o", "a.nc", *sheet, "--preset", "wood.toml", "--labels", "number")
+    assert made.exit_code == 0, made.stderr
+    text = (here / "a.nc").read_text(encoding="ascii")
+    assert set(re.findall("F.*", text.split("M4 S0")[1])) == {"F300 S8000", "F3000 S99"}
+    assert call("preflight", "a.nc").exit_code == 0
+    result = call("export", "squares.toml", "-o", "-", "--format", "gcode", *sheet, "--feed", "600", "--power", "5")
+    assert set(re.findall("F.*", result.stdout.split("M4 S0")[1])) == {"F600 S5"}
+    assert json.loads(recipe_of(result.stdout.encode())["job"])["feed"] == "600"
+
+
 def test_coupon_and_template(here: Path, call: Call) -> None:
     """Files in all formats, and what to write into the design."""
-    for form in ("svg", "dxf", "pdf", "lbrn2"):
-        result = call("coupon", "-o", f"c.{form}", "--thickness", "3mm", "--preset", "lightburn")
+    burn = ("--feed", "cut=300,engrave=3000", "--power", "cut=800,engrave=150")
+    for form in ("svg", "dxf", "pdf", "lbrn2", "gcode"):
+        result = call("coupon", "-o", f"c.{form}", "--thickness", "3mm", "--preset", "lightburn", *burn)
         assert (result.exit_code, result.stderr) == (0, f"wrote c.{form}\n")
     result = call("template", "rings.toml", "-o", "page.svg", "--site", "island")
     assert result.exit_code == 0

@@ -234,12 +234,13 @@ def test_files_hold_the_drawing(
     assert farthest(dense(contour.boundary, 0.2), wrong.boundary) > 0.01
 
 
-@pytest.mark.parametrize("form", ["svg", "dxf", "pdf", "lbrn2"])
+@pytest.mark.parametrize("form", ["svg", "dxf", "pdf", "lbrn2", "gcode"])
 def test_files_are_written_in_all_formats(form: str) -> None:
     """The same bytes again, and others for another job."""
     job = Job(sheet=(90.0, 90.0), kerf=0.2, labels="number", preset="lightburn", colours="layers")
+    job = replace(job, feed="300,engrave=3000", power="800,engrave=150")
     data = written(squares().make(job, form))
-    head = {"svg": b"<?xml", "dxf": b"999\nrecipe", "pdf": b"%PDF", "lbrn2": b"<?xml"}[form]
+    head = {"svg": b"<?xml", "dxf": b"999\nrecipe", "pdf": b"%PDF", "lbrn2": b"<?xml", "gcode": b"; title"}[form]
     assert data.startswith(head)
     assert written(squares().make(job, form)) == data
     assert written(squares().make(replace(job, kerf=0.21), form)) != data

@@ -10,7 +10,8 @@ import pytest
 
 from voronoi_tiles import Job, starter
 from voronoi_tiles.base.errors import DesignError
-from voronoi_tiles.formats.presets import FORMATS, ROLES, _built_in, load_preset
+from voronoi_tiles.formats.burns import ROLES
+from voronoi_tiles.formats.presets import FORMATS, _built_in, load_preset
 
 
 def test_the_presets_are_there() -> None:
@@ -83,6 +84,7 @@ def test_a_users_preset_changes_single_keys(tmp_path: Path) -> None:
     assert preset.palette == base.palette
     assert (preset.stroke, preset.svg_curves, preset.dxf_curves) == (0.1, base.svg_curves, "spline")
     assert preset.unread == {"dxf": "svg"}
+    assert (preset.feed, preset.power, preset.power_max) == ({}, {}, 1000)
     file.write_text("")
     assert load_preset(str(file)).colours == load_preset("plain").colours
 

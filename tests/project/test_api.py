@@ -22,8 +22,8 @@ from voronoi_tiles.cli.common import as_options
 ROOT = Path(__file__).parents[2]
 
 NAMES = """
-Arc Art ArgumentError CheckError CheckReport Design DesignError Dots Drawing DrawingError Exported Figure Finding Frame
-GROUPS Inventory Isometry Job JobError Lattice Layer LayerUse Limits LineArc Marks MissingLibraryError Neighbour
+Arc Art ArgumentError Burn CheckError CheckReport Design DesignError Dots Drawing DrawingError Exported Figure Finding
+Frame GROUPS Inventory Isometry Job JobError Lattice Layer LayerUse Limits LineArc Marks MissingLibraryError Neighbour
 NodedSite Operation Outline OutputError ParabolaArc Paths Placement PreflightReport Product ProofError ProofReport
 Provenance ReadDrawing RenderError RenderOptions Rendering Shape Site Stroke Tile TileCopy Tiling TouchingCopiesError
 UnknownNameError VoronoiTilesError WallpaperGroup __version__ bezier bspline catmull_rom circle coupon drawing hermite

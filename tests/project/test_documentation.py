@@ -472,7 +472,7 @@ def test_every_preset_and_public_name_is_documented() -> None:
     for name, preset in presets.items():
         row = re.search(rf"^\| `{name}` \|.*\| (.*) \|$", laser, re.MULTILINE)
         assert row, name
-        assert set(re.findall("dxf|pdf|lbrn2|svg", row[1])) == set(preset["unread"]), name
+        assert set(re.findall("dxf|pdf|lbrn2|svg|gcode", row[1])) == set(preset["unread"]), name
     for name in vt.__all__:
         assert re.search(rf"\bvoronoi_tiles\.{name}\b", python), name
 

@@ -169,8 +169,8 @@ def test_a_cycle_is_found() -> None:
 
 
 TWIN_FILES = {
-    "reader": {"formats.svg", "formats.dxf"},
-    "writer": {"formats.svg", "formats.dxf"},
+    "reader": {"formats.svg", "formats.dxf", "formats.gcode"},
+    "writer": {"formats.svg", "formats.dxf", "formats.gcode"},
 }
 """Names of modules that may occur more than once: one format's reader or writer each."""
 

@@ -38,7 +38,7 @@ def flags(job: Mapping[str, Any]) -> list[str]:
     return found
 
 
-QUICK = {("exact", "json"), ("exact", "svg"), ("lightburn", "lbrn2"), ("lightburn", "dxf")}
+QUICK = {("exact", "json"), ("exact", "svg"), ("lightburn", "lbrn2"), ("lightburn", "dxf"), ("lightburn", "gcode")}
 """What the quick tests compare, of all jobs and formats."""
 
 
@@ -46,7 +46,7 @@ QUICK = {("exact", "json"), ("exact", "svg"), ("lightburn", "lbrn2"), ("lightbur
     ("name", "form"),
     [
         case if case in QUICK else pytest.param(*case, marks=pytest.mark.slow)
-        for case in [("exact", "json"), *itertools.product(JOBS, ("svg", "dxf", "pdf", "lbrn2"))]
+        for case in [("exact", "json"), *itertools.product(JOBS, ("svg", "dxf", "pdf", "lbrn2", "gcode"))]
     ],
 )
 def test_downloads_are_what_the_command_line_writes(
@@ -55,11 +55,20 @@ def test_downloads_are_what_the_command_line_writes(
     """Byte for byte, of the design that is saved, whatever its numbers look like on their way to the page and back."""
     (tmp_path / "my bird.toml").write_text(starter_text("p4"), encoding="utf-8")
     sent = json.loads(json.dumps(Design.load(tmp_path / "my bird.toml").to_dict()))
-    file, data = exported(sent, {**JOBS[name], "format": form}, "my bird")
+    burn = {"feed": "300,engrave=3000", "power": "800,engrave=150"} if form == "gcode" else {}
+    job = {**JOBS[name], **burn}
+    file, data = exported(sent, {**job, "format": form}, "my bird")
     assert file == f"my-bird.{form}"
-    call = ["export", "my bird.toml", "-o", f"cut.{form}", *flags(JOBS[name])]
+    call = ["export", "my bird.toml", "-o", f"cut.{form}", *flags(job)]
     assert voronoi_tiles(*call, cwd=tmp_path).returncode == 0
     assert data == (tmp_path / f"cut.{form}").read_bytes()
+
+
+def test_gcode_without_feed_and_power_names_their_fields() -> None:
+    """So that the page can show where they are missing."""
+    with pytest.raises(ArgumentError) as caught:
+        exported(starter("p4").to_dict(), {"format": "gcode"}, "bird")
+    assert caught.value.fields == ("feed", "power")
 
 
 @pytest.mark.slow
@@ -212,8 +221,8 @@ def test_other_options_and_limits_are_refused() -> None:
         coupon_file({"thickness": 3, "path": "elsewhere/x.svg"})
     with pytest.raises(ArgumentError, match="thickness"):
         coupon_file({})
-    with pytest.raises(ArgumentError, match="'gcode'"):
-        coupon_file({"thickness": 3, "format": "gcode"})
+    with pytest.raises(ArgumentError, match="'stl'"):
+        coupon_file({"thickness": 3, "format": "stl"})
     with pytest.raises(DesignError):
         coupon_file({"thickness": 3, "preset": "nobody"})
     assert read_options({"kerf": 0.1, "format": "pdf"}) == (Job(kerf=0.1), "pdf")

@@ -7,6 +7,7 @@ import click
 from voronoi_tiles.base.errors import ArgumentError, DesignError
 from voronoi_tiles.cli.common import PATH, as_options, refuse_output, report_error, say_written
 from voronoi_tiles.cli.options import LENGTH
+from voronoi_tiles.fabrication.job import Job
 
 
 @click.command()
@@ -22,16 +23,20 @@ from voronoi_tiles.cli.options import LENGTH
 @click.option("--thickness", type=LENGTH, required=True, metavar="LENGTH", help="How thick the sheet is.")
 @click.option("--plug", default="10mm", type=LENGTH, metavar="LENGTH", help="The size of the plugs [default: 10mm].")
 @click.option("--preset", default="plain", metavar="NAME|FILE", help="Colours and layers [default: plain].")
-def coupon(output: str, kerfs: str, thickness: float, plug: float, preset: str) -> None:
+@click.option("--feed", metavar="MM/MIN", help=as_options(Job.options()["feed"].help))
+@click.option("--power", metavar="S", help=as_options(Job.options()["power"].help))
+def coupon(
+    output: str, kerfs: str, thickness: float, plug: float, preset: str, feed: str | None, power: str | None
+) -> None:
     """Write a test piece that shows the kerf: numbered plugs and holes for each of a range of kerfs, and strips.
 
     Cut it, and try which plug just holds in its hole: its number is the kerf.
     """
     from voronoi_tiles.fabrication.coupon import coupon as write_coupon
 
-    refuse_output("-", output, (".svg", ".dxf", ".pdf", ".lbrn2"))
+    refuse_output("-", output, (".svg", ".dxf", ".pdf", ".lbrn2", ".gcode", ".nc"))
     try:
-        write_coupon(output, thickness=thickness, kerfs=kerfs, plug=plug, preset=preset)
+        write_coupon(output, thickness=thickness, kerfs=kerfs, plug=plug, preset=preset, feed=feed, power=power)
     except ArgumentError as error:
         raise click.UsageError(as_options(str(error))) from None
     except DesignError as error:

@@ -27,13 +27,13 @@ if TYPE_CHECKING:
     required=True,
     metavar="OUT",
     type=PATH,
-    help="The file to write, its format by its suffix (.svg, .dxf, .pdf, .lbrn2, .json); a folder for several designs; "
-    "- for standard output.",
+    help="The file to write, its format by its suffix (.svg, .dxf, .pdf, .lbrn2, .gcode or .nc, .json); a folder for "
+    "several designs; - for standard output.",
 )
 @click.option(
     "--format",
     "file_format",
-    type=click.Choice(("svg", "json", "dxf", "pdf", "lbrn2")),
+    type=click.Choice(("svg", "json", "dxf", "pdf", "lbrn2", "gcode")),
     help="The format where OUT names none: a folder or standard output.",
 )
 @with_scale
@@ -51,7 +51,7 @@ def export(
     renderer: Choice,
     device: int | None,
 ) -> None:
-    """Write the tiles of designs: SVG, DXF, PDF or LightBurn files, ready to cut, or a JSON outline document.
+    """Write the tiles of designs: SVG, DXF, PDF, LightBurn files or G-code, ready to cut, or a JSON outline document.
 
     DESIGN is a TOML or JSON file, or - for standard input. Lengths are millimetres unless they say cm or in. With
     several designs the good ones are written, the bad ones named, and the exit code is the worst.
@@ -85,6 +85,7 @@ def _targets(designs: Sequence[str], output: str, file_format: FileFormat | None
 
     That is: one place for several results, or a result that would overwrite a design.
     """
+    from voronoi_tiles.formats.presets import SUFFIXES
     from voronoi_tiles.tiling import FORMATS
 
     if not output:
@@ -99,7 +100,7 @@ def _targets(designs: Sequence[str], output: str, file_format: FileFormat | None
         return [("-", file_format or FORMATS[0])]
     folder = os.path.isdir(output)  # noqa: PTH112 - a name that the system refuses is no folder, and no error here
     suffix = path.suffix.lower().removeprefix(".")
-    named = next((name for name in FORMATS if name == suffix), None)
+    named = next((name for name in FORMATS if name == SUFFIXES.get(suffix, suffix)), None)
     if not several and not output.endswith("/") and not folder:
         form = file_format or named
         if form is None:

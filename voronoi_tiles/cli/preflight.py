@@ -79,9 +79,9 @@ def preflight(
     tabs: float | None,
     layers: tuple[str, ...],
 ) -> None:
-    """Find what would spoil the cut of an SVG or DXF file: open, doubled and crossing lines, wrong size, thin necks.
+    """Find what would spoil the cut of an SVG, DXF or G-code file: open, doubled, crossing lines, size, thin necks.
 
-    Places are in millimetres as the file's own program shows them: SVG from the upper left corner, y down; DXF y up.
+    Places are in millimetres as the file's own program shows them: SVG from the upper left corner, y down; others y up.
     The exit code is 1 where something would spoil the cut, 2 where the file cannot be read.
     """
     from voronoi_tiles.base.files import write_whole

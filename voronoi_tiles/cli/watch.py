@@ -36,8 +36,8 @@ _HEAD = 2**16
     multiple=True,
     metavar="FILE",
     type=PATH,
-    help="A file to write, a picture (.png) or tiles (.svg, .dxf, .pdf, .lbrn2, .json); may be repeated [default: "
-    "DESIGN.png and DESIGN.svg, beside it, unless there are others of this name].",
+    help="A file to write, a picture (.png) or tiles (.svg, .dxf, .pdf, .lbrn2, .gcode, .json); may be repeated "
+    "[default: DESIGN.png and DESIGN.svg, beside it, unless there are others of this name].",
 )
 @with_picture
 @with_scale
@@ -133,9 +133,10 @@ def _refuse_design(design: str) -> None:
 def _refuse_targets(design: str, targets: Sequence[str]) -> None:
     """Refuse what cannot be written again and again."""
     from voronoi_tiles.base.files import STDOUT, is_special
+    from voronoi_tiles.formats.presets import SUFFIXES
     from voronoi_tiles.tiling import FORMATS
 
-    suffixes = (_PICTURE, *(f".{name}" for name in FORMATS))
+    suffixes = (_PICTURE, *(f".{name}" for name in (*FORMATS, *SUFFIXES)))
     for target in targets:
         if target == STDOUT or is_special(target):
             raise click.UsageError(f"{target} cannot be written again and again: give a file, -o FILE.")

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Final, Self
 
-from voronoi_tiles.fabrication.job import Job
+from voronoi_tiles.fabrication.job import Job, JobError
+from voronoi_tiles.formats.gcode.writer import ROUNDING_MM
+from voronoi_tiles.formats.presets import Format
 
 _SHORT: Final = 0.2
 """What leaving out short segments may take of what chords leave. Fits leave joints at which tangents differ by some
@@ -28,8 +30,9 @@ class AccuracyBudget:
     sheets and of art where they are clipped. Kerf and fillets spend nothing: an offset of arcs is exact, and what lies
     within e of a curve lies at any distance from both within e again. Then short segments are left out, within `short`,
     and where the file holds polylines, chords within `chords` take the place of curves. Errors add up: the three come
-    to the whole, or less. Nothing else is approximated, but that the cubic curves of SVG and PDF are a nanometre off
-    circular arcs, which is the last digit of these files.
+    to the whole, or less. For G-code, whose numbers are coarse, the whole is what rounding leaves of the accuracy asked
+    for. Nothing else is approximated, but that the cubic curves of SVG and PDF are a nanometre off circular arcs, which
+    is the last digit of these files.
     """
 
     whole: float
@@ -41,12 +44,21 @@ class AccuracyBudget:
         assert self.arcs + self.short + self.chords <= self.whole * (1 + 1e-12), "more is spent than there is"
 
     @classmethod
-    def of(cls, job: Job, curves: str) -> Self:
-        """The budget of a job whose file holds these `curves`: exact, arc, spline or polyline."""
-        chords = _CHORDS * job.accuracy if curves == "polyline" else 0.0
-        left = job.accuracy - chords
+    def of(cls, job: Job, curves: str, form: Format = "svg") -> Self:
+        """The budget of a job whose file has a format and holds these `curves`: exact, arc, spline or polyline.
+
+        Raises JobError where the file's rounding leaves nothing of the accuracy.
+        """
+        whole = job.accuracy - (ROUNDING_MM if form == "gcode" else 0.0)
+        if whole < ROUNDING_MM and form == "gcode":
+            raise JobError(
+                f"an `accuracy` of {job.accuracy:g} mm is finer than G-code's numbers",
+                remedy=f"Give {2 * ROUNDING_MM:g} mm or more.",
+            )
+        chords = _CHORDS * whole if curves == "polyline" else 0.0
+        left = whole - chords
         short = _SHORT * left if job.moves_contours else 0.0
-        return cls(whole=job.accuracy, arcs=left - short, short=short, chords=chords)
+        return cls(whole=whole, arcs=left - short, short=short, chords=chords)
 
     @property
     def measured(self) -> float:

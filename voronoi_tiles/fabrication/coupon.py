@@ -24,7 +24,7 @@ from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.units import UNIT_MM
 from voronoi_tiles.base.version import __version__
 from voronoi_tiles.fabrication.exporting import drawing_format, save_drawing
-from voronoi_tiles.fabrication.job_options import read_number, read_text
+from voronoi_tiles.fabrication.job_options import Rates, read_number, read_rates, read_text
 from voronoi_tiles.fabrication.lettering import fitting_height, lettering, place_labels, text_width
 from voronoi_tiles.fabrication.marks import BAR_MM, bar_height, reference_bar, rounded_square
 from voronoi_tiles.formats.page import Drawing, Layer
@@ -92,13 +92,16 @@ def coupon(
     kerfs: str | float | Iterable[float | str] = KERFS,
     plug: float | str = PLUG_MM,
     preset: str | os.PathLike[str] = "plain",
+    feed: Rates = None,
+    power: Rates = None,
 ) -> Drawing:
     """A test piece that shows the kerf: numbered plugs and holes for each of a range of kerfs, slots, and strips.
 
     Cut it, and try which plug just holds in its hole: its number is the kerf. `thickness` is the sheet's and `plug` the
     plugs' size, in millimetres or as texts with a unit; `kerfs` are a range, "0.05:0.4:0.05", or the kerfs, one or
     several. With a path the drawing is written, in the format of its suffix and with the names and colours of the
-    preset. Raises ArgumentError for sizes that cannot be, DesignError for an unusable preset, and OutputError.
+    preset; for G-code `feed` and `power` are those of a Job. Raises ArgumentError for sizes that cannot be, DesignError
+    for an unusable preset, and OutputError.
 
     >>> import voronoi_tiles as vt
     >>> vt.coupon(thickness="3mm", kerfs=[0.1, 0.15, 0.2])
@@ -111,7 +114,8 @@ def coupon(
     drawing = coupon_drawing(widths, thickness=sheet, plug=width)
     path = None if path is None else path_name("path", path)
     form = "svg" if path is None else drawing_format(path)
-    drawing = recoloured(drawing, read_text("preset", preset), form)
+    burn = read_rates("feed", feed), read_rates("power", power)
+    drawing = recoloured(drawing, read_text("preset", preset), form, *burn)
     if path is not None:
         save_drawing(drawing, path)
     return drawing

@@ -15,7 +15,7 @@ from voronoi_tiles.fabrication.layout import Contours, Layout
 from voronoi_tiles.fabrication.tile_colouring import TileColouring
 from voronoi_tiles.fabrication.tour import short_tour
 from voronoi_tiles.fabrication.trails import find_trails, joined
-from voronoi_tiles.formats.presets import Role
+from voronoi_tiles.formats.burns import Role
 from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.contour_tabs import with_tabs
 from voronoi_tiles.paths.paths import Paths

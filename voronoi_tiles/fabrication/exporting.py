@@ -14,7 +14,7 @@ from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.job import ACCURACY_MM, Job
 from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.formats.page import Drawing
-from voronoi_tiles.formats.presets import FORMATS, Format
+from voronoi_tiles.formats.presets import FORMATS, SUFFIXES, Format
 from voronoi_tiles.formats.writing import write_drawing
 from voronoi_tiles.vector.tessellation import Tessellation
 
@@ -35,7 +35,7 @@ def format_of(path: str | os.PathLike[str], formats: Sequence[Name]) -> Name:
     """The format that a file's suffix names. Raises OutputError where it names none of these."""
     suffix = Path(path).suffix.lower().removeprefix(".")
     for name in formats:
-        if name == suffix:
+        if name == SUFFIXES.get(suffix, suffix):
             return name
     suffixes = " or ".join(f".{name}" for name in formats)
     raise OutputError(f"cannot tell the format of {os.fspath(path)!r}: give it the suffix {suffixes}", path=path)

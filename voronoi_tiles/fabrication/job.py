@@ -16,6 +16,7 @@ from voronoi_tiles.fabrication.job_options import (
     Length,
     Offset,
     Option,
+    Rates,
     SheetSize,
     choice,
     flag,
@@ -25,6 +26,7 @@ from voronoi_tiles.fabrication.job_options import (
     read_colours,
     read_count,
     read_offset,
+    read_rates,
     read_sheet,
     read_size,
     read_text,
@@ -151,6 +153,22 @@ class Job:
         least=STROKE_MIN,
         most=10.0,
         shown="WIDTH",
+    )
+    feed: Option[Rates, str | None] = Option(
+        None,
+        read_rates,
+        "For G-code, how fast the laser moves: millimetres a minute for cuts, or for each kind of work, "
+        "cut=300,engrave=3000 [default: as the preset says].",
+        kind="text",
+        shown="MM/MIN",
+    )
+    power: Option[Rates, str | None] = Option(
+        None,
+        read_rates,
+        "For G-code, how strong the laser is: the value of S for cuts, or for each kind of work, cut=800,engrave=150 "
+        "[default: as the preset says].",
+        kind="text",
+        shown="S",
     )
     labels: Choice[Labels] = choice("none", Labels, "Engrave a label on every piece.")
     label_height: Length = length(3.0, "The height of labels, at most [default: 3mm].", least=LABEL_MIN, most=1000.0)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import KW_ONLY, dataclass
 from numbers import Integral
 from typing import Any, Final, Generic, Literal, TypeAlias, TypeVar, cast, get_args
@@ -16,6 +16,7 @@ from typing import Any, Final, Generic, Literal, TypeAlias, TypeVar, cast, get_a
 from voronoi_tiles.base.errors import ArgumentError, DesignError
 from voronoi_tiles.base.units import parse_length, parse_size
 from voronoi_tiles.base.values import is_number, shown
+from voronoi_tiles.formats.burns import ROLES, rates_of
 
 SHEET_MAX: Final = 100_000.0
 """Largest side of a sheet, and largest length of an option; millimetres."""
@@ -37,6 +38,7 @@ Kept = TypeVar("Kept")
 Kind = Literal["length", "angle", "word", "flag", "text", "number"]
 
 SheetSize: TypeAlias = tuple[float, float] | str | os.PathLike[str] | None
+Rates: TypeAlias = float | str | Mapping[str, float] | None
 Offset: TypeAlias = complex | tuple[float | str, float | str] | str | None
 
 
@@ -193,6 +195,23 @@ def read_size(name: str, value: Any) -> tuple[float, float] | None:
     if isinstance(size, str):
         raise JobError(f"`{name}` {shown(size)} is no size", remedy="Give a size such as 600x300mm.")
     return size
+
+
+def read_rates(name: str, value: Any) -> str | None:
+    """Read what drives a laser, a number for cuts or numbers by the kind of work; a text. Raises JobError."""
+    if value is None:
+        return None
+    try:
+        # Not repr, which says of numpy's numbers what they are.
+        text = ",".join(f"{role}={rate}" for role, rate in value.items()) if isinstance(value, Mapping) else str(value)
+        rates_of(text)
+    except ValueError as error:
+        why = f": {error.message}" if isinstance(error, DesignError) else ""
+        raise JobError(
+            f"`{name}` {shown(value)} cannot be{why}",
+            remedy=f"Give a number for cuts, 300, or several, cut=300,engrave=3000, of {', '.join(ROLES)}.",
+        ) from error
+    return text
 
 
 def read_offset(name: str, value: Any) -> complex | None:

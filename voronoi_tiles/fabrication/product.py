@@ -26,14 +26,16 @@ from voronoi_tiles.fabrication.exact import design_recipe
 from voronoi_tiles.fabrication.gap_hint import smaller_gap
 from voronoi_tiles.fabrication.inventory import Inventory, cut_free, inventory
 from voronoi_tiles.fabrication.job import Job, JobError
+from voronoi_tiles.fabrication.job_notes import doubled, unstroked, untabbed
 from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, Sheet, lay_out
 from voronoi_tiles.fabrication.packed_sheets import pack_colours
 from voronoi_tiles.fabrication.sheets import read_sheet
 from voronoi_tiles.fabrication.sizing import sized
 from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_tiles
+from voronoi_tiles.formats.burns import Burn, Role
 from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
 from voronoi_tiles.formats.page import Drawing, Layer, Work
-from voronoi_tiles.formats.presets import FORMATS, Format, Preset, Role, load_preset
+from voronoi_tiles.formats.presets import FORMATS, Format, Preset, load_preset
 from voronoi_tiles.formats.writing import write_drawing
 from voronoi_tiles.groups.periodic_colouring import palette
 from voronoi_tiles.paths.biarcs import to_arcs
@@ -49,10 +51,6 @@ _PICTURE_LINE_MM: Final = 0.25
 
 _SHEET_COLOUR: Final = "#c8c8c8"
 """The colour of the sheet's edge in it."""
-
-
-_STROKED: Final = ("svg", "pdf")
-"""The formats that have widths of lines."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -199,13 +197,15 @@ class _Plan:
         preset = load_preset(job.preset)
         preset.require(form)
         curves = _curves(job, preset, form)
+        if form == "gcode":
+            preset.burns(["cut"], job.feed, job.power)  # before anything is computed for nothing
         said: tuple[str, ...] = ()
         if job.pieces is None:
-            budget = AccuracyBudget.of(job, curves)
+            budget = AccuracyBudget.of(job, curves, form)
             fit = curve_fit(job, curves, budget, design.unit_mm)
             layout = lay_out(design, tessellation, job, read_sheet(job, budget), budget, fit)
         else:
-            layout, found = sized(design, tessellation, job, curves)
+            layout, found = sized(design, tessellation, job, curves, form)
             said = (found,)
         colours = colour_tiles(layout.tessellation, job.scheme, layout.period)
         if job.split is not None and colours.count == 1:
@@ -248,11 +248,12 @@ class _Plan:
             contours = None
             pieces = cut_free(layout, colouring)
         shown = _shown(colouring, layout, job)
-        engraving = engrave(layout, contours, layout.sheet, shown, fills=preset.fill_engraving)
+        fills = preset.fill_engraving and self.form != "gcode"  # whose lasers go along lines
+        engraving = engrave(layout, contours, layout.sheet, shown, fills=fills)
         layers = _layers(preset, self.form, job, cuts, engraving, _converter(self.curves, layout.budget))
         drawing = _page(layers, layout.sheet, job, layout.design)
         said = (*self.said, *layout.sheet.notes, *layout.tiles.compensation.losses, *engraving.notes)
-        more = (*_unstroked(self.form, job), *_doubled(layout, job), *_untabbed(cuts, job))
+        more = (*unstroked(self.form, job), *doubled(layout, job), *untabbed(cuts, job))
         notes = tuple(dict.fromkeys((*said, *more)))
         files = tuple(files_read(layout.design, job))
         scheme = None if job.split is None else job.scheme
@@ -272,34 +273,6 @@ def _format(name: str) -> Format:
     if name not in FORMATS:
         raise JobError(f"no drawing can be made as {name!r}", remedy=f"Use one of {', '.join(FORMATS)}.")
     return name
-
-
-def _untabbed(cuts: list[Cut], job: Job) -> list[str]:
-    """Say how many pieces are too small for tabs, where there are any."""
-    small = sum(int(cut.paths.closed.sum()) for cut in cuts) if job.tabs > 0.0 and job.cuts_pieces else 0
-    if not small:
-        return []
-    are, fall = ("is", "falls") if small == 1 else ("are", "fall")
-    return [f"{counted(small, 'contour')} {are} too short for tabs of {job.tabs:g} mm, and {fall} out"]
-
-
-def _unstroked(form: Format, job: Job) -> list[str]:
-    """Say that a format has no widths of lines, where one is asked for."""
-    return (
-        [f"{form} files have no line widths: `stroke` changes nothing"] if job.stroke and form not in _STROKED else []
-    )
-
-
-def _doubled(layout: Layout, job: Job) -> list[str]:
-    """Say that neighbours' contours lie on each other, or touch, where they do."""
-    if not job.cuts_pieces or (job.apart or 0.0) > 0.0 or len(layout.copies.tile) < 2 or job.sheet is None:
-        return []
-    if job.pack or (job.split == "files" and (job.scheme == "fewest" or isinstance(job.scheme, int))):
-        return []  # neighbours are in different files
-    if job.apart is not None:
-        return ["neighbouring contours touch, and are cut twice where they lie on each other: `gap='1mm'` avoids it"]
-    once = "" if job.needs_pieces() else "`edges='once'`, or "
-    return [f"neighbouring contours lie on each other, and are cut twice: {once}`gap='1mm'`, avoids it"]
 
 
 def _of_colour(contours: Contours, colouring: TileColouring, job: Job) -> Contours:
@@ -327,10 +300,14 @@ def _curves(job: Job, preset: Preset, form: Format) -> str:
     """What the curves become."""
     wanted = job.curves
     if wanted is None:
-        by_preset = {"svg": preset.svg_curves, "dxf": preset.dxf_curves}.get(form, "exact")
+        by_preset = {"svg": preset.svg_curves, "dxf": preset.dxf_curves, "gcode": "polyline"}.get(form, "exact")
         wanted = "spline" if by_preset == "cubic" else by_preset
     if form == "dxf" and wanted == "exact":
         wanted = "spline"
+    if form == "gcode" and wanted not in {"arc", "polyline"}:
+        raise JobError(
+            f"G-code has lines and circular arcs, and no `curves='{wanted}'`", remedy="Use polyline, or arc."
+        )
     return wanted
 
 
@@ -355,8 +332,14 @@ def _layers(
 
     def layer(role: Role, work: Work, paths: Paths) -> Layer:
         """A layer as the preset calls and colours it."""
-        return Layer.of_paths(preset.layer_name(role, form), work, preset.colours[role], stroke, paths)
+        plain = Layer.of_paths(preset.layer_name(role, form), work, preset.colours[role], stroke, paths)
+        return replace(plain, burn=burns.get(role))
 
+    burns: Mapping[Role, Burn] = {}
+    if form == "gcode":
+        roles: list[Role] = ["engrave"] if len(engraving.engraved) else []
+        roles += ["score"] if len(engraving.scored) else []
+        burns = preset.burns([*roles, *(cut.role for cut in cuts)], job.feed, job.power)
     layers = []
     if len(engraving.filled):
         filled = layer("engrave", "engrave", convert(engraving.filled))

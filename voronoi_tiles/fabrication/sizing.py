@@ -22,6 +22,7 @@ from voronoi_tiles.fabrication.job import SHEET_MAX, Job, JobError
 from voronoi_tiles.fabrication.layout import Layout, lay_out, refilled
 from voronoi_tiles.fabrication.sheets import read_sheet
 from voronoi_tiles.fabrication.tile_placement import group_box
+from voronoi_tiles.formats.presets import Format
 from voronoi_tiles.paths.areas import item_areas, ring_areas
 from voronoi_tiles.paths.segments import item_boxes
 from voronoi_tiles.vector.proof import proved_tiles
@@ -56,21 +57,23 @@ _HALVED: Final = 5
 """Halvings of the last step of a sheet."""
 
 
-def sized(design: Design, tessellation: Tessellation, job: Job, curves: str) -> tuple[Layout, str]:
+def sized(design: Design, tessellation: Tessellation, job: Job, curves: str, form: Format) -> tuple[Layout, str]:
     """The layout of a job with a number of pieces, of the scaled design or on the sheet that is found; a line on it.
 
-    Its job has no number of pieces. `curves` are those of the file: exact, arc, spline or polyline. Raises JobError
-    where no size that is tried will do.
+    Its job has no number of pieces. `curves` are those of the file: exact, arc, spline or polyline; `form` is its
+    format. Raises JobError where no size that is tried will do.
     """
     assert job.pieces is not None
     look = _with_sheet if job.sheet is None else _scaled
-    return look(design, tessellation, job, curves, job.pieces)
+    return look(design, tessellation, job, curves, form, job.pieces)
 
 
-def _scaled(design: Design, tessellation: Tessellation, job: Job, curves: str, pieces: int) -> tuple[Layout, str]:
+def _scaled(
+    design: Design, tessellation: Tessellation, job: Job, curves: str, form: Format, pieces: int
+) -> tuple[Layout, str]:
     """The layout at the largest scale of those tried at which a sheet holds so many tiles."""
     job = replace(job, pieces=None)
-    budget = AccuracyBudget.of(job, curves)
+    budget = AccuracyBudget.of(job, curves, form)
     sheet = read_sheet(job, budget)
     assert sheet.region is not None
     areas = item_areas(*tessellation.period.own_outlines) * design.unit_mm**2
@@ -115,10 +118,12 @@ def _scaled(design: Design, tessellation: Tessellation, job: Job, curves: str, p
     )
 
 
-def _with_sheet(design: Design, tessellation: Tessellation, job: Job, curves: str, pieces: int) -> tuple[Layout, str]:
+def _with_sheet(
+    design: Design, tessellation: Tessellation, job: Job, curves: str, form: Format, pieces: int
+) -> tuple[Layout, str]:
     """The layout on the smallest sheet, of those tried, that holds so many tiles; whole millimetres."""
     job = replace(job, pieces=None, sheet=(SHEET_MAX, SHEET_MAX))  # until it is found
-    budget = AccuracyBudget.of(job, curves)
+    budget = AccuracyBudget.of(job, curves, form)
     areas = item_areas(*tessellation.period.own_outlines) * design.unit_mm**2
     border = job.margin + job.kerf / 2 + job.frame_width
     least = math.sqrt(pieces * float(areas.min()))

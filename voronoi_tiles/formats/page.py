@@ -12,6 +12,7 @@ from typing import Any, Literal, Self
 import numpy as np
 
 from voronoi_tiles.base.arrays import Ints
+from voronoi_tiles.formats.burns import Burn
 from voronoi_tiles.paths.paths import Paths
 
 Work = Literal["cut", "score", "engrave"]
@@ -25,7 +26,8 @@ class Layer:
     `paths` are in millimetres from the page's lower left corner, y up. Item k, one object of the file, are the paths
     from `items[k]` up to, not including, `items[k + 1]` (intp). `labels`, one for each item, name them; empty where
     they have no names. `colour` is "#rrggbb", `stroke` the width to draw it with, in millimetres. With `filled` the
-    target takes what is filled, not what is drawn, for this work.
+    target takes what is filled, not what is drawn, for this work. `burn` is for files that drive the machine
+    themselves, None for all others.
     """
 
     name: str
@@ -36,6 +38,7 @@ class Layer:
     items: Ints
     labels: tuple[str, ...] = ()
     filled: bool = False
+    burn: Burn | None = None
 
     def __repr__(self) -> str:
         return f"<Layer {self.name!r}: {self.work}, {len(self.paths)} paths>"

@@ -15,19 +15,27 @@ from pathlib import Path
 from typing import Any, Final, Literal, TypeVar, cast, get_args
 
 from voronoi_tiles.base.documents import parse_document, read_document
-from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.base.errors import ArgumentError, DesignError
 from voronoi_tiles.base.values import each, flag, number, shown, suggestion, table, within
+from voronoi_tiles.formats.burns import ROLES, Burn, Role, rate, rates_of
 
-Role = Literal["cut", "inner", "score", "engrave"]
-Format = Literal["svg", "dxf", "pdf", "lbrn2"]
+Format = Literal["svg", "dxf", "pdf", "lbrn2", "gcode"]
 _Value = TypeVar("_Value")
 
 SvgCurves = Literal["exact", "arc", "cubic", "polyline"]
 DxfCurves = Literal["arc", "spline", "polyline"]
 
-ROLES: Final[tuple[Role, ...]] = get_args(Role)
 FORMATS: Final[tuple[Format, ...]] = get_args(Format)
 DEFAULT: Final = "plain"
+
+SUFFIXES: Final[Mapping[str, Format]] = {"nc": "gcode"}
+"""Other suffixes that files of a format have."""
+
+_EXAMPLES: Final[Mapping[str, Mapping[Role, int]]] = {
+    "feed": {"cut": 300, "inner": 300, "score": 1500, "engrave": 3000},
+    "power": {"cut": 800, "inner": 800, "score": 300, "engrave": 150},
+}
+"""What feeds and powers may look like."""
 
 _KEYS: Final = (
     "title",
@@ -39,8 +47,11 @@ _KEYS: Final = (
     "curves",
     "unread",
     "fill_engraving",
+    "feed",
+    "power",
+    "power_max",
 )
-_TABLES: Final = ("colours", "layers", "dxf_layers", "curves")
+_TABLES: Final = ("colours", "layers", "dxf_layers", "curves", "feed", "power")
 _STROKE_MAX: Final = 10.0  # a line of more millimetres hides what it draws
 
 
@@ -52,7 +63,8 @@ class Preset:
     inside them, scores, engraving. `palette` are the colours of further layers of cuts. `stroke` is the width of lines
     in millimetres; with `stroke_kerf` a wider kerf takes its place. `svg_curves` and `dxf_curves` say what curves
     become. `unread` gives, for a format that the target does not read, the one to use instead. With `fill_engraving`
-    the target engraves what is filled.
+    the target engraves what is filled. `feed` in mm/min and `power`, up to `power_max`, are for files that drive a
+    laser themselves; they have entries for those of ROLES that the preset knows them for.
     """
 
     name: str
@@ -67,6 +79,9 @@ class Preset:
     dxf_curves: DxfCurves
     unread: Mapping[Format, Format]
     fill_engraving: bool
+    feed: Mapping[Role, float]
+    power: Mapping[Role, float]
+    power_max: float
 
     def stroke_width(self, kerf: float = 0.0) -> float:
         """The width of lines for a kerf; both in millimetres."""
@@ -75,6 +90,34 @@ class Preset:
     def layer_name(self, role: Role, form: Format) -> str:
         """What a layer is called in a format."""
         return self.dxf_layers[role] if form == "dxf" else self.layers[role]
+
+    def burns(self, roles: Collection[Role], feed: str | None, power: str | None) -> dict[Role, Burn]:
+        """How a laser goes along each of `roles`, by texts that `rates_of` reads or else by the preset.
+
+        Cuts inside are worked as those around, unless they have rates of their own. Raises ArgumentError where a rate
+        of one of the roles is nowhere given, and where a power is beyond the machine's.
+        """
+        feeds = {**self.feed, **rates_of(feed)}
+        powers = {**self.power, **rates_of(power)}
+        for rates in (feeds, powers):
+            if "cut" in rates:
+                rates.setdefault("inner", rates["cut"])
+        lacking = [role for role in dict.fromkeys(roles) if role not in feeds or role not in powers]
+        if "cut" in lacking:
+            lacking = [role for role in lacking if role != "inner"]
+        if lacking:
+            raise ArgumentError(
+                f"G-code drives the laser: it needs `feed` and `power` of {' and '.join(lacking)}",
+                remedy=f"Give {_example('feed', lacking)} in mm/min and {_example('power', lacking)} of the machine's "
+                "$30, with your own numbers, or put them into a preset: feed = { cut = 300 }.",
+            )
+        for role in roles:
+            if powers[role] > self.power_max:
+                raise ArgumentError(
+                    f"a `power` of {powers[role]:g} for {role} is more than the machine's {self.power_max:g}",
+                    remedy="Give at most as much, or put the machine's setting $30 into a preset: power_max = 10000.",
+                )
+        return {role: Burn(feeds[role], powers[role], self.power_max) for role in roles}
 
     def require(self, form: Format) -> None:
         """Raise DesignError, with the format to use instead, where the target does not read this one."""
@@ -146,6 +189,11 @@ def _merged(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
     return merged
 
 
+def _example(name: str, roles: Collection[Role]) -> str:
+    """An option with rates for some roles, as messages name it."""
+    return f"`{name}='{','.join(f'{role}={_EXAMPLES[name][role]}' for role in roles)}'`"
+
+
 # --- values -----------------------------------------------------------------------------------------------------
 
 
@@ -172,6 +220,9 @@ def _read(name: str, values: Mapping[str, Any]) -> Preset:
         dxf_curves=cast("DxfCurves", dxf),
         unread=_unread(values),
         fill_engraving=_at("fill_engraving", _flag, values["fill_engraving"]),
+        feed=_rates(values, "feed"),
+        power=_rates(values, "power"),
+        power_max=_at("power_max", rate, values["power_max"]),
     )
 
 
@@ -192,6 +243,13 @@ def _names(values: Mapping[str, Any], key: str) -> dict[Role, str]:
     names = _table(values, key, ROLES)
     with within(key):
         return {role: _at(role, _text, names[role]) for role in ROLES}
+
+
+def _rates(values: Mapping[str, Any], key: str) -> dict[Role, float]:
+    """Numbers for some roles."""
+    rates = _table(values, key, ROLES)
+    with within(key):
+        return {cast("Role", role): _at(role, rate, value) for role, value in rates.items()}
 
 
 def _unread(values: Mapping[str, Any]) -> dict[Format, Format]:

@@ -15,12 +15,13 @@ _HEAD: Final = 4 * 2**20
 _SVG: Final = re.compile(rb"<vt:recipe\b([^<>]*)>([^<]*)")
 _SVG_FACT: Final = re.compile(r'([\w-]+)="([^"]*)"')
 _DXF: Final = re.compile(rb"^999\r?\nrecipe (.*?)\r?$", re.MULTILINE)
+_GCODE: Final = re.compile(rb"^; recipe (.*?)\r?$", re.MULTILINE)
 _PDF: Final = re.compile(rb"/Subject <FEFF([0-9A-F]+)>")
 _LIGHTBURN: Final = re.compile(rb"<Notes\b[^<>]*?\bNotes=(?:\"([^\"]*)\"|'([^']*)')")
 
 
 def recipe_of(data: bytes) -> Mapping[str, str]:
-    """What an SVG, DXF, PDF or LightBurn file of ours says of how it was made; nothing for files of others.
+    """What an SVG, DXF, PDF, LightBurn or G-code file of ours says of how it was made; nothing for files of others.
 
     "design" and "job" are JSON, where there are any.
     """
@@ -36,6 +37,8 @@ def recipe_of(data: bytes) -> Mapping[str, str]:
         if notes := _LIGHTBURN.search(tail):
             lines = html.unescape((notes[1] or notes[2] or b"").decode()).splitlines()
             return dict(line.split(": ", 1) for line in lines if ": " in line)
+        if gcode := _GCODE.findall(head):
+            return _texts(b"".join(gcode).decode())
     except (ValueError, RecursionError):
         pass
     return {}

@@ -19,6 +19,12 @@ BYTES_MAX: Final = 256 * 2**20
 DXF_BYTES_MAX: Final = 64 * 2**20
 """Largest DXF file; bytes. Twenty seconds' work; a text of tags takes some ten times its size in memory."""
 
+GCODE_BYTES_MAX: Final = 64 * 2**20
+"""Largest G-code file; bytes. A sheet of 10,000 tiles has a third of it."""
+
+LINES_MAX: Final = 4_000_000
+"""Most lines of a G-code file; a count. Half a minute's work."""
+
 DEPTH_MAX: Final = 1_000
 """Deepest nesting of groups, clones and blocks; a count. Drawings have some ten."""
 
@@ -86,12 +92,12 @@ class Dots:
 class ReadDrawing:
     """What a file draws.
 
-    `format` is "svg" or "dxf". `width` and `height` of the page are in millimetres, None where the file has no page.
-    `unit` is the unit as the file declares it, "" where it declares none; with `unit_known` false the size is a guess:
-    by CSS 96 user units to the inch (SVG), or as `unit_guess` says (DXF). `dots` have no size, and are in no shape.
-    `ignored` counts what was left out, by the name of its element; `clones` counts what was drawn through references
-    (use, INSERT). `remarks` are sentences on what had to be mended or guessed to read the file. `job` is what a file of
-    our own says of its job, empty for all others.
+    `format` is "svg", "dxf" or "gcode". `width` and `height` of the page are in millimetres, None where the file has no
+    page. `unit` is the unit as the file declares it, "" where it declares none; with `unit_known` false the size is a
+    guess: by CSS 96 user units to the inch (SVG), or as `unit_guess` says (DXF). `dots` have no size, and are in no
+    shape. `ignored` counts what was left out, by the name of its element; `clones` counts what was drawn through
+    references (use, INSERT). `remarks` are sentences on what had to be mended or guessed to read the file. `job` is
+    what a file of our own says of its job, empty for all others.
     """
 
     format: str

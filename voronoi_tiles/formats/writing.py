@@ -6,9 +6,10 @@ from dataclasses import replace
 from io import RawIOBase
 from typing import BinaryIO, cast, get_args
 
+from voronoi_tiles.formats.burns import Role
 from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
 from voronoi_tiles.formats.page import Drawing
-from voronoi_tiles.formats.presets import FORMATS, DxfCurves, Format, Role, load_preset
+from voronoi_tiles.formats.presets import FORMATS, DxfCurves, Format, load_preset
 from voronoi_tiles.paths.conversion import to_cubics
 from voronoi_tiles.paths.paths import ARC
 
@@ -37,23 +38,32 @@ def write_drawing(
             from voronoi_tiles.formats.lbrn2 import write_lbrn2
 
             write_lbrn2(drawing, out)
+        case "gcode":
+            from voronoi_tiles.formats.gcode.writer import write_gcode
+
+            write_gcode(drawing, out)
         case _:
             raise ValueError(f"no drawing can be written as {form!r}: use one of {', '.join(FORMATS)}")
 
 
-def recoloured(drawing: Drawing, preset_name: str, form: Format) -> Drawing:
+def recoloured(
+    drawing: Drawing, preset_name: str, form: Format, feed: str | None = None, power: str | None = None
+) -> Drawing:
     """A drawing whose layers "engrave", "inside" and "cut" have the names and colours of a preset.
 
-    Raises DesignError where the preset is broken or does not read the format.
+    In G-code they are burnt with `feed` and `power`, texts that `rates_of` reads, or as the preset says. Raises
+    DesignError where the preset is broken or does not read the format, ArgumentError where neither says how to burn.
     """
     preset = load_preset(preset_name)
     preset.require(form)
     roles: dict[str, Role] = {"engrave": "engrave", "inside": "inner", "cut": "cut"}
+    used = [roles[layer.name] for layer in drawing.layers]
+    burns = preset.burns(used, feed, power) if form == "gcode" else {}
     layers = []
     for layer in drawing.layers:
         role = roles[layer.name]
-        name = preset.layer_name(role, form)
-        layers.append(replace(layer, name=name, colour=preset.colours[role], stroke=preset.stroke_width()))
+        name, burn = preset.layer_name(role, form), burns.get(role)
+        layers.append(replace(layer, name=name, colour=preset.colours[role], stroke=preset.stroke_width(), burn=burn))
     return replace(drawing, layers=tuple(layers))
 
 

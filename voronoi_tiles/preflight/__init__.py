@@ -33,7 +33,7 @@ def preflight(
     layers: Collection[str] = (),
     marked: str | os.PathLike[str] | None = None,
 ) -> PreflightReport:
-    """Find what would spoil the cut of an SVG or DXF file; `-` is standard input.
+    """Find what would spoil the cut of an SVG, DXF or G-code file; `-` is standard input.
 
     Only the `layers` (or colours "#rrggbb") are judged; without any, all strokes but those on layers whose names say
     that they are engraved or scored. With `marked` a picture of the drawing is written, an SVG file with a numbered

@@ -102,7 +102,7 @@ def exported(design: Mapping[str, Any], job: Mapping[str, Any], name: str) -> tu
 
 
 def coupon_file(options: Mapping[str, Any]) -> tuple[str, bytes]:
-    """The name and the bytes of a coupon for `thickness`, `kerfs`, `plug`, `preset` and `format`.
+    """The name and the bytes of a coupon for `thickness`, `kerfs`, `plug`, `preset`, `feed`, `power` and `format`.
 
     Raises VoronoiTilesError.
     """
@@ -110,7 +110,7 @@ def coupon_file(options: Mapping[str, Any]) -> tuple[str, bytes]:
     form = given.pop("format", "svg")
     if form not in DRAWINGS:
         raise ArgumentError(f"no coupon can be made as {shown(form)}", remedy=f"Use one of {', '.join(DRAWINGS)}.")
-    known = ("thickness", "kerfs", "plug", "preset")
+    known = ("thickness", "kerfs", "plug", "preset", "feed", "power")
     for unknown in given.keys() - set(known):
         raise ArgumentError(f"a coupon has no option {shown(unknown)}", remedy=f"Give {', '.join(known)}.")
     if "thickness" not in given:

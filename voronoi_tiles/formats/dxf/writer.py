@@ -11,7 +11,7 @@ import io
 import json
 import re
 import unicodedata
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from decimal import Decimal
 from itertools import pairwise
 from typing import Any, BinaryIO, Final
@@ -22,6 +22,7 @@ from voronoi_tiles.base.arrays import Complexes, Floats, Ints
 from voronoi_tiles.formats.cubics import all_cubic
 from voronoi_tiles.formats.decimals import decimal_texts
 from voronoi_tiles.formats.page import Drawing, Layer
+from voronoi_tiles.formats.path_blocks import path_blocks
 from voronoi_tiles.formats.presets import DxfCurves
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
 
@@ -34,7 +35,6 @@ _TAKES: Final[dict[DxfCurves, tuple[int, ...]]] = {
     "spline": (LINE, QUAD, CUBIC),
     "polyline": (LINE,),
 }
-_BLOCK: Final = 1 << 16  # segments that are held as text at a time
 _NAME_MAX: Final = 31  # R12 takes no longer names of layers
 _COMMENT_MAX: Final = 200  # old readers take lines of 255 characters
 
@@ -68,7 +68,7 @@ def write_dxf(drawing: Drawing, file: BinaryIO, *, curves: DxfCurves, accuracy: 
     head, tail, owner, handle = _frame(drawing, names, r12=curves == "polyline")
     file.write((_comments(drawing, curves, accuracy) + head).encode("ascii"))
     for layer, name in zip(drawing.layers, names, strict=True):
-        for block in _blocks(layer.paths):
+        for block in path_blocks(layer.paths):
             bodies = _BODIES[curves](block, name)
             if curves != "polyline":
                 bodies = [_with_head(body, handle + k, owner, name) for k, body in enumerate(bodies)]
@@ -87,15 +87,6 @@ def _refuse_others(layer: Layer, curves: DxfCurves) -> None:
 
 
 # --- entities ---------------------------------------------------------------------------------------------------
-
-
-def _blocks(paths: Paths) -> Iterator[Paths]:
-    """The paths that have segments, in blocks of bounded size."""
-    kept = np.flatnonzero(paths.counts > 0)
-    block = np.cumsum(paths.counts[kept]) // _BLOCK
-    for part in np.split(kept, np.flatnonzero(np.diff(block)) + 1):
-        if len(part):
-            yield paths.take(part)
 
 
 def _with_head(body: str, handle: int, owner: str, layer: str) -> str:

@@ -1,0 +1,42 @@
+"""What is said beside a product: widths that change nothing, lines that are cut twice, pieces that fall out."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from voronoi_tiles.base.text import counted
+from voronoi_tiles.fabrication.cutting import Cut
+from voronoi_tiles.fabrication.job import Job
+from voronoi_tiles.fabrication.layout import Layout
+from voronoi_tiles.formats.presets import Format
+
+_STROKED: Final = ("svg", "pdf")
+"""The formats that have widths of lines."""
+
+
+def untabbed(cuts: list[Cut], job: Job) -> list[str]:
+    """Say how many pieces are too small for tabs, where there are any."""
+    small = sum(int(cut.paths.closed.sum()) for cut in cuts) if job.tabs > 0.0 and job.cuts_pieces else 0
+    if not small:
+        return []
+    are, fall = ("is", "falls") if small == 1 else ("are", "fall")
+    return [f"{counted(small, 'contour')} {are} too short for tabs of {job.tabs:g} mm, and {fall} out"]
+
+
+def unstroked(form: Format, job: Job) -> list[str]:
+    """Say that a format has no widths of lines, where one is asked for."""
+    return (
+        [f"{form} files have no line widths: `stroke` changes nothing"] if job.stroke and form not in _STROKED else []
+    )
+
+
+def doubled(layout: Layout, job: Job) -> list[str]:
+    """Say that neighbours' contours lie on each other, or touch, where they do."""
+    if not job.cuts_pieces or (job.apart or 0.0) > 0.0 or len(layout.copies.tile) < 2 or job.sheet is None:
+        return []
+    if job.pack or (job.split == "files" and (job.scheme == "fewest" or isinstance(job.scheme, int))):
+        return []  # neighbours are in different files
+    if job.apart is not None:
+        return ["neighbouring contours touch, and are cut twice where they lie on each other: `gap='1mm'` avoids it"]
+    once = "" if job.needs_pieces() else "`edges='once'`, or "
+    return [f"neighbouring contours lie on each other, and are cut twice: {once}`gap='1mm'`, avoids it"]
