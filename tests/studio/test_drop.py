@@ -34,17 +34,18 @@ JOBS: dict[str, dict[str, Any]] = {
 }
 
 
-@pytest.mark.parametrize("suffix", ["svg", "dxf", "pdf", "lbrn2"])
+@pytest.mark.parametrize("suffix", ["svg", "dxf", "pdf", "lbrn2", "gcode"])
 @pytest.mark.parametrize("name", JOBS)
 def test_files_of_ours_open_again(tmp_path: Path, name: str, suffix: str) -> None:
     """As the design and the job that made them, whatever the format; a drawing that was a stroke is its path."""
     (tmp_path / "leaf.svg").write_text(f'{PAGE}<path d="M 0 0 L 9 4" stroke="black"/></svg>')
     site = vt.Site([vt.drawing("leaf.svg", translate=(12, 12)), vt.point(3 + 7j)], name="<\"é'&>")
     design = vt.Design("p4", 60, site, folder=tmp_path, units="cm" if name == "piece" else "mm")
-    job = vt.Job(**JOBS[name])
+    burn: dict[str, Any] = {"feed": 300, "power": "cut=800"} if suffix == "gcode" else {}
+    job = vt.Job(**JOBS[name], **burn)
     file = tmp_path / f"result.{suffix}"
     tiling = design.tessellate()
-    tiling.export(file, job=job) if JOBS[name] or suffix in ("pdf", "lbrn2") else tiling.export(file)
+    tiling.export(file, job=job) if JOBS[name] or suffix in ("pdf", "lbrn2", "gcode") else tiling.export(file)
     answer = dropped(file.read_bytes(), file.name, 1.0)
     assert vt.Design.from_dict(answer["design"]) == vt.Design.loads(design.source)
     assert all(isinstance(value, str | int | float) for value in answer["job"].values())

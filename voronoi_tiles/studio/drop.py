@@ -27,10 +27,10 @@ SEGMENTS_MAX: Final = 5_000
 def dropped(data: bytes, name: str, unit_mm: float, folder: str = os.curdir) -> dict[str, Any]:
     """What a file becomes in a design of a folder, whose unit is `unit_mm` millimetres.
 
-    A design file (TOML, JSON) gives the "design" in its JSON form. One that we have exported (SVG, DXF, PDF, LightBurn)
-    gives it, too, and the options of its "job". Any other SVG or DXF file gives "strokes" of path data, one for each
-    object, as strokes of the kind `file` have it: in its real size, y up, the lower left corner of all at the origin.
-    "notes" are sentences on what was left out or guessed, or is not in the folder. Raises DesignError.
+    A design file (TOML, JSON) gives the "design" in its JSON form. One that we have exported (SVG, DXF, PDF, LightBurn,
+    G-code) gives it, too, and the options of its "job". Any other SVG, DXF or G-code file gives "strokes" of path data,
+    one for each object, as strokes of the kind `file` have it: in its real size, y up, the lower left corner of all at
+    the origin. "notes" are sentences on what was left out or guessed, or is not in the folder. Raises DesignError.
     """
     name = printable(os.path.basename(name)) or "drawing"  # noqa: PTH119 - any name
     if name.lower().endswith((".toml", ".json")):

@@ -47,6 +47,7 @@ _TYPES: Final = {
 
 _DOWNLOADS: Final = {
     ".dxf": "image/vnd.dxf",
+    ".gcode": "text/x-gcode",
     ".json": "application/json",
     ".lbrn2": "application/xml",
     ".pdf": "application/pdf",

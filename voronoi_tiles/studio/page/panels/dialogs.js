@@ -383,7 +383,7 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
         open() {
             const input = make("input", {
                 type: "file",
-                accept: ".toml,.json,.svg,.svgz,.dxf,.pdf,.lbrn2",
+                accept: ".toml,.json,.svg,.svgz,.dxf,.pdf,.lbrn2,.gcode,.nc",
                 onchange: () => input.closest("dialog").querySelector("button.first").click(),
             });
             const address = make("input", { type: "text", autocomplete: "off", spellcheck: "false" });
@@ -393,7 +393,7 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
                     make(
                         "p",
                         {},
-                        "A design (TOML or JSON) takes the place of what is drawn; undo leads back. So does an SVG, DXF, PDF or LightBurn file that was exported from here, with the job that it was made of. Another SVG or DXF drawing becomes strokes of the site in hand.",
+                        "A design (TOML or JSON) takes the place of what is drawn; undo leads back. So does an SVG, DXF, PDF, LightBurn or G-code file that was exported from here, with the job that it was made of. Another SVG, DXF or G-code drawing becomes strokes of the site in hand.",
                     ),
                     field("File", input),
                     field("Or a link from Share", address),

@@ -13,7 +13,7 @@ import { deferred, field, inLabels, labelOf, lengthField, make, refill } from ".
 const HEADINGS = [
     ["Sheet", ["sheet", "margin", "fit", "pieces"]],
     ["Cut", ["kerf", "edges", "gap", "tabs", "fillet"]],
-    ["Target", ["preset", "curves", "accuracy", "stroke"]],
+    ["Target", ["preset", "curves", "accuracy", "stroke", "feed", "power"]],
     ["Place", ["rotate", "offset", "frame"]],
     ["Engrave", ["labels", "label_height", "art", "marks", "bar"]],
     ["Colours", ["colours", "into", "pack", "stock", "only_colour"]],
