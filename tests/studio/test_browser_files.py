@@ -61,7 +61,7 @@ def window(page: Window) -> Window:
 
 
 def draw_a_line(window: Window) -> None:
-    """Draw a short line, which makes the design another one."""
+    """Draw a short line, which makes the design another one: the page says so and the window stays where it is."""
     window.page.locator("#overlay").focus()
     window.page.keyboard.press("l")
     window.click(8, 24)
@@ -69,6 +69,7 @@ def draw_a_line(window: Window) -> None:
     window.page.keyboard.press("Enter")
     window.page.keyboard.press("v")
     assert len(window.strokes) == 2
+    assert "segment" in window.strokes[1]
 
 
 def saved_state(window: Window) -> str:
@@ -157,7 +158,7 @@ def test_a_change_outside_while_something_is_not_saved(window: Window, studio: S
     assert len(vt.Design.load(path).sites[0].strokes) == 2
     assert (studio.folder / "work/bird-backup.toml").read_text(encoding="utf-8") == theirs
     page.get_by_text("bird-backup.toml").wait_for()
-    page.get_by_role("button", name="Close").click()
+    page.locator("#banner").get_by_role("button", name="Close").click()
 
     window.choose("Line 1")
     page.locator("#overlay").focus()

@@ -131,7 +131,7 @@ export const select = {
     title: "Select",
     icon: "select",
     cursor: "default",
-    help: "Click a stroke, drag its points; ends of lines and pen curves join where they meet. Double click puts in a point, or smooths a corner.",
+    help: "Click a stroke, drag its points (ends of lines and pen curves join). Double click puts in a point, or smooths a corner.",
     down(touch, hands) {
         const { store } = hands;
         const { selection } = store.state;
