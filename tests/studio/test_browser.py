@@ -252,3 +252,8 @@ def test_points_are_numbers_with_units(window: Window) -> None:
     field.fill("a lot")
     field.press("Enter")
     assert window.design["site"][0]["strokes"][0]["polyline"][1] == pytest.approx([20.0, 4.0])
+    error = page.locator("#panel-drawing").get_by_role("alert")
+    assert "Write a length" in error.inner_text()
+    field.press("Escape")
+    error.wait_for(state="detached")
+    assert field.input_value() == "20"

@@ -126,6 +126,8 @@ def test_errors_stand_by_their_fields(window: Window) -> None:
     assert "Write a length such as 12.5mm" in alert.inner_text()
     assert alert.get_attribute("id") in (wrong.get_attribute("aria-describedby") or "").split()
     assert marked.evaluate_all("all => all.map((one) => one.id)") == [gap.get_attribute("id")]
+    borders = [field.evaluate("one => getComputedStyle(one).borderColor") for field in (gap, sheet)]
+    assert borders[0] != borders[1]
     page.keyboard.press("Control+e")
     page.locator("#banner").get_by_text("Gap, mm, under Job, cannot be read: 1 +").wait_for()
     assert page.get_by_role("dialog").count() == 0
