@@ -247,7 +247,7 @@ def test_without_webgl(chromium: Any, studio: Studio, how: str) -> None:
             browser, studio, script=patch if how == "patched" else "", viewport={"width": 900, "height": 640}
         ) as window:
             page = window.page
-            stay = page.get_by_role("button", name="Stay with the file")
+            stay = page.get_by_role("button", name="Begin anew")
             page.wait_for_function(
                 "() => document.querySelector('dialog') || document.documentElement.dataset.exact.startsWith('proved')"
             )
