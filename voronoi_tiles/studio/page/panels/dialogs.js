@@ -11,7 +11,9 @@ import { placementOf } from "../model/strokes.js";
 import { regionOf } from "../model/symmetry.js";
 import { boxOf, entriesOf } from "../scene.js";
 import { drawThumbnail } from "../view/thumbnail.js";
+import { showDialog } from "./dialog.js";
 import { field, make } from "./elements.js";
+import { download, nameOf, post } from "./exchange.js";
 import { lettersPart } from "./letters.js";
 
 /**
@@ -26,103 +28,14 @@ import { lettersPart } from "./letters.js";
 /** The side of an example's picture; CSS pixels. */
 const EXAMPLE = 140;
 
-/** @param {Blob} blob @param {string} name */
-function download(blob, name) {
-    const address = URL.createObjectURL(blob);
-    make("a", { href: address, download: name }).click();
-    setTimeout(() => URL.revokeObjectURL(address), 10_000);
-}
-
-/**
- * Post to the server; what it refuses is an error for people.
- * @param {string} path
- * @param {BodyInit} body
- * @param {{type?: string, signal?: AbortSignal}} [more] `signal` gives it up
- */
-async function post(path, body, { type = "application/json", signal } = {}) {
-    const answer = await fetch(path, { method: "POST", headers: { "Content-Type": type }, body, signal });
-    if (!answer.ok) {
-        const error = await answer.json().catch(() => ({ message: `The server says ${answer.status}`, remedy: "" }));
-        throw Object.assign(new Error(`${error.message.replace(/\.?$/, ".")} ${error.remedy ?? ""}`.trim()), { error });
-    }
-    return answer;
-}
-
-/** @param {Response} answer @param {string} other */
-function nameOf(answer, other) {
-    const name = answer.headers.get("Content-Disposition")?.match(/filename\*=utf-8''([^;]+)/)?.[1];
-    return name ? decodeURIComponent(name) : other;
-}
-
 /**
  * The dialogs of the page, each a function that opens it.
  * @param {HTMLElement} home
  * @param {Context} context
  */
 export function dialogs(home, { store, link, stage, save, keepMine }) {
-    /**
-     * @param {string} title
-     * @param {(Node | string)[]} content
-     * @param {{label: string, first?: boolean, whole?: boolean, run?: (signal: AbortSignal) => unknown}[]} actions the
-     *     last closes without doing anything, and gives up what one before it is doing, but for what is done as a whole
-     */
-    const open = (title, content, actions) => {
-        const said = make("p", { class: "error", role: "alert" });
-        const working = make("p", { class: "note", role: "status" });
-        const stop = new AbortController();
-        const buttons = actions.map(({ label, first, whole, run }) =>
-            make(
-                "button",
-                {
-                    type: "button",
-                    class: first ? "first" : "",
-                    onclick: async () => {
-                        if (box.ariaBusy && (run || box.dataset.whole)) {
-                            return;
-                        }
-                        try {
-                            said.textContent = "";
-                            const done = run?.(stop.signal);
-                            if (done instanceof Promise) {
-                                box.ariaBusy = "true";
-                                box.dataset.whole = whole ? "yes" : "";
-                                working.replaceChildren(make("progress", { "aria-hidden": true }), " Working");
-                                await done;
-                            }
-                            box.close();
-                        } catch (error) {
-                            said.textContent = error instanceof Error ? error.message : String(error);
-                        } finally {
-                            box.ariaBusy = null;
-                            working.textContent = "";
-                        }
-                    },
-                },
-                label,
-            ),
-        );
-        const heading = make("h2", { id: "dialog-title" }, title);
-        const box = make(
-            "dialog",
-            {
-                "aria-labelledby": "dialog-title",
-                oncancel: (/** @type {Event} */ event) => box.ariaBusy && box.dataset.whole && event.preventDefault(),
-                onclose: () => {
-                    stop.abort();
-                    box.remove();
-                },
-            },
-            heading,
-            ...content,
-            said,
-            working,
-            make("footer", {}, ...buttons),
-        );
-        home.replaceChildren(box);
-        box.showModal();
-        box.scrollTop = 0;
-        return { box, said };
-    };
+    /** @param {string} title @param {(Node | string)[]} content @param {import("./dialog.js").Action[]} actions */
+    const open = (title, content, actions) => showDialog(home, title, content, actions);
 
     const close = { label: "Close" };
     const cancel = { label: "Cancel" };
