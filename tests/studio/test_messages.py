@@ -303,10 +303,13 @@ def test_who_sends_and_never_reads_is_not_waited_for(studio: RunningStudio) -> N
 )
 def test_files_are_looked_for_in_no_time(tmp_path: Path, site: list[Any]) -> None:
     """Whoever names them a million letters long, or by the thousand: the server answers others meanwhile."""
-    begun = time.process_time()
-    with suppress(DesignError):
-        check_files({"site": site}, {}, str(tmp_path), ())
-    assert time.process_time() - begun < 0.5
+    took = []
+    for _ in range(3):  # garbage of tests before may be collected in one of them
+        begun = time.process_time()
+        with suppress(DesignError):
+            check_files({"site": site}, {}, str(tmp_path), ())
+        took.append(time.process_time() - begun)
+    assert min(took) < 0.5
 
 
 def test_the_files_of_a_design_are_counted(tmp_path: Path) -> None:
