@@ -131,6 +131,9 @@ export class Link {
         socket.addEventListener("close", (event) => {
             this.#socket = null;
             this.#answerNext(null);
+            if (this.#left) {
+                return; // the page says why: it is no connection that is lost
+            }
             if (event.code === TAKEN_OVER) {
                 this.#store.set({
                     trouble: {
@@ -141,9 +144,6 @@ export class Link {
                 return;
             }
             this.#store.set({ connected: false });
-            if (this.#left) {
-                return;
-            }
             setTimeout(() => this.connect(), AGAIN_MS[Math.min(this.#tries++, AGAIN_MS.length - 1)]);
         });
     }
