@@ -21,12 +21,12 @@ from voronoi_tiles.fabrication.job_options import (
     choice,
     flag,
     length,
+    rates,
     read_angle,
     read_colour,
     read_colours,
     read_count,
     read_offset,
-    read_rates,
     read_sheet,
     read_size,
     read_text,
@@ -154,20 +154,14 @@ class Job:
         most=10.0,
         shown="WIDTH",
     )
-    feed: Option[Rates, str | None] = Option(
-        None,
-        read_rates,
+    feed: Option[Rates, str | None] = rates(
         "For G-code, how fast the laser moves: millimetres a minute for cuts, or for each kind of work, "
         "cut=300,engrave=3000 [default: as the preset says].",
-        kind="text",
         shown="MM/MIN",
     )
-    power: Option[Rates, str | None] = Option(
-        None,
-        read_rates,
+    power: Option[Rates, str | None] = rates(
         "For G-code, how strong the laser is: the value of S for cuts, or for each kind of work, cut=800,engrave=150 "
         "[default: as the preset says].",
-        kind="text",
         shown="S",
     )
     labels: Choice[Labels] = choice("none", Labels, "Engrave a label on every piece.")

@@ -94,6 +94,11 @@ def length(
     return Option(default, read, help, kind="length", shown=shown)
 
 
+def rates(help: str, *, shown: str) -> Option[Rates, str | None]:  # noqa: A002 - as in Option
+    """An option that takes a rate for cuts, or one for each kind of work; None as the preset says."""
+    return Option(None, read_rates, help, kind="text", shown=shown)
+
+
 def choice(default: Any, kind: Any, help: str) -> Option[Any, Any]:  # noqa: A002 - as in Option
     """An option that takes one of some words, those of a Literal; None where that is the default."""
     words = get_args(kind)
