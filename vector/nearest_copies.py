@@ -85,6 +85,16 @@ class _Frontier:
     count: Ints
     box: Ints
 
+    @property
+    def first(self) -> Ints:
+        """Where the boxes of each group begin."""
+        return self.count.cumsum() - self.count
+
+    @property
+    def of(self) -> Ints:
+        """The group of each box."""
+        return np.arange(len(self.count)).repeat(self.count)
+
 
 class _CopySearch:
     """The search of one portion of points."""
@@ -145,22 +155,20 @@ class _CopySearch:
         """Replace each box by those that it holds; there are so many on the level below."""
         held = np.minimum(below - WIDTH * frontier.box, WIDTH)
         frontier.box = ranges(WIDTH * frontier.box, held)
-        frontier.count = np.add.reduceat(held, np.cumsum(frontier.count) - frontier.count)
+        frontier.count = np.add.reduceat(held, frontier.first)
 
     def _divide(self, frontier: _Frontier) -> None:
         """Replace each bundle by those, or the points, that it holds."""
-        first = np.cumsum(frontier.count) - frontier.count
-        frontier.box = frontier.box[ranges(np.repeat(first, _BUNDLE), np.repeat(frontier.count, _BUNDLE))]
+        count = frontier.count.repeat(_BUNDLE)
+        frontier.box = frontier.box[ranges(frontier.first.repeat(_BUNDLE), count)]
         bundle, motion = np.divmod(frontier.row, self.motions)
         parts = _BUNDLE * bundle[:, None] + np.arange(_BUNDLE)
         frontier.row = (parts * self.motions + motion[:, None]).ravel()
-        frontier.shift = np.repeat(frontier.shift, _BUNDLE)
-        frontier.count = np.repeat(frontier.count, _BUNDLE)
+        frontier.shift, frontier.count = frontier.shift.repeat(_BUNDLE), count
 
     def _prune(self, bundle: int, boxes: Boxes, frontier: _Frontier) -> _Frontier:
         """The groups without the boxes that can hold the nearest element of no point of their bundles."""
-        of = np.repeat(np.arange(len(frontier.row)), frontier.count)
-        owner = frontier.row // self.motions
+        of, owner = frontier.of, frontier.row // self.motions
         radius = self.radii[bundle][owner]
         centre = (self.images[bundle][frontier.row] - frontier.shift)[of]
         x, y = _from_box(boxes, frontier.box, centre)
@@ -172,9 +180,9 @@ class _CopySearch:
         else:
             x_inside, y_inside, from_inside = x, y, distance
         # Of each group the nearest among the known points of elements.
-        least = np.minimum.reduceat(from_inside, np.cumsum(frontier.count) - frontier.count)
-        best = np.flatnonzero(from_inside == least[of])
-        best = best[np.searchsorted(of[best], np.arange(len(least)))]
+        least = np.minimum.reduceat(from_inside, frontier.first)
+        best = (from_inside == least[of]).nonzero()[0]
+        best = best[of[best].searchsorted(np.arange(len(least)))]
         least_of_all = np.full(len(self.radii[bundle]), np.inf)
         np.minimum.at(least_of_all, owner, least)
         keep = np.flatnonzero(distance <= (least_of_all[owner] + 2 * radius + 2 * self.slack)[of])
@@ -187,18 +195,17 @@ class _CopySearch:
         possible = distance <= bound[of] + np.sqrt(apart) * radius[of]
         keep, of = keep[possible], of[possible]
         count = np.bincount(of, minlength=len(owner))
-        alive = np.flatnonzero(count)
+        alive = count.nonzero()[0]
         return _Frontier(frontier.row[alive], frontier.shift[alive], count[alive], frontier.box[keep])
 
     def _measure(self, frontier: _Frontier) -> tuple[Floats, Ints, Ints]:
         """The distances of points from elements, and the pairs that are near enough."""
-        owner = frontier.row // self.motions
-        of = np.repeat(np.arange(len(owner)), frontier.count)
+        of, owner = frontier.of, frontier.row // self.motions
         where = (self.images[0][frontier.row] - frontier.shift)[of]
         start, chord = self.tree.start[frontier.box], self.tree.chord[frontier.box]
         distance = distances(where, start, chord)
         nearest = np.full(len(self.radii[0]), np.inf)
-        np.minimum.at(nearest, owner, np.minimum.reduceat(distance, np.cumsum(frontier.count) - frontier.count))
+        np.minimum.at(nearest, owner, np.minimum.reduceat(distance, frontier.first))
         point = owner[of]
         # Without the points with which the last bundle was filled up.
         keep = np.flatnonzero((distance <= nearest[point] + self.slack) & (point < self.count))

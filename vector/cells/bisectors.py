@@ -19,7 +19,7 @@ alone:
 
     row of a half-edge: s = p - q cot(a/2)          `_bisecting_slope` is -cot(a/2)
     row of a corner:    x = tan(t/2), where exp(it) = i (v/|v|)^2 conj(u) for the node v and the line's direction u,
-                        both over the axis          `_touching_ray`
+                        both over the axis          `_touching_rays`
 
 The arithmetic is spelt out in real numbers: where a half-edge's function ends and the next corner's begins, both ends
 are the same expression, and must come out as the same bits wherever they stand in their arrays.
@@ -40,6 +40,8 @@ from voronoi_tiles.vector.cells.provisional import Bounds
 
 # Stands for an infinite tangent where a product with it must stay finite.
 _INFINITE = 1e100
+# The same at the low and at the high end of intervals.
+_ENDLESS = np.array([[-_INFINITE], [_INFINITE]])
 # A half-edge that leaves at a smaller angle than the inverse of this bounds nothing but its own end.
 _STEEPEST = 1e18
 # An interval whose ends come out swapped passes through infinity if the angle that it sweeps is larger than this; else
@@ -75,7 +77,7 @@ def find_bisectors(
         (of_corner & half_edge, _corner_with_half_edge),
         (of_corner & corner, _corner_with_corner),
     ):
-        index = np.flatnonzero(chosen)
+        index = chosen.nonzero()[0]
         if len(index):
             found.append(bisectors(pairs.take(index)))
     functions = PartialQuadratics.concatenate(found)
@@ -119,12 +121,17 @@ class _RowPairs:
 
     def direction(self) -> Complexes:
         """The unit vectors of the half-edges beyond."""
-        return self.around.direction[self.around.half_edges.place(self.copy, self.item)]
+        return self.around.direction[self.around.corners.place(self.copy, self.item)]
 
-    def beside(self) -> tuple[Complexes, Complexes]:
-        """The unit vectors of the half-edges before and after the corners beyond."""
+    def ends(self) -> tuple[Ints, Complexes]:
+        """The nodes from and to which the half-edges beyond run, and their places from the rows' origins; (2, k)."""
+        nodes = np.array(self.around.ends(self.copy, self.item))
+        return nodes, self.around.position(self.copy, nodes) - self.rows.origin[self.row]
+
+    def beside(self) -> Complexes:
+        """The unit vectors of the half-edges before and after the corners beyond, complex128 (2, k)."""
         place = self.around.corners.place(self.copy, self.item)
-        return self.around.arriving[place], self.around.leaving[place]
+        return np.array((self.around.arriving[place], self.around.leaving[place]))
 
     def functions(
         self, item: Ints, low: Floats, high: Floats, quadratics: Quadratics, tiny: Bools | None = None
@@ -145,7 +152,7 @@ class _RowPairs:
             row, copy, item = row[index], copy[index], item[index]
             a, b, c, m = a[index], b[index], c[index], m[index]
         low, high = np.maximum(low, self.rows.low[row]), np.minimum(high, self.rows.high[row])
-        i = np.flatnonzero(low < high)
+        i = (low < high).nonzero()[0]
         return PartialQuadratics(row[i], low[i], high[i], a[i], b[i], c[i], m[i], copy[i], item[i])
 
 
@@ -157,25 +164,20 @@ def _half_edge_with_half_edge(pairs: _RowPairs) -> PartialQuadratics:
     along the other half-edge at speed 1, s falls at speed 1 and h at speed k: so k is the slope, and the interval is as
     long as the other half-edge.
     """
-    rows, around, contour = pairs.rows, pairs.around, pairs.around.contour
-    row, item = pairs.row, pairs.item
-    axis, origin = rows.axis[row], rows.origin[row]
-    start, end = around.ends(pairs.copy, item)
-    p1, q1 = _coordinates(axis, around.position(pairs.copy, start) - origin)
-    p2, q2 = _coordinates(axis, around.position(pairs.copy, end) - origin)
+    rows, contour = pairs.rows, pairs.around.contour
+    row, axis = pairs.row, rows.axis[pairs.row]
+    nodes, away = pairs.ends()
+    p, q = _coordinates(axis, away)
     k = _bisecting_slope(*_coordinates(axis, pairs.direction()), _INFINITE)
     own, half_edge = pairs.own, rows.half_edge[row]
     # The end of the row's half-edge lies on its line and at its length, exactly.
-    last, length = contour.target[half_edge], contour.length[half_edge]
-    for node, p, q in ((start, p1, q1), (end, p2, q2)):
-        here = own & (node == last)
-        q[here] = 0.0
-        p[here] = length[here]
-    other = ~(own & (item >> 1 == half_edge >> 1))
-    s1, s2 = p1 + q1 * k, p2 + q2 * k
-    valid = other & (np.maximum(q1, q2) > 0.0) & (np.abs(k) < _STEEPEST) & (s1 > rows.low[row]) & (s2 < rows.high[row])
-    v = np.flatnonzero(valid)
-    q1, q2, s1, s2, k = q1[v], q2[v], s1[v], s2[v], k[v]
+    here = own & (nodes == contour.target[half_edge])
+    p, q = np.where(here, contour.length[half_edge], p), np.where(here, 0.0, q)
+    other = ~(own & (pairs.item >> 1 == half_edge >> 1))
+    s = p + q * k
+    valid = other & (q.max(axis=0) > 0.0) & (np.abs(k) < _STEEPEST) & (s[0] > rows.low[row]) & (s[1] < rows.high[row])
+    v = valid.nonzero()[0]
+    pairs, k, (q1, q2), (s1, s2) = pairs.take(v), k[v], q.take(v, axis=1), s.take(v, axis=1)
     half_square = (1.0 + k * k) / 2.0
     # The nearer end has the smaller rounding error; an end behind the row's line is none.
     at_start = (q1 >= 0.0) & ((q1 <= q2) | (q2 < 0.0))
@@ -184,7 +186,7 @@ def _half_edge_with_half_edge(pairs: _RowPairs) -> PartialQuadratics:
     with np.errstate(divide="ignore", invalid="ignore"):
         foot = m - c / k
     low, high = np.where(q2 < 0.0, foot, s2), np.where(q1 < 0.0, foot, s1)
-    return pairs.take(v).functions(item[v], low, high, (np.zeros(len(v)), k, c, m))
+    return pairs.functions(pairs.item, low, high, (np.zeros(len(v)), k, c, m))
 
 
 def _half_edge_with_corner(pairs: _RowPairs) -> PartialQuadratics:
@@ -207,9 +209,7 @@ def _half_edge_with_corner(pairs: _RowPairs) -> PartialQuadratics:
     v = np.flatnonzero(other & (q > 0.0))
     pairs, p, q = pairs.take(v), p[v], q[v]
     corner, axis = pairs.item, rows.axis[pairs.row]
-    before, after = pairs.beside()
-    leaving = _bisecting_slope(*_coordinates(axis, after), -_INFINITE)
-    arriving = _bisecting_slope(*_coordinates(axis, before), _INFINITE)
+    leaving, arriving = _bisecting_slope(*_coordinates(axis, pairs.beside()[::-1]), _ENDLESS)
     tiny = contour.turn[corner] <= _TINY
     low, high = p + q * leaving, p + q * _unswapped(leaving, arriving, tiny)
     return pairs.functions(len(contour.source) + corner, low, high, _height_of_corner(p, q), tiny)
@@ -223,26 +223,21 @@ def _corner_with_half_edge(pairs: _RowPairs) -> PartialQuadratics:
 
     The corner sees a half-edge only from its left, and each point of it on one ray: x rises from start to end.
     """
-    rows, around, contour = pairs.rows, pairs.around, pairs.around.contour
-    row, item = pairs.row, pairs.item
-    origin = rows.origin[row]
-    start, end = around.ends(pairs.copy, item)
-    to1, to2 = around.position(pairs.copy, start) - origin, around.position(pairs.copy, end) - origin
+    rows, contour = pairs.rows, pairs.around.contour
+    nodes, away = pairs.ends()
     direction = pairs.direction()
-    along1, left1 = _coordinates(direction, to1)
-    along2, left2 = _coordinates(direction, to2)
-    square1, square2 = to1.real**2 + to1.imag**2, to2.real**2 + to2.imag**2
+    along, left = _coordinates(direction, away)
+    square = away.real**2 + away.imag**2
     # The distance of the line, positive where the corner lies on its left; the nearer end has the smaller error.
-    distance = -np.where(square1 < square2, left1, left2)
-    here = contour.corner_node[rows.corner[row]]
-    valid = (distance > 0.0) & ~(pairs.own & ((start == here) | (end == here)))
-    v = np.flatnonzero(valid)
+    distance = -np.where(square[0] < square[1], left[0], left[1])
+    here = contour.corner_node[rows.corner[pairs.row]]
+    v = np.flatnonzero((distance > 0.0) & ~(pairs.own & (nodes == here).any(axis=0)))
     pairs, direction, distance = pairs.take(v), direction[v], distance[v]
     row, axis = pairs.row, rows.axis[pairs.row]
-    low = _touching_ray(direction, axis, to1[v], square1[v], -_INFINITE)
-    high = _touching_ray(direction, axis, to2[v], square2[v], _INFINITE)
+    low, high = _touching_rays(direction, axis, away.take(v, axis=1), square.take(v, axis=1))
     # Half the angle swept is that between the lines to the two ends: compare its sine and cosine, up to a factor.
-    tiny = distance * (along2[v] - along1[v]) <= _TINY * (distance * distance + along1[v] * along2[v])
+    along1, along2 = along.take(v, axis=1)
+    tiny = distance * (along2 - along1) <= _TINY * (distance * distance + along1 * along2)
     high = _unswapped(low, high, tiny)
     # cos(f/2) and sin(f/2): the foot lies a right angle to the right of the direction. The larger one comes first.
     along, across = _coordinates(axis, direction)
@@ -270,12 +265,10 @@ def _corner_with_corner(pairs: _RowPairs) -> PartialQuadratics:
     other = ~(pairs.own & (node == contour.corner_node[rows.corner[pairs.row]]))
     if (square[other] <= pairs.rounding**2).any():
         raise TouchingElementsError
-    v = np.flatnonzero(other)
+    v = other.nonzero()[0]
     pairs, away, square = pairs.take(v), away[v], square[v]
     corner, axis = pairs.item, rows.axis[pairs.row]
-    before, after = pairs.beside()
-    low = _touching_ray(before, axis, away, square, -_INFINITE)
-    high = _touching_ray(after, axis, away, square, _INFINITE)
+    low, high = _touching_rays(pairs.beside(), axis, away, square)
     tiny = contour.turn[corner] <= _TINY
     high = _unswapped(low, high, tiny)
     quadratics = _distance_of_corner(*_coordinates(axis, away), square)
@@ -300,7 +293,7 @@ def _coordinates(axis: Complexes, vector: Complexes) -> tuple[Floats, Floats]:
     return along, left
 
 
-def _bisecting_slope(cosine: Floats, sine: Floats, infinite: float) -> Floats:
+def _bisecting_slope(cosine: Floats, sine: Floats, infinite: float | Floats) -> Floats:
     """-cot(a/2) for angles a, given by cosine and sine; `infinite` where a is exactly 0.
 
     cot(a/2) = (1 + cos a) / sin a = sin a / (1 - cos a): the one that does not cancel.
@@ -310,12 +303,13 @@ def _bisecting_slope(cosine: Floats, sine: Floats, infinite: float) -> Floats:
     return np.where((sine == 0.0) & (cosine > 0.0), infinite, result)
 
 
-def _touching_ray(direction: Complexes, axis: Complexes, vector: Complexes, square: Floats, infinite: float) -> Floats:
-    """x of the ray on which a disc through 0 touches a line of direction u, from its left, at a vector v.
+def _touching_rays(direction: Complexes, axis: Complexes, vector: Complexes, square: Floats) -> Floats:
+    """x of the rays on which two discs through 0 touch lines of direction u, from their left, at vectors v; (2, k).
 
-    `square` is |v|^2; the result is `infinite` where the ray is exactly opposite to the axis. The centre z = v + i r u
-    has |z| = r, so z / r is -i u mirrored at the line through 0 and v, i (v/|v|)^2 conj(u). Over the axis its cosine
-    and sine, times |v|^2, are the real and imaginary part of i v^2 conj(u axis); x is the tangent of half its angle.
+    There are two of the directions, of the vectors, or of both. `square` is |v|^2; the result is infinite, low and
+    high, where the ray is exactly opposite to the axis. The centre z = v + i r u has |z| = r, so z / r is -i u mirrored
+    at the line through 0 and v, i (v/|v|)^2 conj(u). Over the axis its cosine and sine, times |v|^2, are the real and
+    imaginary part of i v^2 conj(u axis); x is the tangent of half its angle.
     """
     along = direction.real * axis.real - direction.imag * axis.imag
     across = direction.real * axis.imag + direction.imag * axis.real
@@ -325,7 +319,7 @@ def _touching_ray(direction: Complexes, axis: Complexes, vector: Complexes, squa
     sine = across * imag + along * real
     with np.errstate(divide="ignore", invalid="ignore"):
         result = np.where(cosine < 0.0, (square - cosine) / sine, sine / (square + cosine))
-    return np.where((sine == 0.0) & (cosine < 0.0), infinite, result)
+    return np.where((sine == 0.0) & (cosine < 0.0), _ENDLESS, result)
 
 
 def _unswapped(low: Floats, high: Floats, tiny: Bools) -> Floats:
@@ -344,7 +338,7 @@ def _below_bounds(rows: Rows, bounds: Bounds, functions: PartialQuadratics) -> I
     flat = np.where(straight, 0.0, -1.0 / bounds.height)
     zero = np.zeros(len(rows))
     limits = flat, zero, np.where(straight, bounds.height, flat), zero
-    index = np.flatnonzero(_below(rows, functions, limits, zero, rows.low, rows.high))
+    index = _below(rows, functions, limits, zero, rows.low, rows.high).nonzero()[0]
     # The provisional envelope's, part by part, as with a corner.
     away = bounds.point - rows.origin
     p, q = _coordinates(rows.axis, away)
@@ -368,8 +362,8 @@ def _below(
     Of a row there may be several limits, each with a doubt, a begin and an end, along a first axis.
     """
     row = functions.row
-    low, high = np.maximum(functions.low, begin[..., row]), np.minimum(functions.high, end[..., row])
-    a0, b0, c0, m0 = (coefficient[..., row] for coefficient in limits)
+    low, high = np.maximum(functions.low, begin.take(row, axis=-1)), np.minimum(functions.high, end.take(row, axis=-1))
+    a0, b0, c0, m0 = (coefficient.take(row, axis=-1) for coefficient in limits)
     x, y = low - m0, high - m0
     limit_low, limit_high = c0 + x * (b0 + x * a0), c0 + y * (b0 + y * a0)
     u, v = low - functions.m, high - functions.m
@@ -384,4 +378,4 @@ def _below(
         dip = np.where(inside, over_low + slope * step / 2.0, over_low)
     least = np.minimum(np.minimum(over_low, over_high), dip)
     terms = np.abs(limit_low) + np.abs(limit_high) + np.where(rows.straight[row], 0.0, np.abs(a0) + np.abs(b0))
-    return np.asarray((least <= (_SLACK + doubt[..., row]) * terms) & (low <= high))
+    return np.asarray((least <= (_SLACK + doubt.take(row, axis=-1)) * terms) & (low <= high))

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges, starts
 from voronoi_tiles.base.tolerance import EPSILON
 from voronoi_tiles.vector.cells.half_edges import Contour
 from voronoi_tiles.vector.cells.hierarchy import FEW, Hierarchy
@@ -19,6 +19,9 @@ from voronoi_tiles.vector.copies import Copies
 
 # Relative slack of the pruning tests, far above their rounding errors.
 _SLACK = 1e-9
+# Pairs that are looked at together: what is computed of more neither stays in the processor's nearest caches nor is
+# kept by the process for the next call.
+_PORTION = 2048
 # Corners begin with the elements that stand so far beside theirs, where there are more elements than a few.
 _BESIDE = np.array([-2, -1, 1, 2])
 
@@ -50,10 +53,10 @@ def move_levels(hierarchy: Hierarchy, copies: Copies) -> list[Level]:
     result = []
     for depth, (first, last) in enumerate(pairwise(hierarchy.level.tolist())):
         images, leaf = Images.of(hierarchy.bundle[first:last], copies), depth == len(hierarchy.level) - 2
-        start = images.moved(hierarchy.start[first:last], copies)
-        end = images.moved(hierarchy.end[first:last], copies)
-        anchor_start = start if leaf else images.moved(hierarchy.anchor_start[first:last], copies)
-        anchor_end = end if leaf else images.moved(hierarchy.anchor_end[first:last], copies)
+        # The elements are their own anchors.
+        ends = (hierarchy.start, hierarchy.end, hierarchy.anchor_start, hierarchy.anchor_end)[: 2 if leaf else 4]
+        points = images.moved(np.array([part[first:last] for part in ends]), copies)
+        (start, end), (anchor_start, anchor_end) = points[:2], points[-2:]
         radius, child = hierarchy.radius[first:last], hierarchy.child[first : last + 1] - last
         # Turned, not found anew between the images: of a short box their rounding would turn it.
         chord = hierarchy.end[first:last] - hierarchy.start[first:last]
@@ -62,7 +65,7 @@ def move_levels(hierarchy: Hierarchy, copies: Copies) -> list[Level]:
             inverse = np.where(length > 0.0, 1.0 / length, 0.0)
         direction = np.empty(len(chord), complex)
         direction.real, direction.imag = chord.real * inverse + (length == 0.0), chord.imag * inverse
-        direction = images.moved(direction, replace(copies, shift=np.zeros(len(copies), complex)))
+        direction = images.turned(direction, copies.unit, copies.conj)
         found = start, end, direction, anchor_start, anchor_end, length, radius
         result.append(Level(first, leaf, images, *found, child))
     return result
@@ -168,34 +171,40 @@ def _narrow(
 def _lower(bound: Floats, row: Ints, height: Floats) -> None:
     """Lower the rows' bounds to the least of their heights, in place; rows ascend."""
     if len(row):
-        first = np.flatnonzero(np.concatenate(([True], row[1:] != row[:-1])))
+        first = starts(row)
         which = row[first]
         bound[which] = np.minimum(bound[which], np.minimum.reduceat(height, first))
 
 
 def _in_reach(rows: Rows, row: Ints, place: Ints, flat: Ints, level: Level, bounds: Bounds) -> Ints:
-    """The pairs whose box may hold an element that matters."""
-    start, direction = level.start[flat], level.direction[flat]
-    length, radius = level.length[place], level.radius[place]
-    # One disc holds all four: it spares most boxes the others.
-    some = np.flatnonzero(_meets(bounds.middle[row], bounds.around[row], start, direction, length, radius))
-    near = np.zeros(len(some), bool)
-    at, boxes = row[some], (start[some], direction[some], length[some], radius[some])
-    for centre, reach in zip(bounds.centre, bounds.reach, strict=True):
-        near |= _meets(centre[at], reach[at], *boxes)
-    kept = some[near]
+    """The pairs whose box may hold an element that matters; there is at least one pair."""
+    portions = [slice(first, first + _PORTION) for first in range(0, len(row), _PORTION)]
+    kept = np.concatenate([some.start + _near(row[some], place[some], flat[some], level, bounds) for some in portions])
     wide = bounds.wide(rows)[row[kept]]
     if wide.any():
         # All discs lie in this box on the row's side of its line, which is the sharper test here.
         chosen = kept[wide]
-        at, width = row[chosen], radius[chosen] * (1.0 + _SLACK)
+        at, width = row[chosen], level.radius[place[chosen]] * (1.0 + _SLACK)
         reach = bounds.height[at] * (1.0 + _SLACK)
-        x0, y0 = _frame(rows.base[at], rows.ray[at], start[chosen])
+        x0, y0 = _frame(rows.base[at], rows.ray[at], level.start[flat[chosen]])
         x1, y1 = _frame(rows.base[at], rows.ray[at], level.end[flat[chosen]])
         inside = ~wide
         inside[wide] = _enters_box(x0, y0, x1, y1, rows.spread[at] + reach + width, -width, 2.0 * reach + width)
         kept = kept[inside]
     return kept
+
+
+def _near(row: Ints, place: Ints, flat: Ints, level: Level, bounds: Bounds) -> Ints:
+    """The pairs whose box meets one of the row's discs."""
+    start, direction = level.start[flat], level.direction[flat]
+    length, radius = level.length[place], level.radius[place]
+    # One disc holds all four: it spares most boxes the others.
+    some = _meets(bounds.middle[row], bounds.around[row], start, direction, length, radius).nonzero()[0]
+    near = np.zeros(len(some), bool)
+    row, boxes = row[some], (start[some], direction[some], length[some], radius[some])
+    for centre, reach in zip(bounds.centre, bounds.reach, strict=True):
+        near |= _meets(centre[row], reach[row], *boxes)
+    return some[near]
 
 
 def _meets(

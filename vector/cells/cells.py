@@ -149,27 +149,27 @@ def _locate(rows: Rows, functions: PartialQuadratics, row: Ints, start: Floats, 
     """
     # Where three functions meet, rounding may leave one of them an interval of an ulp: a break would be located by it.
     null = 4.0 * EPSILON * np.maximum(np.abs(rows.low), np.abs(rows.high))
-    kept = np.flatnonzero(end - start > null[row])
+    kept = (end - start > null[row]).nonzero()[0]
     row, start, end, function = row[kept], start[kept], end[kept], function[kept]
     first = np.append(True, row[1:] != row[:-1])
     start[first] = rows.low[row[first]]
     end[:-1] = np.where(first[1:], end[:-1], start[1:])
     last = np.append(first[1:], True)
     end[last] = rows.high[row[last]]
-    if len(np.unique(row)) < len(rows) or (function < 0).any():
+    if np.count_nonzero(first) < len(rows) or (function < 0).any():
         raise UnboundedCellError
     # Each break is located once, with the flatter of the two functions that meet there: an error in x then moves
     # the point by no more than itself.
-    inner = np.flatnonzero(row[1:] == row[:-1])
+    inner = (~first[1:]).nonzero()[0]
     before, after, at = function[inner], function[inner + 1], end[inner]
     at_start = function.copy()
     at_start[inner + 1] = np.where(
         np.abs(functions.slope(before, at)) <= np.abs(functions.slope(after, at)), before, after
     )
-    begin = _point(rows, row, start, functions.value(at_start, start))
-    finish = np.empty(len(row), complex)
-    finish[inner] = begin[inner + 1]
-    finish[last] = _point(rows, row[last], end[last], functions.value(function[last], end[last]))
+    by, x = np.concatenate((at_start, function[last])), np.concatenate((start, end[last]))
+    point = _point(rows, np.concatenate((row, row[last])), x, functions.value(by, x))
+    begin, finish = point[: len(row)], np.empty(len(row), complex)
+    finish[inner], finish[last] = begin[inner + 1], point[len(row) :]
     return Parts(row, functions.copy[function], functions.item[function], begin, finish)
 
 

@@ -13,6 +13,7 @@ NOTHING: Final = -1
 """The index of no function."""
 # A longer step, relative to the distance of the next root, is not a correction of rounding.
 _NEAR = 1e-3
+_BOTH = np.array([[0], [1]])
 
 
 def lower_envelope(functions: PartialQuadratics, low: Floats, high: Floats) -> tuple[Ints, Floats, Floats, Ints]:
@@ -33,8 +34,8 @@ def lower_envelope(functions: PartialQuadratics, low: Floats, high: Floats) -> t
     stride = int(count.max(initial=0)) or 1
     group = functions.row * stride + index
     # Every envelope starts at its row's low, with nothing where its function is not defined.
-    late = np.flatnonzero(functions.low > low[functions.row])
-    early = np.flatnonzero(functions.high < high[functions.row])
+    late = (functions.low > low[functions.row]).nonzero()[0]
+    early = (functions.high < high[functions.row]).nonzero()[0]
     group = np.concatenate((group, group[late], group[early]))
     start = np.concatenate((functions.low, low[functions.row[late]], functions.high[early]))
     lowest = np.concatenate((np.arange(len(functions.row)), np.full(len(late) + len(early), NOTHING)))
@@ -63,14 +64,12 @@ def _merge(
     np.not_equal(group[1:], group[:-1], out=fresh[1:])
     opening = np.maximum.accumulate(np.where(fresh, place, 0))
     # The function of either envelope that rules from here on: the one that started last.
-    last0 = np.maximum.accumulate(np.where(which == 0, place, -1))
-    last1 = np.maximum.accumulate(np.where(which == 1, place, -1))
-    first = np.where(last0 >= opening, lowest[last0], NOTHING)
-    second = np.where(last1 >= opening, lowest[last1], NOTHING)
+    last = np.maximum.accumulate(np.where(which == _BOTH, place, -1), axis=1)
+    first, second = np.where(last >= opening, lowest[last], NOTHING)
     end = _ends(group, start, high[group // stride])
     winner = np.maximum(first, second)
     wide = end > start
-    contested = np.flatnonzero(wide & (first >= 0) & (second >= 0) & (first != second))
+    contested = (wide & (np.minimum(first, second) >= 0)).nonzero()[0]
     if len(contested):
         extra = _contest(functions, contested, first, second, start, end, winner)
         if extra is not None:
@@ -80,13 +79,13 @@ def _merge(
             order = np.argsort(np.concatenate((place, where)), kind="stable")
             group, start, winner = group[order], start[order], winner[order]
             wide = _ends(group, start, high[group // stride]) > start
-    kept = np.flatnonzero(wide)
+    kept = wide.nonzero()[0]
     group, start, winner = group[kept], start[kept], winner[kept]
     new = np.empty(len(group), bool)
     new[0] = True
     np.not_equal(group[1:], group[:-1], out=new[1:])
     new[1:] |= winner[1:] != winner[:-1]
-    kept = np.flatnonzero(new)
+    kept = new.nonzero()[0]
     return group[kept], start[kept], winner[kept]
 
 
@@ -107,54 +106,48 @@ def _contest(
     Sets `winner` in place for each interval's first part; the result are the further parts as (interval, start,
     lowest), in order, or None.
     """
-    f, g = np.minimum(first[index], second[index]), np.maximum(first[index], second[index])
+    one, other = first[index], second[index]
+    pair = np.array((np.minimum(one, other), np.maximum(one, other)))
     x0, x1 = start[index], end[index]
     middle, half = (x0 + x1) / 2, (x1 - x0) / 2
     # The difference about the interval's middle: v + b t + a t^2 for |t| < half.
-    v = functions.value(f, middle) - functions.value(g, middle)
-    b = functions.slope(f, middle) - functions.slope(g, middle)
-    a = functions.a[f] - functions.a[g]
-    winner[index] = np.where(v <= 0.0, f, g)
+    v, b, a = functions.differences(pair, middle)
+    winner[index] = np.where(v <= 0.0, *pair)
     # Without a root in reach the sign at the middle decides; this spares most intervals the formula.
     reach = np.abs(b) * half + np.abs(a) * half * half
-    near = np.flatnonzero(np.abs(v) <= reach)
+    near = (np.abs(v) <= reach).nonzero()[0]
     if not len(near):
         return None
-    index, f, g, v, b, a = index[near], f[near], g[near], v[near], b[near], a[near]
-    middle, half = middle[near], half[near]
+    v, b, a, half = v[near], b[near], a[near], half[near]
     discriminant = b * b - 4.0 * a * v
     with np.errstate(divide="ignore", invalid="ignore"):
         q = -0.5 * (b + np.copysign(np.sqrt(discriminant), b))
-        r, s = q / a, v / q
-    r = np.where(np.abs(r) < half, r, np.nan)
-    s = np.where(np.abs(s) < half, s, np.nan)
-    low, high = np.fmin(r, s), np.fmax(r, s)
-    cut = np.flatnonzero(~np.isnan(low))
+        roots = np.array((q / a, v / q))
+    roots = np.where(np.abs(roots) < half, roots, np.nan)
+    low, high = np.fmin(*roots), np.fmax(*roots)
+    cut = (~np.isnan(low)).nonzero()[0]
     if not len(cut):
         return None
-    index, f, g, v, b, a = index[cut], f[cut], g[cut], v[cut], b[cut], a[cut]
-    middle, half, low, high = middle[cut], half[cut], low[cut], high[cut]
-    x0, x1 = start[index], end[index]
-
-    def lower(t: Floats) -> Ints:
-        return np.where(v + t * (b + t * a) <= 0.0, f, g)
-
-    winner[index] = lower((low - half) / 2)
-    two = np.flatnonzero(high > low)
-    where = np.concatenate((index, index[two]))
-    at = np.concatenate((middle + low, (middle + high)[two]))
+    v, b, a, half, low, high = v[cut], b[cut], a[cut], half[cut], low[cut], high[cut]
+    near = near[cut]
+    index, pair = index[near], pair.take(near, axis=1)
+    # Before, between and behind both roots.
+    t = np.array((low - half, low + high, high + half)) / 2
+    lowest = np.where(v + t * (b + t * a) <= 0.0, *pair)
+    winner[index] = lowest[0]
+    at = middle[near] + np.array((low, high))
     # About the middle of its interval a steep lowest is large, and its roots have that many digits fewer: one step of
     # Newton's method from where the functions themselves are small gives them back.
-    one, other = np.concatenate((f, f[two])), np.concatenate((g, g[two]))
+    value, slope, _ = functions.differences(pair[:, None], at)
     with np.errstate(divide="ignore", invalid="ignore"):
-        step = (functions.value(one, at) - functions.value(other, at)) / (
-            functions.slope(one, at) - functions.slope(other, at)
-        )
-    reach = _NEAR * np.where(high > low, np.minimum(high - low, half), half)
-    at = np.where(np.abs(step) <= np.concatenate((reach, reach[two])), at - step, at)
+        step = value / slope
+    two = high > low
+    reach = _NEAR * np.where(two, np.minimum(high - low, half), half)
+    at = np.where(np.abs(step) <= reach, at - step, at)
     # Rounding must not carry a cut over the interval's end: the order of starts is what the next merge relies on.
-    at = np.minimum(np.maximum(at, np.concatenate((x0, x0[two]))), np.concatenate((x1, x1[two])))
-    after_low = np.where(high > low, lower((low + high) / 2), lower((low + half) / 2))
-    who = np.concatenate((after_low, lower((high + half) / 2)[two]))
+    at = np.minimum(np.maximum(at, x0[near]), x1[near])
+    # A single root has come twice: nothing is between.
+    further = np.concatenate((two.nonzero()[0], np.arange(len(two), 2 * len(two))))
+    where, at, who = np.concatenate((index, index))[further], at.ravel()[further], lowest[1:].ravel()[further]
     order = np.lexsort((at, where))
     return where[order], at[order], who[order]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, Ints, offsets_of, ranges
+from voronoi_tiles.base.arrays import Bools, Complexes, Ints, offsets_of, ranges
 from voronoi_tiles.base.maps import move
 from voronoi_tiles.vector.cells.half_edges import Contour
 from voronoi_tiles.vector.copies import Copies
@@ -45,14 +45,13 @@ class Images:
         return self.first[copy] + self.rank[thing]
 
     def moved(self, values: Complexes, copies: Copies) -> Complexes:
-        """The images of points, complex128 (things,), in the plane."""
-        return move(values[self.thing], copies.unit[self.copy], copies.shift[self.copy], copies.conj[self.copy])
+        """The images of points, complex128 (..., things), in the plane."""
+        unit, shift, conj = copies.unit[self.copy], copies.shift[self.copy], copies.conj[self.copy]
+        return move(values.take(self.thing, axis=-1), unit, shift, conj)
 
-    def turned(self, values: Complexes, reversed_values: Complexes, copies: Copies) -> Complexes:
-        """The images of directions of half-edges; copies that are turned over run through `reversed_values` back."""
-        conj, unit = copies.conj[self.copy], copies.unit[self.copy]
-        chosen = np.where(conj, reversed_values[self.thing], values[self.thing])
-        return move(chosen, np.where(conj, -unit, unit), np.zeros(1, complex), conj)
+    def turned(self, values: Complexes, unit: Complexes, conj: Bools) -> Complexes:
+        """The images of directions, complex128 (..., things), that copies turn by `unit`, mirrored where `conj`."""
+        return move(values.take(self.thing, axis=-1), unit[self.copy], 0j, conj[self.copy])
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,20 +59,19 @@ class Surroundings:
     """The half-edges and corners of all copies, the face on the left of each.
 
     A copy that is turned over has its half-edges run through backwards: from their `target` to their `source`. `node`,
-    `direction`, `arriving` and `leaving` (complex128, flat over the copies) are the positions of nodes, the unit
-    vectors of half-edges, and those of the half-edges before and after a corner; their places are in `nodes`,
-    `half_edges` and `corners`.
+    `arriving` and `leaving` (complex128, flat over the copies) are the positions of nodes, and the unit vectors of the
+    half-edges before and after a corner; their places are in `nodes` and `corners`. `direction` (complex128) are the
+    unit vectors of half-edges, in the places of the corners at their ends.
     """
 
     contour: Contour
     copies: Copies
     nodes: Images
-    half_edges: Images
     corners: Images
     node: Complexes
-    direction: Complexes
     arriving: Complexes
     leaving: Complexes
+    direction: Complexes
 
     def ends(self, copy: Ints, half_edge: Ints) -> tuple[Ints, Ints]:
         """The nodes from and to which half-edges run in copies."""
@@ -87,18 +85,17 @@ class Surroundings:
 
 def surround(contour: Contour, copies: Copies, node_bundle: Ints) -> Surroundings:
     """All copies of the sites; `node_bundle` (intp, m) is the bundle of each of the contour's nodes."""
-    half_edge_bundle, corner_bundle = node_bundle[contour.source], node_bundle[contour.corner_node]
-    nodes, corners = Images.of(node_bundle, copies), Images.of(corner_bundle, copies)
-    lone = len(corner_bundle) > len(half_edge_bundle)
-    half_edges = Images.of(half_edge_bundle, copies) if lone else corners
+    nodes, corners = Images.of(node_bundle, copies), Images.of(node_bundle[contour.corner_node], copies)
+    # Run through backwards, the two half-edges at a corner change places.
+    beside, turned = np.array((contour.arriving, contour.leaving)), copies.conj[corners.copy]
+    before, after = corners.turned(beside, np.where(copies.conj, -copies.unit, copies.unit), copies.conj)
     return Surroundings(
         contour=contour,
         copies=copies,
         nodes=nodes,
-        half_edges=half_edges,
         corners=corners,
         node=nodes.moved(contour.nodes, copies),
-        direction=half_edges.turned(contour.direction, contour.direction, copies),
-        arriving=corners.turned(contour.arriving, contour.leaving, copies),
-        leaving=corners.turned(contour.leaving, contour.arriving, copies),
+        arriving=np.where(turned, after, before),
+        leaving=np.where(turned, before, after),
+        direction=before,
     )

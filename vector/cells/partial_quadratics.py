@@ -46,6 +46,13 @@ class PartialQuadratics:
         step = x - self.m[index]
         return self.c[index] + step * (self.b[index] + step * self.a[index])
 
+    def differences(self, pair: Ints, x: Floats) -> tuple[Floats, Floats, Floats]:
+        """The first less the second of pairs of functions, intp (2, k): differences of values and slopes at x, of a."""
+        a, b = self.a[pair], self.b[pair]
+        step = x - self.m[pair]
+        value, slope = self.c[pair] + step * (b + step * a), b + 2.0 * a * step
+        return value[0] - value[1], slope[0] - slope[1], a[0] - a[1]
+
     def slope(self, index: Ints, x: Floats) -> Floats:
         """The derivatives at x of the functions at the given indices."""
         return self.b[index] + 2.0 * self.a[index] * (x - self.m[index])

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, starts
 from voronoi_tiles.vector.cells.pencils import Rows
 
 # Relative slack of the pruning tests, far above their rounding errors.
@@ -74,7 +74,7 @@ class Provisional:
         self._straight = rows.straight
         self._middle = np.where(self._straight, (rows.low + rows.high) / 2.0, 0.0)
         self._low, self._high = rows.low - self._middle, rows.high - self._middle
-        self._bases, self._rays = np.stack((rows.base0, rows.base1)), np.stack((rows.ray0, rows.ray1))
+        self._ends = (rows.base0, rows.ray0), (rows.base1, rows.ray1)
         # The points with the lowest bisectors at the low end, at the high end, and at the higher of both; between.
         self._lowest = np.full((3, len(rows)), np.inf)
         self._points = np.full((3, len(rows)), np.nan, complex)
@@ -83,18 +83,16 @@ class Provisional:
     def lower(self, row: Ints, points: Complexes) -> None:
         """Take note of points, complex128 (k,), of the rows `row` (intp, k, ascending, not empty)."""
         rounding = self.bounds.rounding
-        first = np.flatnonzero(np.concatenate(([True], row[1:] != row[:-1])))
-        values = np.empty((3, len(row)))
-        values[:2] = bisector(self._bases[:, row], self._rays[:, row], points, rounding)
-        np.maximum(values[0], values[1], out=values[2])
+        first = starts(row)
+        low, high = (bisector(base[row], ray[row], points, rounding) for base, ray in self._ends)
+        values = np.array((low, high, np.maximum(low, high)))
         _take_lowest(self._lowest, self._points, row, first, values, points)
         ends = self._quadratic(self._points[:2])
         between = self._crossing(ends[:, 0] - ends[:, 1], self._low, self._high)
         base, ray = self._ray(between)
-        inner = np.stack((self._inner, self._points[2]))
-        heights = bisector(base, ray, inner, rounding)
-        least = np.where(heights[1] <= heights[0], heights[1], heights[0])[None]
-        self._inner = np.where(heights[1] <= heights[0], inner[1], inner[0])
+        heights = bisector(base, ray, np.array((self._inner, self._points[2])), rounding)
+        least = heights.min(axis=0, keepdims=True)
+        self._inner = np.where(heights[1] <= heights[0], self._points[2], self._inner)
         found = bisector(base[row], ray[row], points, rounding)
         _take_lowest(least, self._inner[None], row, first, found[None], points)
         self._bound(ends, between)
@@ -103,14 +101,14 @@ class Provisional:
         """The bounds by the points: the outer ones' bisectors are `ends`, the inner one is lowest at t = `between`."""
         bounds, rows = self.bounds, self._rows
         inner = self._quadratic(self._inner)
-        difference = np.stack((ends[:, 0] - inner, inner - ends[:, 1]), axis=1)
-        cut = self._crossing(difference, np.stack((self._low, between)), np.stack((between, self._high)))
+        difference = np.array((ends[:, 0] - inner, inner - ends[:, 1])).swapaxes(0, 1)
+        cut = self._crossing(difference, np.array((self._low, between)), np.array((between, self._high)))
         bounds.point[0], bounds.point[1], bounds.point[2] = self._points[0], self._inner, self._points[1]
         base, ray = self._ray(cut)
-        base, ray = np.stack((rows.base0, *base, rows.base1)), np.stack((rows.ray0, *ray, rows.ray1))
+        base, ray = np.array((rows.base0, *base, rows.base1)), np.array((rows.ray0, *ray, rows.ray1))
         heights = self._heights(base, ray)
         highest = heights.max(axis=0)
-        unbounded = np.flatnonzero(highest == np.inf)
+        unbounded = (highest == np.inf).nonzero()[0]
         if len(unbounded):
             # Two points may miss each other, while a single one bounds the whole row.
             bounds.point[:, unbounded] = self._points[2, unbounded]
@@ -118,38 +116,36 @@ class Provisional:
             highest = heights.max(axis=0)
         np.minimum(bounds.height, highest, out=bounds.height)
         np.add(cut, self._middle, out=bounds.cut)
-        width = np.stack((cut[0] - self._low, cut[1] - cut[0], self._high - cut[1]))
-        half = np.stack((width[0], np.maximum(width[0], width[1]), np.maximum(width[1], width[2]), width[2]))
+        t = np.array((self._low, *cut, self._high))
+        width = t[1:] - t[:-1]
+        half = np.concatenate((width[:1], np.maximum(width[:-1], width[1:]), width[-1:]))
         half *= np.where(self._straight, 0.5, 0.0)
         np.multiply(np.sqrt(heights * heights + half * half), 1.0 + _SLACK, out=bounds.reach)
         heights[heights == np.inf] = 0.0
-        x, y = base.real + heights * ray.real, base.imag + heights * ray.imag
-        bounds.centre.real, bounds.centre.imag = x, y
-        reach, finite = bounds.reach, highest < np.inf
+        place = np.array((base.real + heights * ray.real, base.imag + heights * ray.imag))
+        bounds.centre.real, bounds.centre.imag = place
+        reach = bounds.reach
         with np.errstate(invalid="ignore"):
-            middle_x = ((x - reach).min(axis=0) + (x + reach).max(axis=0)) / 2.0
-            middle_y = ((y - reach).min(axis=0) + (y + reach).max(axis=0)) / 2.0
-        middle_x, middle_y = np.where(finite, middle_x, 0.0), np.where(finite, middle_y, 0.0)
-        bounds.middle.real, bounds.middle.imag = middle_x, middle_y
-        x, y = x - middle_x, y - middle_y
+            middle = ((place - reach).min(axis=1) + (place + reach).max(axis=1)) / 2.0
+        middle = np.where(highest < np.inf, middle, 0.0)
+        bounds.middle.real, bounds.middle.imag = middle
+        x, y = place - middle[:, None]
         np.multiply((np.sqrt(x * x + y * y) + reach).max(axis=0), 1.0 + _SLACK, out=bounds.around)
 
     def _heights(self, base: Complexes, ray: Complexes) -> Floats:
         """The heights of the three points' envelope on its first and last ray and, on two between, of the higher."""
-        point = self.bounds.point
-        ends = [1, 2, 3, 0, 1, 2]
-        heights = bisector(base[ends], ray[ends], np.concatenate((point, point)), self.bounds.rounding)
-        return np.concatenate((heights[3:4], np.maximum(heights[:2], heights[4:]), heights[2:3]))
+        ends = np.array((base[:-1], base[1:])), np.array((ray[:-1], ray[1:]))
+        before, behind = bisector(*ends, self.bounds.point, self.bounds.rounding)
+        return np.concatenate((before[:1], np.maximum(behind[:-1], before[1:]), behind[-1:]))
 
     def _ray(self, t: Floats) -> tuple[Complexes, Complexes]:
         """Where the rays at t start, and their unit directions, complex128 of the shape of t."""
         axis, base = self._rows.axis, self._rows.base
-        scale = np.where(self._straight, 1.0, 1.0 + t * t)
-        along, across = (
-            np.where(self._straight, 0.0, (1.0 - t * t) / scale),
-            np.where(self._straight, 1.0, 2.0 * t / scale),
-        )
+        # A half-edge's rays start beside each other, a corner's are turned.
         step = np.where(self._straight, t, 0.0)
+        turn = np.where(self._straight, 1.0, t)
+        square = turn * turn
+        along, across = (1.0 - square) / (1.0 + square), 2.0 * turn / (1.0 + square)
         start, ray = np.empty(t.shape, complex), np.empty(t.shape, complex)
         start.real, start.imag = base.real + step * axis.real, base.imag + step * axis.imag
         ray.real, ray.imag = along * axis.real - across * axis.imag, along * axis.imag + across * axis.real
@@ -185,9 +181,11 @@ def _take_lowest(lowest: Floats, points: Complexes, row: Ints, first: Ints, valu
 
     `lowest` (float64, k x rows) are the values of `points`, `values` (float64, k x n) those of the points `found` (n,).
     """
+    # To take along an axis is many times as quick as an index behind a slice.
     which = row[first]
-    lowest[:, which] = np.minimum(lowest[:, which], np.minimum.reduceat(values, first, axis=1))
-    kind, at = np.nonzero((values == lowest[:, row]) & (values < np.inf))
+    lowest[:, which] = np.minimum(lowest.take(which, axis=1), np.minimum.reduceat(values, first, axis=1))
+    hits = (values == lowest.take(row, axis=1)) & (values < np.inf)
+    kind, at = np.divmod(np.flatnonzero(hits), len(found))
     points[kind, row[at]] = found[at]
 
 
