@@ -259,14 +259,14 @@ def test_holes_shrink() -> None:
     assert [len(layer.paths) for layer in product.drawing.layers] == [1, 2]
 
 
-def test_a_kerf_that_closes_a_hole_is_refused_with_its_place() -> None:
-    """The place is in the hole, and the message says what to do."""
+@pytest.mark.parametrize(("sheet", "hole"), [(None, 20 + 20j), ((200.0, 200.0), 120 + 120j)])
+def test_a_kerf_that_closes_a_hole_is_refused_with_its_place(sheet: tuple[float, float] | None, hole: complex) -> None:
+    """The place is in the hole, and the message says what to do; on a sheet, too, where tiles are pulled apart."""
     with pytest.raises(JobError, match=r"`kerf='13mm'` is too much: .* at \(([\d.]+), ([\d.]+)\) mm") as caught:
-        rings().make(Job(kerf=13.0))
+        rings().make(Job(kerf=13.0, sheet=sheet))
     x, y = (float(part) for part in str(caught.value).split("(")[1].split(")")[0].split(","))
-    assert abs(complex(x, y) - (20 + 20j)) < 6.5
-    assert caught.value.remedy
-    assert "smaller `kerf`" in caught.value.remedy
+    assert abs(complex(x, y) - hole) < 6.5
+    assert caught.value.remedy == "Use a smaller `kerf`, or a larger design."
 
 
 # --- fillets ----------------------------------------------------------------------------------------------------

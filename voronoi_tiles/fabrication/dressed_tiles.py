@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.maps import Isometry
 from voronoi_tiles.fabrication.kerf import Compensation
+from voronoi_tiles.fabrication.spacing import Spacing
+from voronoi_tiles.paths.conversion import to_lines
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.paths.symmetric_halves import moved
 from voronoi_tiles.vector.complex.period import Period
@@ -48,6 +51,7 @@ class DressedTiles:
     page: PageMap
     compensation: Compensation
     _rings: dict[int, Paths] = field(default_factory=dict)
+    _spacing: dict[float, Spacing] = field(default_factory=dict)
 
     def moved(self, shift: complex) -> DressedTiles:
         """The same elsewhere on the page."""
@@ -72,7 +76,19 @@ class DressedTiles:
         """The rings of all tiles."""
         return [self.rings(tile) for tile in range(len(self.period.site))]
 
+    def spacing(self, accuracy: float) -> Spacing:
+        """How the tiles are pulled apart, by chords within an accuracy; wherever they are moved together."""
+        if accuracy not in self._spacing:
+            contours = [to_lines(rings, accuracy=accuracy) for rings in self.all_rings()]
+            self._spacing[accuracy] = Spacing(contours, self.centres(), self.period.basis)
+        return self._spacing[accuracy]
+
     def centres(self) -> Complexes:
         """The middles of the tiles' boxes."""
+        return self._centres
+
+    @cached_property
+    def _centres(self) -> Complexes:
+        """The same, found once."""
         boxes = np.array([rings.bounds for rings in self.all_rings()])
         return np.asarray((boxes[:, 0] + boxes[:, 2]) / 2 + 1j * (boxes[:, 1] + boxes[:, 3]) / 2)

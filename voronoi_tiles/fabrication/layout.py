@@ -20,10 +20,9 @@ from voronoi_tiles.fabrication.dressed_tiles import DressedTiles, PageMap
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.kerf import Compensation
 from voronoi_tiles.fabrication.region import Region
-from voronoi_tiles.fabrication.spacing import FARTHEST, UNSTRETCHED, Stretch, pulled_apart, spread
+from voronoi_tiles.fabrication.spacing import FARTHEST, UNSTRETCHED, Stretch, pulled_apart
 from voronoi_tiles.fabrication.tile_placement import TilePlacement, place_tiles, whole_tiles
 from voronoi_tiles.paths.areas import item_areas
-from voronoi_tiles.paths.conversion import to_lines
 from voronoi_tiles.paths.offset import OffsetError, offset
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.vector.complex.period import Period
@@ -292,9 +291,9 @@ def _stretch(tiles: DressedTiles, apart: float, accuracy: float) -> Stretch:
             f"a `gap` of {apart:g} mm is more than {FARTHEST:.0f} times the cell",
             remedy=f"Give at most {largest:g} mm.",
         )
-    contours = [to_lines(rings, accuracy=accuracy) for rings in tiles.all_rings()]
+    spacing = tiles.spacing(accuracy)
     try:
-        return spread(contours, tiles.centres(), tiles.period.basis, apart + 2 * accuracy)
+        return spacing.stretch(apart + 2 * accuracy)
     except ValueError as error:
         raise JobError(str(error), remedy="Use `edges='once'`, or leave `sheet` out: pieces lie in a row.") from error
 

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, plane
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints, plane
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.vector.complex.period import Period
 
@@ -31,14 +30,11 @@ FARTHEST: Final = 64.0
 _COARSE: Final = 0.02
 """How far the contours by which stretches are chosen may lie from the true ones; a share of the gap."""
 
-_ROUGH: Final = 0.1
-"""The same for contours by which most stretches are found to be too small."""
-
 _BISECTIONS: Final = 20
 """Halvings of the last step of a stretch, a tenth of it: they leave a ten millionth."""
 
-_AT_ONCE: Final = 128
-"""Stretches that are tried at once; a count. Those after the first that will do are tried in vain."""
+_SURELY: Final = 1 - 1e-9
+"""Two points that are nearer than this share of the gap are so whatever rounding does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,29 +66,36 @@ class Stretch:
 UNSTRETCHED: Final = Stretch(1.0, 0j)
 
 
-def spread(contours: Sequence[Paths], centres: Complexes, basis: Complexes, gap: float) -> Stretch:
-    """The stretch of the places of tiles after which contours are `gap` apart: of those tried, the one with least room.
+class Spacing:
+    """Tiles of one period that are to be pulled apart: how much they have to be spread for a gap.
 
-    `contours` are those of the tiles of one period, as LINE pieces, `centres` the points that are stretched, `basis`
-    the lattice vectors. Every copy moves as a whole. Tiles that are hooked into each other come apart sooner in one
-    direction than in another: stretches in twelve directions, with five ratios of the stretch across to that along,
-    are tried in sizes that grow by a tenth, those that take least room first; the first that parts all tiles is then
-    made as small as it can be. Raises ValueError for tiles that none of them parts: those in a hole of another.
+    `contours` are those of the tiles, as LINE pieces, `centres` the points that are stretched, `basis` the lattice
+    vectors. Every copy moves as a whole.
     """
-    import shapely
 
-    shapes = np.array([_shape(contour) for contour in contours])
-    fine = _Neighbourhood(shapes, centres, basis, gap)
-    if (fine.at_rest >= gap).all():
-        return UNSTRETCHED
-    p, q = _tried(_FIRST * gap / float(np.abs(fine.apart).max()))
-    coarse = _Neighbourhood(shapely.simplify(shapes, _COARSE * gap), centres, basis, gap)
-    # What comes so near by contours that are off by so much is too near by the coarse ones.
-    rough = _Neighbourhood(shapely.simplify(coarse.shapes, _ROUGH * gap), centres, basis, (1 - 2 * _ROUGH) * gap)
-    best = coarse.first_clear(p, q, rough)
-    if best is None:
-        raise ValueError("a tile lies within another, and cannot be pulled out")
-    return fine.fitted(float(p[best]), complex(q[best]))
+    def __init__(self, contours: Sequence[Paths], centres: Complexes, basis: Complexes) -> None:
+        self._shapes = np.array([_shape(contour) for contour in contours])
+        self._centres, self._basis = centres, basis
+
+    def stretch(self, gap: float) -> Stretch:
+        """The stretch of the places of tiles after which contours are `gap` apart: of those tried, that of least room.
+
+        Tiles that are hooked into each other come apart sooner in one direction than in another: stretches in twelve
+        directions, with five ratios of the stretch across to that along, are tried in sizes that grow by a tenth, those
+        that take least room first; the first that parts all tiles is then made as small as it can be. Raises ValueError
+        for tiles that none of them parts: those in a hole of another.
+        """
+        import shapely
+
+        fine = _Neighbourhood(self._shapes, self._centres, self._basis, gap)
+        if fine.too_near(1.0, 0j) is None:
+            return UNSTRETCHED
+        p, q = _tried(_FIRST * gap / float(np.abs(fine.apart).max()))
+        coarse = _Neighbourhood(shapely.simplify(self._shapes, _COARSE * gap), self._centres, self._basis, gap)
+        best = coarse.first_clear(p, q)
+        if best is None:
+            raise ValueError("a tile lies within another, and cannot be pulled out")
+        return fine.fitted(float(p[best]), complex(q[best]))
 
 
 def _tried(first: float) -> tuple[Floats, Complexes]:
@@ -112,7 +115,8 @@ class _Neighbourhood:
     """Pairs of tiles of a layout that is stretched: which of them are nearer than the gap.
 
     The first of pair k is the shape `one[k]`, the second the shape `two[k]` moved by the lattice vector `step[k]`;
-    then its centre is `apart[k]` from the first one's.
+    then its centre is `apart[k]` from the first one's. Of a pair that was too near two points are kept, one of each
+    shape: while they stay so near to each other, nothing has to be measured.
     """
 
     def __init__(self, shapes: Any, centres: Complexes, basis: Complexes, gap: float) -> None:
@@ -121,37 +125,26 @@ class _Neighbourhood:
         shapely.prepare(shapes)
         self.shapes = shapes
         self.gap = gap
-        self.boxes = np.asarray(shapely.bounds(shapes), np.float64)
-        across = np.hypot(self.boxes[:, 2] - self.boxes[:, 0], self.boxes[:, 3] - self.boxes[:, 1])
-        self.one, self.two, self.step = _pairs(self.boxes, basis, 2 * float(across.max()) + gap)
+        boxes = np.asarray(shapely.bounds(shapes), np.float64)
+        across = np.hypot(boxes[:, 2] - boxes[:, 0], boxes[:, 3] - boxes[:, 1])
+        self.one, self.two, self.step = _pairs(boxes, basis, 2 * float(across.max()) + gap)
+        self.here, self.there = boxes[self.one], boxes[self.two]
         self.apart = centres[self.two] + self.step - centres[self.one]
-        self.everything = np.arange(len(self.one))
         self.failures = np.zeros(len(self.one), np.intp)
+        # For each pair that was too near: from a point of the second shape, unmoved, to one of the first.
+        self._met, self._between = np.zeros(0, np.intp), np.zeros(0, np.complex128)
 
-    @cached_property
-    def at_rest(self) -> Floats:
-        """How far the pairs are apart where nothing is stretched; infinite where it is more than the gap."""
-        import shapely
-
-        at_rest = np.full(len(self.one), np.inf)
-        for k in np.flatnonzero(self._near(self.step, self.gap)).tolist():
-            at_rest[k] = shapely.distance(
-                self.shapes[self.one[k]], *_moved(self.shapes[self.two[k]], self.step[k : k + 1])
-            )
-        return at_rest
-
-    def first_clear(self, p: Floats, q: Complexes, rough: _Neighbourhood) -> int | None:
-        """The first of some stretches that parts all pairs; None where none does. It parts those of `rough`, too."""
-        # What is nearer than the gap has to move by what is missing, whatever the direction.
-        close = np.flatnonzero(self.at_rest < self.gap)
-        enough = np.abs(_moves(p, q, self.apart[close])) >= self.gap - self.at_rest[close]
-        likely = np.flatnonzero(enough.all(axis=1))
-        for first in range(0, len(likely), _AT_ONCE):
-            some = likely[first : first + _AT_ONCE]
-            some = some[rough.clear(p[some], q[some], rough.everything)]
-            clear = np.flatnonzero(self.clear(p[some], q[some], self.everything))
-            if len(clear):
-                return int(some[clear[0]])
+    def first_clear(self, p: Floats, q: Complexes) -> int | None:
+        """The first of some stretches that parts all pairs; None where none does."""
+        left = np.arange(len(p))
+        while len(left):
+            first = int(left[0])
+            pair = self.too_near(float(p[first]), complex(q[first]))
+            if pair is None:
+                return first
+            left = left[1:]
+            shift = self.step[pair] + _moves(p[left], q[left], self.apart[pair])
+            left = left[np.abs(shift - self._between[-1]) >= _SURELY * self.gap]
         return None
 
     def fitted(self, p: float, q: complex) -> Stretch:
@@ -159,59 +152,53 @@ class _Neighbourhood:
 
         def clear(part: float) -> bool:
             """Whether one that moves everything by so much of it does."""
-            return bool(self.clear(np.array([1 + part * (p - 1)]), np.array([part * q]), pairs)[0])
+            return self.too_near(1 + part * (p - 1), part * q) is None
 
-        pairs = self.everything
         high = 1.0
         while not clear(high):
             high *= 1 + (_GROWTH - 1) / 10
         low = 1 / _GROWTH
-        # No pair comes nearer by more than it is moved.
-        moves = _moves(np.array([p]), np.array([q]), self.apart)[0]
-        pairs = self._nearer(self.step + high * moves, self.gap + (high - low) * np.abs(moves))
         for _ in range(_BISECTIONS):
             middle = (low + high) / 2
             low, high = (low, middle) if clear(middle) else (middle, high)
         return Stretch(1 + high * (p - 1), high * q)
 
-    def clear(self, p: Floats, q: Complexes, among: Ints) -> Bools:
-        """Which of some stretches leave all pairs of these the gap apart."""
+    def too_near(self, p: float, q: complex) -> int | None:
+        """A pair that a stretch leaves nearer than the gap; None where it parts all."""
         import shapely
 
         shift = self.step + _moves(p, q, self.apart)
-        near = self._near(shift, self.gap)
-        clear = np.ones(len(shift), np.bool_)
-        pairs = among[near[:, among].any(axis=0)]
+        still = np.flatnonzero(np.abs(shift[self._met] - self._between) < _SURELY * self.gap)
+        if len(still):
+            return int(self._met[still[0]])
+        near = self._near(shift)
         # What was too near most often is likely to be so again.
-        for k in pairs[np.argsort(-self.failures[pairs], kind="stable")].tolist():
-            left = np.flatnonzero(clear & near[:, k])
-            if len(left):
-                moved = _moved(self.shapes[self.two[k]], shift[left, k])
-                close = shapely.dwithin(self.shapes[self.one[k]], moved, self.gap)
-                clear[left[close]] = False
-                self.failures[k] += np.count_nonzero(close)
-        return clear
+        near = near[np.argsort(-self.failures[near], kind="stable")]
+        for pairs in (near[:1], near[1:]):
+            moved = _moved(self.shapes[self.two[pairs]], shift[pairs])
+            close = np.flatnonzero(shapely.dwithin(self.shapes[self.one[pairs]], moved, self.gap))
+            if len(close):
+                pair = int(pairs[close[0]])
+                self.failures[pair] += 1
+                line = shapely.shortest_line(self.shapes[self.one[pair]], moved[close[0]])
+                here, there = shapely.get_coordinates(line) @ [1, 1j]
+                self._met = np.append(self._met, pair)
+                self._between = np.append(self._between, here - (there - shift[pair]))
+                return pair
+        return None
 
-    def _nearer(self, shift: Complexes, reach: Floats) -> Ints:
-        """The pairs that are nearer than a reach each, the second tiles moved by their `shift`."""
-        import shapely
-
-        near = np.flatnonzero(self._near(shift, reach))
-        moved = [_moved(self.shapes[self.two[k]], shift[k : k + 1])[0] for k in near.tolist()]
-        close: Bools = shapely.dwithin(self.shapes[self.one[near]], moved, reach[near])
-        return near[close]
-
-    def _near(self, shift: Complexes, reach: Floats | float) -> Bools:
-        """Whether the boxes of pairs come within a reach, the second tiles moved by their `shift`."""
-        here, there = self.boxes[self.one], self.boxes[self.two]
+    def _near(self, shift: Complexes) -> Ints:
+        """The pairs whose boxes come within the gap, the second tiles moved by their `shift`."""
         x, y = shift.real, shift.imag
+        here, there = self.here, self.there
         free = np.maximum(there[:, 0] + x - here[:, 2], here[:, 0] - there[:, 2] - x)
-        return np.maximum(free, np.maximum(there[:, 1] + y - here[:, 3], here[:, 1] - there[:, 3] - y)) < reach
+        free = np.maximum(free, np.maximum(there[:, 1] + y - here[:, 3], here[:, 1] - there[:, 3] - y))
+        return np.flatnonzero(free < self.gap)
 
 
-def _moves(p: Floats, q: Complexes, points: Complexes) -> Complexes:
-    """How far each of n stretches moves each of m points, (n, m)."""
-    return np.asarray((p - 1)[:, None] * points + q[:, None] * points.conj())
+def _moves(p: Floats | float, q: Complexes | complex, points: Complexes | complex) -> Complexes:
+    """How far stretches move points, one each."""
+    return np.asarray((p - 1) * points + q * np.conjugate(points))
 
 
 def pulled_apart(period: Period, centres: Complexes, about: complex, stretch: Stretch) -> Period:
@@ -252,12 +239,13 @@ def _shape(contour: Paths) -> Any:
     return shapely.build_area(shapely.GeometryCollection(rings)) if len(rings) > 1 else shapely.Polygon(rings[0])
 
 
-def _moved(shape: Any, shifts: Complexes) -> Any:
-    """The images of a shape, each moved by another vector."""
+def _moved(shapes: Any, shifts: Complexes) -> Any:
+    """The images of shapes, each moved by a vector."""
     import shapely
 
-    places = shapely.get_coordinates(shape) + plane(shifts)[:, None]
-    return shapely.set_coordinates(np.full(len(shifts), shape), places.reshape(-1, 2))
+    places = shapely.get_coordinates(shapes)
+    places += np.repeat(plane(shifts), shapely.get_num_coordinates(shapes), axis=0)
+    return shapely.set_coordinates(shapes.copy(), places)
 
 
 def _pairs(boxes: Floats, basis: Complexes, reach: float) -> tuple[Ints, Ints, Complexes]:
