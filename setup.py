@@ -28,6 +28,7 @@ SOURCES = [
     "voronoi_tiles/base/kernels.c",
     "voronoi_tiles/base/box_index.c",
     "voronoi_tiles/paths/biarc_bounds.c",
+    "voronoi_tiles/paths/clearance.c",
     "raster/block_lists.c",
     "vector/cells/cells.c",
     "vector/cells/hierarchy.c",

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, Floats, Ints, plane
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, offsets_of, plane
+from voronoi_tiles.paths.clearance import Outlines
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.vector.complex.period import Period
 
@@ -120,16 +122,17 @@ class _Neighbourhood:
     """
 
     def __init__(self, shapes: Any, centres: Complexes, basis: Complexes, gap: float) -> None:
-        import shapely
-
-        shapely.prepare(shapes)
         self.shapes = shapes
         self.gap = gap
-        boxes = np.asarray(shapely.bounds(shapes), np.float64)
-        across = np.hypot(boxes[:, 2] - boxes[:, 0], boxes[:, 3] - boxes[:, 1])
-        self.one, self.two, self.step = _pairs(boxes, basis, 2 * float(across.max()) + gap)
-        self.here, self.there = boxes[self.one], boxes[self.two]
+        self.outlines, several = _outlines(shapes)
+        boxes = self.outlines.boxes
+        size = boxes[:, 2:] - boxes[:, :2]
+        self.one, self.two, self.step = _pairs(boxes, basis, 2 * float(np.hypot(*size.T).max()) + gap)
         self.apart = centres[self.two] + self.step - centres[self.one]
+        one, two = size[self.one], size[self.two]
+        self.several = several[self.one] | several[self.two]
+        # Of these one may lie within the other, and far from its border.
+        self.holding = np.flatnonzero((one < two).all(axis=1) | (one > two).all(axis=1) | self.several)
         self.failures = np.zeros(len(self.one), np.intp)
         # For each pair that was too near: from a point of the second shape, unmoved, to one of the first.
         self._met, self._between = np.zeros(0, np.intp), np.zeros(0, np.complex128)
@@ -165,35 +168,43 @@ class _Neighbourhood:
 
     def too_near(self, p: float, q: complex) -> int | None:
         """A pair that a stretch leaves nearer than the gap; None where it parts all."""
-        import shapely
-
         shift = self.step + _moves(p, q, self.apart)
         still = np.flatnonzero(np.abs(shift[self._met] - self._between) < _SURELY * self.gap)
         if len(still):
             return int(self._met[still[0]])
-        near = self._near(shift)
         # What was too near most often is likely to be so again.
-        near = near[np.argsort(-self.failures[near], kind="stable")]
-        for pairs in (near[:1], near[1:]):
-            moved = _moved(self.shapes[self.two[pairs]], shift[pairs])
-            close = np.flatnonzero(shapely.dwithin(self.shapes[self.one[pairs]], moved, self.gap))
-            if len(close):
-                pair = int(pairs[close[0]])
-                self.failures[pair] += 1
-                line = shapely.shortest_line(self.shapes[self.one[pair]], moved[close[0]])
-                here, there = shapely.get_coordinates(line) @ [1, 1j]
-                self._met = np.append(self._met, pair)
-                self._between = np.append(self._between, here - (there - shift[pair]))
-                return pair
+        order = np.argsort(-self.failures, kind="stable")
+        near = self.outlines.first_near(self.one[order], self.two[order], shift[order], self.gap)
+        if near is None:
+            return self._held(shift)
+        pair = int(order[near.pair])
+        self._keep(pair, complex(shift[pair]) + near.way)
+        return pair
+
+    def _held(self, shift: Complexes) -> int | None:
+        """A pair of which one lies within the other, the second ones moved by their `shift`; None without any."""
+        import shapely
+
+        one, two = self.one[self.holding], self.two[self.holding]
+        here, there = self.outlines.boxes[one], self.outlines.boxes[two] + np.tile(plane(shift[self.holding]), 2)
+        likely = _holds(here, there) | _holds(there, here) | self.several[self.holding]
+        for pair in self.holding[likely].tolist():
+            moved = shapely.transform(self.shapes[self.two[pair]], partial(np.add, plane(shift[pair])))
+            if shapely.intersects(self.shapes[self.one[pair]], moved):
+                self._keep(pair, complex(shift[pair]))
+                return int(pair)
         return None
 
-    def _near(self, shift: Complexes) -> Ints:
-        """The pairs whose boxes come within the gap, the second tiles moved by their `shift`."""
-        x, y = shift.real, shift.imag
-        here, there = self.here, self.there
-        free = np.maximum(there[:, 0] + x - here[:, 2], here[:, 0] - there[:, 2] - x)
-        free = np.maximum(free, np.maximum(there[:, 1] + y - here[:, 3], here[:, 1] - there[:, 3] - y))
-        return np.flatnonzero(free < self.gap)
+    def _keep(self, pair: int, between: complex) -> None:
+        """Keep two points of a pair that is too near."""
+        self.failures[pair] += 1
+        self._met = np.append(self._met, pair)
+        self._between = np.append(self._between, between)
+
+
+def _holds(outer: Floats, inner: Floats) -> Bools:
+    """Whether boxes hold others."""
+    return np.asarray(((outer[:, :2] <= inner[:, :2]) & (inner[:, 2:] <= outer[:, 2:])).all(axis=1))
 
 
 def _moves(p: Floats | float, q: Complexes | complex, points: Complexes | complex) -> Complexes:
@@ -239,13 +250,18 @@ def _shape(contour: Paths) -> Any:
     return shapely.build_area(shapely.GeometryCollection(rings)) if len(rings) > 1 else shapely.Polygon(rings[0])
 
 
-def _moved(shapes: Any, shifts: Complexes) -> Any:
-    """The images of shapes, each moved by a vector."""
+def _outlines(shapes: Any) -> tuple[Outlines, Bools]:
+    """The outlines of shapes, and which have several rings."""
     import shapely
 
-    places = shapely.get_coordinates(shapes)
-    places += np.repeat(plane(shifts), shapely.get_num_coordinates(shapes), axis=0)
-    return shapely.set_coordinates(shapes.copy(), places)
+    parts, owner = shapely.get_parts(shapes, return_index=True)
+    rings, part = shapely.get_rings(parts, return_index=True)
+    points, ring = shapely.get_coordinates(rings, return_index=True)
+    inner = np.flatnonzero(ring[1:] == ring[:-1])
+    points = points @ [1, 1j]
+    of = owner[part]
+    first = offsets_of(np.bincount(of[ring[inner]], minlength=len(shapes)))
+    return Outlines(points[inner], points[inner + 1], first), np.bincount(of, minlength=len(shapes)) > 1
 
 
 def _pairs(boxes: Floats, basis: Complexes, reach: float) -> tuple[Ints, Ints, Complexes]:
