@@ -257,11 +257,11 @@ def _outlines(shapes: Any) -> tuple[Outlines, Bools]:
     parts, owner = shapely.get_parts(shapes, return_index=True)
     rings, part = shapely.get_rings(parts, return_index=True)
     points, ring = shapely.get_coordinates(rings, return_index=True)
-    inner = np.flatnonzero(ring[1:] == ring[:-1])
-    points = points @ [1, 1j]
+    points = points.view(np.complex128)[:, 0]
+    begin = np.flatnonzero(ring[1:] == ring[:-1])
     of = owner[part]
-    first = offsets_of(np.bincount(of[ring[inner]], minlength=len(shapes)))
-    return Outlines(points[inner], points[inner + 1], first), np.bincount(of, minlength=len(shapes)) > 1
+    first = offsets_of(np.bincount(of[ring[begin]], minlength=len(shapes)))
+    return Outlines(points[begin], points[begin + 1], first), np.bincount(of, minlength=len(shapes)) > 1
 
 
 def _pairs(boxes: Floats, basis: Complexes, reach: float) -> tuple[Ints, Ints, Complexes]:

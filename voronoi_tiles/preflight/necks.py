@@ -112,7 +112,7 @@ class _Joints:
     def __init__(self, chords: Chords) -> None:
         points = np.concatenate((chords.start, chords.end))
         # Points that are equal to a nanometre are one; lines that are joined have the same bits, or a writer's digits.
-        grid = np.round(plane(points) / 1e-6) @ [1, 1j]
+        grid = np.round(plane(points) / 1e-6).view(np.complex128)[:, 0]
         _, joint = np.unique(grid, return_inverse=True)
         self._of_start, self._of_end = joint[: len(chords.start)], joint[len(chords.start) :]
         way = chords.end - chords.start
