@@ -315,6 +315,8 @@ def halves(curves: Complexes) -> Complexes:
 
 def _quad_extremes(p0: Complexes, p1: Complexes, p2: Complexes) -> list[Complexes]:
     """The points of quadratic Bezier curves where they run along an axis."""
+    if not len(p0):
+        return []
     found = []
     for a, b, c in ((p0.real, p1.real, p2.real), (p0.imag, p1.imag, p2.imag)):
         bend = a - 2 * b + c
@@ -326,6 +328,8 @@ def _quad_extremes(p0: Complexes, p1: Complexes, p2: Complexes) -> list[Complexe
 
 def _cubic_extremes(p0: Complexes, p1: Complexes, p2: Complexes, p3: Complexes) -> list[Complexes]:
     """The points of cubic Bezier curves where they run along an axis."""
+    if not len(p0):
+        return []
     found = []
     for a, b, c, d in zip(*((p.real, p.imag) for p in (p0, p1, p2, p3)), strict=True):
         # The derivative, divided by 3, is u t^2 + v t + w.

@@ -45,11 +45,11 @@ def chords_in(chords: Chords, low: Complexes, high: Complexes) -> Iterator[tuple
     """
     if not len(low):
         return
-    left, right, lower, upper = chords.sides
-    bound = np.minimum(
-        np.searchsorted(left, high.real, "right") - np.searchsorted(right, low.real, "left"),
-        np.searchsorted(lower, high.imag, "right") - np.searchsorted(upper, low.imag, "left"),
-    )
+    left, right = chords.sides
+    bound = np.searchsorted(left, high.real, "right") - np.searchsorted(right, low.real, "left")
+    if bound.sum() > _PORTION:
+        lower, upper = chords.levels
+        bound = np.minimum(bound, np.searchsorted(lower, high.imag, "right") - np.searchsorted(upper, low.imag, "left"))
     portion = np.cumsum(bound) // _PORTION
     for first, after in pairwise([*starts(portion).tolist(), len(low)]):
         some = slice(first, after)

@@ -63,10 +63,16 @@ class Chords:
         return low, high
 
     @cached_property
-    def sides(self) -> tuple[Floats, Floats, Floats, Floats]:
-        """The left, right, lower and upper sides of the chords' boxes, each in rising order."""
+    def sides(self) -> tuple[Floats, Floats]:
+        """The left and the right sides of the chords' boxes, each in rising order."""
         low, high = self.corners
-        return np.sort(low.real), np.sort(high.real), np.sort(low.imag), np.sort(high.imag)
+        return np.sort(low.real), np.sort(high.real)
+
+    @cached_property
+    def levels(self) -> tuple[Floats, Floats]:
+        """Their lower and their upper sides."""
+        low, high = self.corners
+        return np.sort(low.imag), np.sort(high.imag)
 
     @cached_property
     def boxes(self) -> tuple[Complexes, Complexes]:
