@@ -80,9 +80,11 @@ def tangents(x: Floats, y: Floats, t: Floats | float, *, ahead: bool) -> tuple[F
     Where the speed is 0 they are the limit from ahead or from behind. No segment has length 0.
     """
     sign = 1.0 if ahead else -1.0
-    (u1, u2, u3), (v1, v2, v3) = ((c[1] + t * (2 * c[2] + t * c[3]), sign * (c[2] + t * c[3]), c[3]) for c in (x, y))
-    for u, v in ((u2, v2), (u3, v3)):
-        still = (u1 == 0.0) & (v1 == 0.0)
-        u1, v1 = np.where(still, u, u1), np.where(still, v, v1)
-    size = np.hypot(u1, v1)
-    return u1 / size, v1 / size
+    u, v = (c[1] + t * (2 * c[2] + t * c[3]) for c in (x, y))
+    still = (u == 0.0) & (v == 0.0)
+    if still.any():
+        for further in ([sign * (c[2] + t * c[3]) for c in (x, y)], [c[3] for c in (x, y)]):
+            u, v = (np.where(still, new, old) for new, old in zip(further, (u, v), strict=True))
+            still = (u == 0.0) & (v == 0.0)
+    size = np.hypot(u, v)
+    return u / size, v / size
