@@ -21,8 +21,7 @@ import { lettersPart } from "./letters.js";
  * @property {import("../store.js").Store} store
  * @property {import("../link.js").Link} link
  * @property {import("../view/stage.js").Stage} stage
- * @property {(over: boolean) => void} save
- * @property {() => void} keepMine the next save goes over what others have made of the file
+ * @property {import("../file.js").OpenedFile} file
  */
 
 /** The side of an example's picture; CSS pixels. */
@@ -33,7 +32,7 @@ const EXAMPLE = 140;
  * @param {HTMLElement} home
  * @param {Context} context
  */
-export function dialogs(home, { store, link, stage, save, keepMine }) {
+export function dialogs(home, { store, link, stage, file: opened }) {
     /** @param {string} title @param {(Node | string)[]} content @param {import("./dialog.js").Action[]} actions */
     const open = (title, content, actions) => showDialog(home, title, content, actions);
 
@@ -414,7 +413,7 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
                     {
                         label: "Keep mine",
                         first: true,
-                        run: () => save(true),
+                        run: () => opened.save(true),
                     },
                     ...(design ? [{ label: "Take theirs", run: reload }] : []),
                     cancel,
@@ -441,7 +440,7 @@ export function dialogs(home, { store, link, stage, save, keepMine }) {
                 ],
                 [
                     ...(design ? [{ label: "Take theirs", first: true, run: reload }] : []),
-                    { label: "Keep mine", run: keepMine },
+                    { label: "Keep mine", run: () => opened.keepMine() },
                 ],
             );
         },

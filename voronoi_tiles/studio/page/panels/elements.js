@@ -31,6 +31,9 @@ export function make(tag, attributes = {}, ...children) {
     return element;
 }
 
+/** An element of the page. @param {string} id */
+export const byId = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
+
 let count = 0;
 
 /**
