@@ -343,13 +343,14 @@ def test_an_end_that_is_dragged_onto_another_joins_it(window: Window) -> None:
 
 
 def test_ends_are_joined_without_dragging(window: Window) -> None:
-    """By the list and J alone: the nearest ends of two strokes, and a stroke with itself; or the button."""
+    """By the list and J alone: the nearest ends of two strokes, by a line, and a stroke with itself; or the button."""
     page = window.page
     page.keyboard.press("l")
     for place in ((30, 12), (26, 20)):
         window.click(*place)
     page.keyboard.press("Enter")
-    [start, _] = window.strokes[1]["segment"]
+    [start, end] = window.strokes[1]["segment"]
+    two = window.text
     rows = page.locator(".stroke")
     rows.nth(0).focus()
     page.keyboard.press("Enter")
@@ -357,9 +358,9 @@ def test_ends_are_joined_without_dragging(window: Window) -> None:
     page.keyboard.press("Shift+Enter")
     page.locator("#overlay").focus()
     page.keyboard.press("j")
-    assert window.strokes == [{"polyline": [*WING, start]}]
+    assert window.strokes == [{"polyline": [*WING, end, start]}]
     page.locator("#panel-drawing").get_by_role("button", name="Close", exact=True).click()
-    assert window.strokes == [{"polyline": [*WING, start], "closed": True}]
+    assert window.strokes == [{"polyline": [*WING, end, start], "closed": True}]
     refused = page.get_by_text("Nothing here can be joined.")
     page.locator("#overlay").focus()
     for key in ("Escape", "Control+z"):
@@ -367,6 +368,8 @@ def test_ends_are_joined_without_dragging(window: Window) -> None:
         refused.wait_for()
         page.keyboard.press(key)
         refused.wait_for(state="detached")
+    page.keyboard.press("Control+z")
+    assert window.text == two
 
 
 def test_the_ends_that_are_chosen_are_joined(window: Window) -> None:
@@ -385,7 +388,7 @@ def test_the_ends_that_are_chosen_are_joined(window: Window) -> None:
     page.locator(".point.chosen").nth(1).wait_for()
     page.keyboard.press("j")
     [joined] = window.strokes
-    assert joined == {"polyline": [WING[2], WING[1], start, end]}
+    assert joined == {"polyline": [WING[2], WING[1], WING[0], start, end]}
     # A row that is chosen has the colour of the tool in hand, under the pointer as well.
     alike = """is => {
         const places = [".stroke:hover", "[data-tool][aria-pressed=true]"];

@@ -221,16 +221,62 @@ test("what is selected is joined: two nodes, the ends of a stroke, the nearest e
     const design = designOf(strokes);
     const all = [ref(0), ref(1), ref(2)].map(({ site, stroke }) => ({ site, stroke }));
     const nearest = joinSelected(design, { strokes: all.slice(0, 2), nodes: [] });
-    assert.deepEqual(nearest.design.site[1].strokes, [{ polyline: [[8, 30], ...LINE] }, strokes[2]]);
+    assert.deepEqual(nearest.design.site[1].strokes, [{ polyline: [[8, 30], [1, 2.5], ...LINE] }, strokes[2]]);
+    const laid = joinSelected(design, { strokes: all.slice(0, 2), nodes: [] }, 0.6);
+    assert.deepEqual(laid.design.site[1].strokes, [{ polyline: [[8, 30], ...LINE] }, strokes[2]], "as good as met");
     const nodes = [ref(0, 3), ref(2, 0)];
-    assert.deepEqual(joinSelected(design, { strokes: all, nodes }), joinNodes(design, ...nodes));
+    const made = joinSelected(design, { strokes: all, nodes });
+    assert.deepEqual(made.design.site[1].strokes, [
+        strokes[1],
+        { polyline: [[40, 40], [8, 32], ...LINE.toReversed()].toReversed() },
+    ]);
+    assert.deepEqual(made.ref, { site: 1, stroke: 1 });
     // An end that is selected alone is the one of its stroke, though another one is nearer.
     const chosen = joinSelected(design, { strokes: all.slice(0, 2), nodes: [ref(0, 3)] });
-    assert.deepEqual(chosen.design.site[1].strokes[0], { polyline: [...LINE.slice(0, 3), LINE[3], [8, 30]] });
+    assert.deepEqual(chosen.design.site[1].strokes[0], { polyline: [...LINE, [1, 2.5], [8, 30]] });
     const inner = joinSelected(design, { strokes: all.slice(0, 2), nodes: [ref(0, 1)] });
     assert.deepEqual(inner, nearest, "no end");
     for (const some of [[], all]) assert.equal(joinSelected(design, { strokes: some, nodes: [] }), null);
     assert.equal(joinSelected(design, { strokes: [all[1]], nodes: [] }), null);
+});
+
+test("ends that are apart are joined by a line, and neither stroke changes, whatever they are and wherever they lie", () => {
+    for (const drawn of OPEN) {
+        const one = { ...drawn, translate: [50, 60] };
+        for (const other of OPEN) {
+            for (const [site, keys] of PLACEMENTS) {
+                const stays = { ...other, ...keys };
+                const [from, onto] = [placementOf(site, one), placementOf(site, stays)];
+                const design = designOf([one, stays], site);
+                for (const k of [0, -1]) {
+                    for (const m of [0, -1]) {
+                        const what = JSON.stringify([one, stays, k, m]);
+                        const ends = [anchors(one, from).at(k), anchors(stays, onto).at(m)];
+                        const nodes = [ref(0, ends[0].node), ref(1, ends[1].node)];
+                        const { strokes } = joinSelected(design, { strokes: [], nodes }).design.site[1];
+                        assert.equal(strokes.length, 1, what);
+                        const made = cubicsOf(strokes[0], placementOf(site, strokes[0]));
+                        const [before, after] = [cubicsOf(one, from), cubicsOf(stays, onto)];
+                        const count = (before.length + after.length) / 8;
+                        assert.equal(made.length / 8, count + 1, what);
+                        assertOn(before, [...Array(before.length / 8).keys()], made, what);
+                        assertOn(after, [...Array(after.length / 8).keys()], made, what);
+                        const line = [...ends[0].at, ...ends[0].at, ...ends[1].at, ...ends[1].at];
+                        assertOn(line, [0], made, what);
+                    }
+                }
+            }
+        }
+    }
+});
+
+test("a line there and back joins nothing", () => {
+    const design = designOf([{ segment: [LINE[0], LINE[1]] }, { segment: [LINE[1], LINE[2]] }]);
+    for (const nodes of [
+        [ref(0, 0), ref(1, 0)],
+        [ref(1, 1), ref(0, 1)],
+    ])
+        assert.equal(joinSelected(design, { strokes: [], nodes }), null);
 });
 
 test("a stroke is closed by a piece from its end to its start, and none of its points is lost", () => {

@@ -49,19 +49,23 @@ function runsOf(stroke) {
  * The design after one node was laid onto another of the same site; null where that joins nothing.
  *
  * An end laid onto the other end of its stroke closes it; onto the end of another stroke, the two become one, which
- * keeps the place and the keys of that other one: a `polyline` of straight strokes, else a `bezier`. A node laid onto
- * its neighbour is taken out. The shapes stay, but where the node was moved.
+ * keeps the place and the keys of that other one: a `polyline` of straight strokes, else a `bezier`. With `bridged` a
+ * line leads from end to end of the two instead. A node laid onto its neighbour is taken out. The shapes stay, but where
+ * the node was moved.
  *
  * @param {Design} design
  * @param {NodeRef} from what is laid
  * @param {NodeRef} onto what stays where it is
+ * @param {boolean} [bridged]
  * @returns {Joined | null}
  */
-export function joinNodes(design, from, onto) {
+export function joinNodes(design, from, onto, bridged = false) {
     const [stroke, other] = [strokeAt(design, from), strokeAt(design, onto)];
     if (!stroke || !other || from.site !== onto.site) return null;
     const alone = isSameStroke(from, onto);
-    const made = alone ? joinedWithin(stroke, from.node, onto.node) : joinedTo(stroke, from.node, other, onto.node);
+    const made = alone
+        ? joinedWithin(stroke, from.node, onto.node)
+        : joinedTo(stroke, from.node, other, onto.node, bridged);
     if (!made) return null;
     const replaced = replaceStroke(design, onto, made);
     const shift = !alone && from.stroke < onto.stroke ? 1 : 0;
@@ -112,29 +116,28 @@ function joinedWithin(stroke, from, onto) {
 const carried = (handle, from, to) => (same(handle, from) ? to : tidyPlus(handle, minus(to, from)));
 
 /**
- * Two strokes of a site as one, the end of the first laid onto that of the second; null where they cannot be.
+ * Two strokes of a site as one, the end of the first laid onto that of the second, or `bridged`; null where they cannot
+ * be, and where a line would lead there and back.
  *
- * @param {Stroke} stroke
- * @param {number} from
- * @param {Stroke} other
- * @param {number} onto
- * @returns {Stroke | null}
+ * @type {(stroke: Stroke, from: number, other: Stroke, onto: number, bridged: boolean) => Stroke | null}
  */
-function joinedTo(stroke, from, other, onto) {
+function joinedTo(stroke, from, other, onto, bridged) {
     if (![stroke, other].every((one) => isStraight(one) || isChain(one))) return null;
     const ends = [endsOf(stroke), endsOf(other)];
     if (!ends[0].includes(from) || !ends[1].includes(onto)) return null;
     const straight = isStraight(stroke) && isStraight(other);
     const map = compose(inverse(placementIn(other)), placementIn(stroke));
     const [moving, kept] = [stroke, other].map((one) => [...(straight ? pointsOf(one) : chainsOf(one)[0])]);
-    // From the start of the one that stays, through where they meet, to the end of the one that is moved.
+    // From the start of the one that stays, through where they meet, to the end of the one that comes.
     if (from) moving.reverse();
     if (!onto) kept.reverse();
     const laid = moving.map((point) => apply(map, point));
     const joint = kept[kept.length - 1];
-    const rest = straight ? laid.slice(1) : [carried(laid[1], laid[0], joint), ...laid.slice(2)];
-    if (same(rest[straight ? 0 : 2], joint)) return null;
-    const points = [...kept, ...rest];
+    const meets = straight ? [] : [carried(laid[1], laid[0], joint), laid[2], laid[3]];
+    const bridge = straight ? [laid[0]] : [joint, laid[0], ...laid.slice(0, 4)];
+    if ((straight || !bridged) && same(laid[straight ? 1 : 3], joint)) return null;
+    if (bridged && straight && same(kept[kept.length - 2], laid[0])) return null;
+    const points = [...kept, ...(bridged ? bridge : meets), ...laid.slice(straight ? 1 : 4)];
     if (!onto) points.reverse();
     const made = withKind(other, straight ? "polyline" : "bezier", points);
     return straight && isClosed(points) && points.length > LEAST_CLOSED
@@ -201,20 +204,22 @@ function closeStroke(design, ref, reach) {
 }
 
 /**
- * The design with what is selected joined: the first of two nodes laid onto the second; else one stroke closed, or of
- * two strokes the ends that are nearest to each other, of one that has an end selected that end. Null where nothing can
- * be, and of more strokes.
+ * The design with what is selected joined: two nodes; else one stroke closed, or of two strokes the ends that are nearest
+ * to each other, of one that has an end selected that end. Null where nothing can be, and of more strokes.
  *
  * @param {Design} design
  * @param {Selection} selection
- * @param {number} [reach] how far apart the ends of one stroke are that become one: others are joined by a further piece
+ * @param {number} [reach] how far apart ends are of which one is laid onto the other: from others a line leads there
  * @returns {Joined | null}
  */
 export function joinSelected(design, { strokes, nodes }, reach = 0) {
     const isChosen = (/** @type {NodeRef} */ end) => nodes.some((node) => isSameNode(node, end));
     if (nodes.length === 2) {
         const isOne = shownEnds(design, nodes[0]).filter(isChosen).length === 2;
-        return isOne ? closeStroke(design, nodes[0], reach) : joinNodes(design, nodes[0], nodes[1]);
+        if (isOne) return closeStroke(design, nodes[0], reach);
+        const [from, onto] = nodes.map((node) => shownEnds(design, node).find(isChosen));
+        const isFar = from && onto && !isSameStroke(from, onto) && distance(from.at, onto.at) > reach;
+        return joinNodes(design, nodes[0], nodes[1], isFar);
     }
     if (strokes.length === 1) return closeStroke(design, strokes[0], reach);
     if (strokes.length !== 2) return null;
@@ -225,7 +230,10 @@ export function joinSelected(design, { strokes, nodes }, reach = 0) {
     return onto
         .flatMap((to) => from.map((end) => ({ end, to, apart: distance(end.at, to.at) })))
         .sort((one, other) => one.apart - other.apart)
-        .reduce((found, { end, to }) => found ?? joinNodes(design, end, to), /** @type {Joined | null} */ (null));
+        .reduce(
+            (found, { end, to, apart }) => found ?? joinNodes(design, end, to, apart > reach),
+            /** @type {Joined | null} */ (null),
+        );
 }
 
 /**
