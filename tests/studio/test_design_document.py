@@ -425,6 +425,25 @@ def test_comments_that_others_write_are_no_conflict(file: Path, opens: Opens) ->
     assert file.read_text() == theirs.replace("39.0", "40.50")
 
 
+def test_undo_brings_back_what_a_save_had_removed(file: Path, opens: Opens) -> None:
+    """Its comments and its spelling; but not in the place of what others have written since."""
+    document = opens()
+    design = design_of(document)
+    joined = deepcopy(design)
+    joined["site"][0]["strokes"] = [{"polyline": [[20, 15], [4, 41], [39, 15]]}]
+    for _ in range(2):
+        assert document.save(joined) == {"type": "saved", "file": "bird.toml"}
+        without = file.read_text()
+        assert "39.0" not in without
+        assert document.save(design) == {"type": "saved", "file": "bird.toml"}
+        assert file.read_text() == TEXT
+    document.save(joined)
+    file.write_text(without.replace("# Mine.", "# Mine and theirs."))
+    document.save(design)
+    assert "# Mine and theirs." in file.read_text()
+    assert tomllib.loads(file.read_text()) == tomllib.loads(TEXT)
+
+
 def test_links_stay_links(file: Path, opens: Opens) -> None:
     """What they lead to is written, also where that is not there yet; one lock holds for both names."""
     link = file.with_name("link.toml")

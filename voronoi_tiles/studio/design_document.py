@@ -33,6 +33,9 @@ _GROUP: Final = "p4"
 _NAME: Final = re.compile(r"""[^./\\:*?"<>|][^/\\:*?"<>|]{0,99}""")
 """The name of a file in a folder, on any system; hidden ones are left to those who know how."""
 
+SAVES_MAX: Final = 20
+"""How many texts of saves are remembered, so that one that undo leads back to is saved as it was; a count."""
+
 _BOM: Final = b"\xef\xbb\xbf"
 
 
@@ -71,6 +74,7 @@ class Document:
                 raise
             remedy = f"{error.remedy} Move it away to have what was drawn until {copies[0].when} and not saved."
             raise DesignError(error.message, file=error.file, key=error.key, line=error.line, remedy=remedy) from error
+        self._saves: list[tuple[Mapping[str, Any], str]] = []  # designs and texts before the last save, none of others
         self._seen: _Disk = self._known  # what is on disk, as the page knows
         self._doubtful = False  # whether what is there may be half saved
 
@@ -121,6 +125,8 @@ class Document:
         look = self._state()  # before it is read: what is saved meanwhile is not missed
         known = self._read()
         design, text = self._parsed(known)
+        if text != self._text:
+            self._saves.clear()
         self._known, self._design, self._text = known, design, text
         self._seen, self._look, self._doubtful = known, look, False
         answer: dict[str, Any] = {
@@ -156,6 +162,7 @@ class Document:
             if isinstance(there, bytes) and theirs and any(same(theirs[0], ours) for ours in (self._design, design)):
                 # They have changed comments alone, or have made the same change.
                 self._known, (self._design, self._text) = there, theirs
+                self._saves.clear()
             elif not over:
                 self._seen = there
                 return {"type": "conflict", **self._change(there)}
@@ -170,6 +177,8 @@ class Document:
         if data != there and not self._replaced(there, data):
             return self.save(design, over)
         self._known = self._seen = data
+        if text != self._text:
+            self._saves = [*self._saves[1 - SAVES_MAX :], (self._design, self._text)]
         self._design, self._text = design, text
         self._recovery.forget()
         if backup is not None:
@@ -303,7 +312,15 @@ class Document:
         return {"design": design, "file": self._shown, "note": note}
 
     def _written(self, design: Mapping[str, Any]) -> tuple[str, tuple[str, ...]]:
-        """The text of the file that says a design, with what could not be kept of it. Raises DesignError."""
+        """The text of the file that says a design, with what could not be kept of it. Raises DesignError.
+
+        Where undo has led back to what was saved before, that is it: comments and spelling of what had been removed
+        since are there again.
+        """
+        if not same(self._design, design):
+            for before, text in reversed(self._saves):
+                if same(before, design):
+                    return text, ()
         if self._is_toml:
             return self._edited(design)
         return self._text if same(self._design, design) else _json_text(merged(self._design, design), self._text), ()
