@@ -21,6 +21,12 @@ PENS = {"schema": 1, "group": "p1", "cell": {"a": 60, "b": 60, "angle": 90}, "si
 SMALL = {"width": 900, "height": 640}
 """The size of the window, for few pixels to draw without a graphics processor."""
 
+NUMBERS_CHANGED = """old => {
+    const fields = [...document.querySelectorAll("[data-key^=picture]")];
+    return fields.some((field, k) => Number(field.value) !== old[k]);
+}"""
+"""Whether the panel has other numbers of the picture to trace."""
+
 NEAR = 0.25
 """How near to the pointer a coordinate is, that is a pixel and its rounding; mm."""
 
@@ -537,6 +543,15 @@ def test_several_sites(window: Window) -> None:
     assert name.get_attribute("aria-invalid") == "true"
     said = "field => document.getElementById(field.getAttribute('aria-describedby')).textContent"
     assert "bird" in name.evaluate(said)
+    # What is refused stays to be mended while the list is made anew.
+    page.get_by_label("Draw into site bird").check()
+    page.locator("#overlay").focus()
+    page.keyboard.press("Control+a")
+    page.locator(".stroke[aria-expanded=true]").nth(1).wait_for()
+    assert name.input_value() == "bird"
+    assert (name.get_attribute("aria-invalid"), "bird" in name.evaluate(said)) == ("true", True)
+    name.press("Escape")
+    assert (name.input_value(), name.get_attribute("aria-invalid")) == ("site2", "false")
     name.fill("fish")
     name.press("Enter")
     assert window.design["site"][1]["name"] == "fish"
@@ -787,11 +802,22 @@ def test_a_picture_to_trace(window: Window) -> None:
     window.drag((50, 55), (5, 70))  # a quarter turn of the corner at the upper right
     changed("turn", "0")
     assert numbers() == pytest.approx([20, 40, 60, 90], abs=1)
+    turned = numbers()
+    for key, back in (("Control+z", [20, 40, 60, 0]), ("Control+z", [30, 30, 60, 0]), ("Control+y", [20, 40, 60, 0])):
+        old = numbers()
+        page.keyboard.press(key)
+        page.wait_for_function(NUMBERS_CHANGED, arg=old)
+        assert numbers() == near(*back)
+    page.get_by_role("button", name="Redo").click()
+    changed("turn", "0")
+    assert numbers() == turned
+    assert window.text == before
     for label, text, key in (("Picture width, mm", "2in", "width"), ("Picture turn, degrees", "-30", "turn")):
         old = page.get_by_label(label).input_value()
         page.get_by_label(label).fill(text)
         page.get_by_label(label).press("Enter")
         changed(key, old)
+    still = numbers()
     middle = page.get_by_label("Middle of the picture, x").input_value()
     move.focus()
     page.keyboard.press("ArrowUp")
@@ -800,6 +826,12 @@ def test_a_picture_to_trace(window: Window) -> None:
     changed("0", middle)
     laid = numbers()
     assert laid == near(21, 40.1, 50.8, -30)
+    # Arrows are one step, as they are of strokes.
+    for key, then in (("Control+z", still), ("Control+Shift+Z", laid)):
+        old = numbers()
+        page.keyboard.press(key)
+        page.wait_for_function(NUMBERS_CHANGED, arg=old)
+        assert numbers() == then
     page.locator("#overlay").focus()
     page.keyboard.press("Escape")
     page.locator("#move-picture[aria-pressed=false]").wait_for()

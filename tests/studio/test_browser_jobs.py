@@ -238,6 +238,16 @@ def test_coupon_picture_and_parts(window: Window) -> None:
     assert found.value.suggested_filename.endswith(".svg")
     assert b"<svg" in Path(found.value.path()).read_bytes()
     page.locator("dialog").wait_for(state="detached")
+    page.get_by_role("button", name="Test piece for the kerf").click()
+    page.get_by_label("Format").select_option("gcode")
+    page.get_by_role("button", name="Download").click()
+    page.get_by_role("dialog").get_by_role("alert").get_by_text("feed").wait_for()
+    page.get_by_label("Format").select_option("lbrn2")
+    with page.expect_download() as found:
+        page.get_by_role("button", name="Download").click()
+    assert found.value.suggested_filename == "coupon.lbrn2"
+    assert b"<LightBurnProject" in Path(found.value.path()).read_bytes()
+    page.locator("dialog").wait_for(state="detached")
     page.locator("#panel-job summary", has_text="Colours").click()
     page.get_by_label("Into", exact=True).select_option("files")
     page.get_by_label("Colours", exact=True).fill("3")

@@ -20,6 +20,7 @@ from voronoi_tiles.designs.starters import starter, starter_text
 from voronoi_tiles.fabrication.arc_fitting import edge_arcs
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.studio.making import _kept, coupon_file, exported, product, read_options
+from voronoi_tiles.studio.tables import page_tables
 
 JOBS: dict[str, dict[str, Any]] = {
     "exact": {},
@@ -110,6 +111,25 @@ def test_a_coupon_is_that_of_the_command_line(tmp_path: Path, voronoi_tiles: Com
     options = {"thickness": "3mm", "kerfs": "0.1:0.3:0.1", "plug": "12mm", "preset": "lightburn"}
     assert voronoi_tiles("coupon", "-o", "coupon.dxf", *flags(options), cwd=tmp_path).returncode == 0
     assert coupon_file({**options, "format": "dxf"}) == ("coupon.dxf", (tmp_path / "coupon.dxf").read_bytes())
+
+
+@pytest.mark.parametrize(
+    ("form", "sign"),
+    [
+        ("svg", b"<svg "),
+        ("dxf", b"\nENTITIES\n"),
+        ("pdf", b"%PDF-"),
+        ("lbrn2", b"<LightBurnProject "),
+        ("gcode", b"\nG1 "),
+    ],
+)
+def test_a_coupon_in_every_format_of_the_page(form: str, sign: bytes) -> None:
+    """For G-code with the job's feed and power, which it needs."""
+    assert form in page_tables()["coupon"]
+    burn = {"preset": "lightburn", "feed": "cut=300,engrave=3000", "power": "cut=800,engrave=150"}
+    name, data = coupon_file({"thickness": "3mm", "kerfs": "0.1", "format": form, **burn})
+    assert name == f"coupon.{form}"
+    assert sign in data
 
 
 def test_the_page_is_shown_what_is_cut() -> None:

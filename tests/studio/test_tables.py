@@ -109,6 +109,7 @@ def test_presets_kinds_and_formats_are_all_there() -> None:
     assert {"plain", "lightburn", "glowforge"} <= {preset["name"] for preset in TABLES["presets"]}
     assert TABLES["kinds"] == list(get_args(StrokeKind))
     assert set(TABLES["formats"]) == {*FORMATS, "json", "png"}
+    assert TABLES["coupon"] == list(FORMATS)
     assert TABLES["limits"]["picture"] == DEFAULT_SIZE
     assert TABLES["limits"]["drop"] == 16 * 2**20  # as tests/studio/test_drop.py has it
     assert TABLES["units"] == {"mm": 1.0, "cm": 10.0, "in": 25.4}

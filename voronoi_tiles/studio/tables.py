@@ -11,6 +11,7 @@ from voronoi_tiles.base.version import __version__
 from voronoi_tiles.designs.drawn_strokes import StrokeKind
 from voronoi_tiles.designs.starters import GROUP_NAMES, starter, symmetry_of
 from voronoi_tiles.fabrication.job import Job
+from voronoi_tiles.formats.presets import FORMATS as DRAWINGS
 from voronoi_tiles.formats.presets import load_preset, preset_names
 from voronoi_tiles.groups.symmetry_elements import Line, symmetry_elements
 from voronoi_tiles.groups.wallpaper import GROUPS, WallpaperGroup
@@ -60,6 +61,7 @@ def page_tables() -> dict[str, Any]:
         "job": job_options(),
         "presets": [{"name": name, "title": load_preset(name).title} for name in preset_names()],
         "formats": list(FORMS),
+        "coupon": list(DRAWINGS),
         "units": dict(UNIT_MM),
         "limits": {**LIMITS, "picture": DEFAULT_SIZE},
     }

@@ -14,8 +14,10 @@ import { clipboard } from "./clipboard.js";
 import { OpenedFile } from "./file.js";
 import { habits, keepHabits } from "./habits.js";
 import { announce } from "./panels/announce.js";
-import { dialogs } from "./panels/dialogs.js";
 import { byId } from "./panels/elements.js";
+import { help } from "./panels/help.js";
+import { incoming } from "./panels/incoming.js";
+import { outgoing } from "./panels/outgoing.js";
 import { connectPanels } from "./panels/panels.js";
 import { showStatus } from "./panels/status.js";
 
@@ -99,7 +101,7 @@ const zoomBy = (factor) => {
 };
 
 const file = new OpenedFile(store, link, stage);
-const ask = dialogs(byId("dialogs"), { store, link, stage, file });
+const ask = { ...incoming({ store, link, stage, file }), ...outgoing({ store }) };
 
 /** @type {Record<string, () => void>} */
 const COMMANDS = {
@@ -108,7 +110,11 @@ const COMMANDS = {
             store.undo();
         }
     },
-    redo: () => store.redo(),
+    redo() {
+        if (!toolbox.tool.redo?.(hands)) {
+            store.redo();
+        }
+    },
     save: () => file.save(),
     "save-as": () => void ask.saveAs(),
     export: () => ask.export(),
@@ -117,7 +123,7 @@ const COMMANDS = {
     gallery: () => void ask.gallery(),
     coupon: () => ask.coupon(),
     share: () => ask.share(),
-    help: () => ask.help(),
+    help: () => help(store),
     theme: () => store.set({ theme: stage.dark ? "light" : "dark" }),
     "zoom-in": () => zoomBy(1.4),
     "zoom-out": () => zoomBy(1 / 1.4),
@@ -177,7 +183,6 @@ for (const tool of TOOLS) {
         byId("tools").append(document.createElement("hr"));
     }
     const button = document.createElement("button");
-    button.type = "button";
     button.dataset.tool = tool.name;
     button.setAttribute("aria-label", tool.title);
     const svg = document.createElementNS("http://www.w3.org/2000/svg", "svg");

@@ -69,7 +69,7 @@ export class OpenedFile {
 
     /**
      * Follow what the server says of the file.
-     * @param {ReturnType<typeof import("./panels/dialogs.js").dialogs>} ask
+     * @param {ReturnType<typeof import("./panels/incoming.js").incoming>} ask
      * @param {() => void} seeDrawing
      */
     listen(ask, seeDrawing) {

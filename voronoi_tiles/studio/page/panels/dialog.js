@@ -1,7 +1,7 @@
 // @ts-check
 // The frame of a dialog: its buttons, what is being done, and what went wrong.
 
-import { make } from "./elements.js";
+import { button, byId, make, said } from "./elements.js";
 
 /**
  * @typedef {object} Action a button of a dialog; it closes the dialog, and what fails is said in it
@@ -13,47 +13,38 @@ import { make } from "./elements.js";
 
 /**
  * Show a dialog in the place of the one before.
- * @param {HTMLElement} home
  * @param {string} title
  * @param {(Node | string)[]} content
  * @param {Action[]} actions the last closes without doing anything, and gives up what one before it is doing
  */
-export function showDialog(home, title, content, actions) {
-    const said = make("p", { class: "error", role: "alert" });
+export function showDialog(title, content, actions) {
+    const failed = make("p", { class: "error", role: "alert" });
     const working = make("p", { class: "note", role: "status" });
     const stop = new AbortController();
-    const buttons = actions.map(({ label, first, whole, run }) =>
-        make(
-            "button",
-            {
-                type: "button",
-                class: first ? "first" : "",
-                onclick: async () => {
-                    if (box.ariaBusy && (run || box.dataset.whole)) {
-                        return;
-                    }
-                    try {
-                        said.textContent = "";
-                        const done = run?.(stop.signal);
-                        if (done instanceof Promise) {
-                            box.ariaBusy = "true";
-                            box.dataset.whole = whole ? "yes" : "";
-                            working.replaceChildren(make("progress", { "aria-hidden": true }), " Working");
-                            await done;
-                        }
-                        box.close();
-                    } catch (error) {
-                        said.textContent = error instanceof Error ? error.message : String(error);
-                    } finally {
-                        box.ariaBusy = null;
-                        working.textContent = "";
-                    }
-                },
-            },
-            label,
-        ),
-    );
-    const heading = make("h2", { id: "dialog-title" }, title);
+    const buttons = actions.map(({ label, first, whole, run }) => {
+        const act = async () => {
+            if (box.ariaBusy && (run || box.dataset.whole)) {
+                return;
+            }
+            try {
+                failed.textContent = "";
+                const done = run?.(stop.signal);
+                if (done instanceof Promise) {
+                    box.ariaBusy = "true";
+                    box.dataset.whole = whole ? "yes" : "";
+                    working.replaceChildren(make("progress", { "aria-hidden": true }), " Working");
+                    await done;
+                }
+                box.close();
+            } catch (error) {
+                failed.textContent = said(error);
+            } finally {
+                box.ariaBusy = null;
+                working.textContent = "";
+            }
+        };
+        return button(label, act, { class: first ? "first" : "" });
+    });
     const box = make(
         "dialog",
         {
@@ -64,14 +55,14 @@ export function showDialog(home, title, content, actions) {
                 box.remove();
             },
         },
-        heading,
+        make("h2", { id: "dialog-title" }, title),
         ...content,
-        said,
+        failed,
         working,
         make("footer", {}, ...buttons),
     );
-    home.replaceChildren(box);
+    byId("dialogs").replaceChildren(box);
     box.showModal();
     box.scrollTop = 0;
-    return { box, said };
+    return { box, failed };
 }

@@ -34,6 +34,18 @@ export function make(tag, attributes = {}, ...children) {
 /** An element of the page. @param {string} id */
 export const byId = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 
+/**
+ * A button; what it does may be given by `data-command`.
+ * @param {string} label
+ * @param {((event: MouseEvent) => void) | null} onclick
+ * @param {Record<string, any>} [attributes]
+ */
+export const button = (label, onclick, attributes = {}) =>
+    make("button", onclick ? { ...attributes, onclick } : attributes, label);
+
+/** What is said of an error. @param {unknown} error */
+export const said = (error) => (error instanceof Error ? error.message : String(error));
+
 let count = 0;
 
 /**
@@ -84,51 +96,63 @@ export const inLabels = (text) =>
     );
 
 /**
- * A field for a length, which takes arithmetic and units: "12.5mm + 1/4in". What cannot be read stays in it, `:invalid`,
- * with the reason below it.
+ * A field for a text. What is refused stays in it, `:invalid`, with the reason below it; Escape takes it back.
+ * @param {string} old
+ * @param {(text: string) => void} take may throw what is wrong with it
+ * @param {Record<string, any>} [attributes]
+ * @returns {HTMLInputElement}
+ */
+export function textField(old, take, attributes = {}) {
+    const input = make("input", {
+        type: "text",
+        spellcheck: "false",
+        autocomplete: "off",
+        ...attributes,
+        // What is typed differs from it: undo is the field's own until then, the drawing's else.
+        ".defaultValue": old,
+        onchange() {
+            try {
+                take(input.value);
+                input.defaultValue = input.value;
+                refuse(input, "");
+            } catch (error) {
+                refuse(input, said(error));
+            }
+        },
+        onkeydown(/** @type {KeyboardEvent} */ event) {
+            if (event.key === "Escape") {
+                input.value = old;
+                refuse(input, "");
+            }
+        },
+    });
+    return input;
+}
+
+/** @param {HTMLInputElement} input @param {string} error why what is in it is refused, "" where it is not */
+function refuse(input, error) {
+    input.setCustomValidity(error);
+    mark(input, error);
+}
+
+/**
+ * A field for a length, which takes arithmetic and units: "12.5mm + 1/4in".
  * @param {number | null} value millimetres, or in `unit`
  * @param {string} unit what it is shown in, and what a bare number means
  * @param {(value: number) => void} change called with the number in `unit`; may throw what is wrong with it
  * @param {Record<string, any>} [attributes]
  * @param {() => void} [empty] called where nothing is left in it; without this it needs a length
- * @returns {HTMLInputElement}
  */
 export function lengthField(value, unit, change, attributes = {}, empty) {
-    const input = make("input", {
-        type: "text",
-        inputmode: "decimal",
-        spellcheck: "false",
-        autocomplete: "off",
-        ...attributes,
-        // What is typed differs from it: undo is the field's own until then, the drawing's else.
-        ".defaultValue": value === null ? "" : shown(value, unit),
-    });
-    const old = input.value;
-    const say = (/** @type {string} */ error) => {
-        input.setCustomValidity(error);
-        mark(input, error);
-    };
-    const read = () => {
-        try {
-            if (empty && !input.value.trim()) {
-                empty();
-            } else if (input.value !== old) {
-                change(evaluate(input.value, unit));
-            }
-            input.defaultValue = input.value;
-            say("");
-        } catch (error) {
-            say(error instanceof Error ? error.message : String(error));
+    const old = value === null ? "" : shown(value, unit);
+    const read = (/** @type {string} */ text) => {
+        if (empty && !text.trim()) {
+            empty();
+        } else if (text !== old) {
+            change(evaluate(text, unit));
         }
     };
-    input.addEventListener("change", read);
-    input.addEventListener("keydown", (/** @type {KeyboardEvent} */ event) => {
-        if (event.key === "Escape") {
-            input.value = old;
-            say("");
-        }
-    });
-    return input;
+    return textField(old, read, { inputmode: "decimal", ...attributes });
 }
 
 /** A length that is above zero. Throws an Error for people. @param {number} length */
@@ -164,13 +188,13 @@ export function deferred(run, home) {
 }
 
 /**
- * Replace what an element holds and keep the focus on the control of the same data-key. A text that could not be read
- * stays in its field, unless that is of something else by now.
+ * Replace what an element holds and keep the focus on the control of the same data-key. A text that was refused stays
+ * in its field with the reason, unless that is of something else by now.
  * @param {HTMLElement} parent
  * @param {Node[]} children
  */
 export function refill(parent, children) {
-    const unread = /** @type {HTMLInputElement[]} */ ([...parent.querySelectorAll("input:invalid")]);
+    const unread = /** @type {HTMLInputElement[]} */ ([...parent.querySelectorAll("input[type=text]:invalid")]);
     const active = document.activeElement;
     const key = active instanceof HTMLElement && parent.contains(active) ? active.dataset.key : undefined;
     const scroll = parent.parentElement?.scrollTop ?? 0;
@@ -178,11 +202,11 @@ export function refill(parent, children) {
     /** @param {string} name */
     const control = (name) =>
         /** @type {HTMLElement | null} */ (parent.querySelector(`[data-key="${CSS.escape(name)}"]`));
-    for (const { dataset, defaultValue, value } of unread) {
+    for (const { dataset, defaultValue, value, validationMessage } of unread) {
         const again = control(dataset.key ?? "");
         if (again instanceof HTMLInputElement && again.defaultValue === defaultValue) {
             again.value = value;
-            again.dispatchEvent(new Event("change"));
+            refuse(again, validationMessage);
         }
     }
     if (key) {

@@ -1,16 +1,38 @@
 // @ts-check
-// The tools' letters in the help, where they are changed.
+// The help: all keys, and the tools' letters, which are changed there.
 
 import { letterOf, letterProblem, withLetter } from "../tools/letters.js";
 import { TOOLS } from "../tools/toolbox.js";
-import { make } from "./elements.js";
+import { HELP } from "../tools/keys.js";
+import { showDialog } from "./dialog.js";
+import { button, make } from "./elements.js";
+
+/** Show all keys. @param {import("../store.js").Store} store */
+export function help(store) {
+    const columns = HELP.map(({ title, rows }) =>
+        make(
+            "section",
+            {},
+            make("h3", {}, title),
+            make(
+                "dl",
+                { class: "keys" },
+                ...rows.flatMap(({ keys, does }) => [make("dt", {}, make("kbd", {}, keys)), make("dd", {}, does)]),
+            ),
+        ),
+    );
+    const content = make("div", { class: "help" }, lettersPart(store), ...columns);
+    const { box } = showDialog("Keys", [content], [{ label: "Close" }]);
+    // Not in the field of a letter, where the next key would give a tool another one.
+    box.querySelector("footer button")?.focus({ preventScroll: true });
+}
 
 /**
  * The tools with their letters, as a part of the help.
  * @param {import("../store.js").Store} store
  * @returns {HTMLElement}
  */
-export function lettersPart(store) {
+function lettersPart(store) {
     const fields = TOOLS.map((tool) => {
         const shown = () => letterOf(tool, store.state.letters).toUpperCase();
         const input = make("input", {
@@ -41,18 +63,11 @@ export function lettersPart(store) {
     });
     const showAll = () => fields.forEach(({ show }) => show());
     const said = make("p", { class: "error", role: "alert" });
-    const reset = make(
-        "button",
-        {
-            type: "button",
-            onclick() {
-                store.set({ letters: {} });
-                showAll();
-                said.textContent = "";
-            },
-        },
-        "Reset the letters",
-    );
+    const reset = button("Reset the letters", () => {
+        store.set({ letters: {} });
+        showAll();
+        said.textContent = "";
+    });
     return make(
         "section",
         {},

@@ -1,7 +1,7 @@
 // @ts-check
 // The job: all that `voronoi-tiles export` offers, made from the server's table of options, common ones first.
 
-import { deferred, field, inLabels, labelOf, lengthField, make, refill } from "./elements.js";
+import { button, deferred, field, inLabels, labelOf, lengthField, make, refill } from "./elements.js";
 
 /**
  * @typedef {import("./panels.js").Context} Context
@@ -83,32 +83,13 @@ export class JobPanel extends HTMLElement {
                 make(
                     "p",
                     { class: "group" },
-                    make(
-                        "button",
-                        {
-                            type: "button",
-                            class: "first",
-                            "data-key": "export",
-                            onclick: () => this.#context.run("export"),
-                        },
-                        "Export",
-                    ),
-                    make(
-                        "button",
-                        { type: "button", "data-key": "coupon", onclick: () => this.#context.run("coupon") },
-                        "Test piece for the kerf",
-                    ),
+                    button("Export", null, { class: "first", "data-key": "export", "data-command": "export" }),
+                    button("Test piece for the kerf", null, { "data-key": "coupon", "data-command": "coupon" }),
                     Object.keys(job).length > 0 &&
-                        make(
-                            "button",
-                            {
-                                type: "button",
-                                class: "quiet",
-                                "data-key": "reset",
-                                onclick: () => this.#context.store.set({ job: {} }),
-                            },
-                            "Reset",
-                        ),
+                        button("Reset", () => this.#context.store.set({ job: {} }), {
+                            class: "quiet",
+                            "data-key": "reset",
+                        }),
                 ),
             ].filter(Boolean),
         );

@@ -2,7 +2,7 @@
 // What the job comes to, and what preflight finds: each finding with its place on the sheet.
 
 import { shown } from "../model/lengths.js";
-import { inLabels, make, refill } from "./elements.js";
+import { button, inLabels, make, refill } from "./elements.js";
 
 /**
  * @typedef {import("./panels.js").Context} Context
@@ -108,11 +108,7 @@ export class ReportPanel extends HTMLElement {
             make("strong", {}, severity),
             make("span", {}, same.length > 1 ? `${message} And ${same.length - 1} more of this kind.` : message),
             places.length > 0 &&
-                make(
-                    "button",
-                    { type: "button", class: "quiet", "data-key": `finding ${k}`, onclick: show },
-                    places.length > 1 ? "Show next" : "Show",
-                ),
+                button(places.length > 1 ? "Show next" : "Show", show, { class: "quiet", "data-key": `finding ${k}` }),
         );
     }
 }

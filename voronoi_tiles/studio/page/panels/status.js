@@ -4,7 +4,8 @@
 import { siteNames } from "../model/design.js";
 import { shown } from "../model/lengths.js";
 import { shownFactor } from "../store.js";
-import { byId, make } from "./elements.js";
+import { stepIn } from "../tools/trace.js";
+import { button, byId, make } from "./elements.js";
 
 /** Of outlines that are this many changes behind while something is dragged, the page says so. */
 const BEHIND = 8;
@@ -51,10 +52,10 @@ export function showStatus(store) {
         document.title = `${saved ? "" : "* "}${file || "studio"} - voronoi_tiles`;
     });
 
-    store.subscribe(["revision", "dragging"], () => {
+    store.subscribe(["revision", "dragging", "trace"], ({ trace: { moves } }) => {
         for (const [command, can] of /** @type {const} */ ([
-            ["undo", store.canUndo],
-            ["redo", store.canRedo],
+            ["undo", store.canUndo || (moves && stepIn(store, "past"))],
+            ["redo", store.canRedo || (moves && stepIn(store, "future"))],
         ])) {
             /** @type {HTMLButtonElement} */ (document.querySelector(`[data-command=${command}]`)).disabled = !can;
         }
@@ -122,12 +123,7 @@ export function showStatus(store) {
                         .replace(/^[a-z]+ /, (word) => word[0].toUpperCase() + word.slice(1)),
                 );
                 const close =
-                    one === trouble &&
-                    make(
-                        "button",
-                        { type: "button", class: "quiet", onclick: () => store.set({ trouble: null }) },
-                        "Close",
-                    );
+                    one === trouble && button("Close", () => store.set({ trouble: null }), { class: "quiet" });
                 return make("div", {}, make("p", {}, strong, ` ${one.remedy}`), close);
             }),
         );

@@ -18,7 +18,7 @@ import {
 import { joinSelected } from "../model/joining.js";
 import { moveNodes } from "../model/nodes.js";
 import { NOTHING, shownFactor } from "../store.js";
-import { lengthField, make, mark, refill } from "./elements.js";
+import { button, lengthField, make, refill, textField } from "./elements.js";
 
 /**
  * @typedef {import("./panels.js").Context} Context
@@ -78,11 +78,7 @@ export class StrokePanel extends HTMLElement {
             make(
                 "p",
                 {},
-                make(
-                    "button",
-                    { type: "button", "data-key": "add site", onclick: () => this.#addSite() },
-                    "Add a site",
-                ),
+                button("Add a site", () => this.#addSite(), { "data-key": "add site" }),
             ),
             make(
                 "p",
@@ -112,19 +108,14 @@ export class StrokePanel extends HTMLElement {
     #site(state, entries, i) {
         const { store } = this.#context;
         const name = siteNames(state.design)[i];
-        const field = make("input", {
-            type: "text",
-            "aria-label": `Name of site ${i + 1}`,
-            "data-key": `name ${i}`,
-            ".value": name,
-            onchange: () => {
-                const problem = nameProblem(state.design, i, field.value);
-                mark(field, problem);
-                if (!problem) {
-                    store.edit("rename", (design) => renameSite(design, i, field.value));
-                }
-            },
-        });
+        const rename = (/** @type {string} */ text) => {
+            const problem = nameProblem(store.settled, i, text);
+            if (problem) {
+                throw new Error(problem);
+            }
+            store.edit("rename", (design) => renameSite(design, i, text));
+        };
+        const field = textField(name, rename, { "aria-label": `Name of site ${i + 1}`, "data-key": `name ${i}` });
         const draw = make("input", {
             type: "radio",
             name: "site",
@@ -133,21 +124,16 @@ export class StrokePanel extends HTMLElement {
             ".checked": state.site === i,
             onchange: () => store.set({ site: i }),
         });
-        const remove = make(
-            "button",
-            {
-                type: "button",
-                class: "quiet",
-                "data-key": `remove site ${i}`,
-                "aria-label": `Take out site ${name}`,
-                ".disabled": state.design.site.length < 2,
-                onclick: () => {
-                    store.set({ site: 0 });
-                    store.edit("take out site", (design) => removeSite(design, i), { selection: NOTHING });
-                },
-            },
-            "Take out",
-        );
+        const takeOut = () => {
+            store.set({ site: 0 });
+            store.edit("take out site", (design) => removeSite(design, i), { selection: NOTHING });
+        };
+        const remove = button("Take out", takeOut, {
+            class: "quiet",
+            "data-key": `remove site ${i}`,
+            "aria-label": `Take out site ${name}`,
+            ".disabled": state.design.site.length < 2,
+        });
         const own = entries.filter((entry) => entry.ref.site === i);
         return [
             make("div", { class: "site" }, draw, field, remove),
@@ -166,26 +152,22 @@ export class StrokePanel extends HTMLElement {
         const { ref } = entry;
         const chosen = state.selection.strokes.some((other) => isSameStroke(other, ref));
         const label = `${NAMES[entry.kind] ?? "Stroke"} ${ref.stroke + 1}`;
-        const button = make(
-            "button",
-            {
-                type: "button",
-                class: "stroke",
-                "aria-expanded": chosen,
-                "data-key": `stroke ${ref.site} ${ref.stroke}`,
-                onclick: (/** @type {MouseEvent} */ event) => {
-                    const more = event.shiftKey || event.ctrlKey || event.metaKey;
-                    const others = more ? state.selection.strokes.filter((other) => !isSameStroke(other, ref)) : [];
-                    store.set({
-                        selection: { strokes: more && chosen ? others : [...others, ref], nodes: [] },
-                        site: ref.site,
-                        tool: "select",
-                    });
-                },
-            },
-            label,
-        );
-        return make("li", {}, button, chosen ? this.#points(state, entry, label) : null);
+        /** @param {MouseEvent} event */
+        const choose = ({ shiftKey, ctrlKey, metaKey }) => {
+            const more = shiftKey || ctrlKey || metaKey;
+            const others = more ? state.selection.strokes.filter((other) => !isSameStroke(other, ref)) : [];
+            store.set({
+                selection: { strokes: more && chosen ? others : [...others, ref], nodes: [] },
+                site: ref.site,
+                tool: "select",
+            });
+        };
+        const attributes = {
+            class: "stroke",
+            "aria-expanded": chosen,
+            "data-key": `stroke ${ref.site} ${ref.stroke}`,
+        };
+        return make("li", {}, button(label, choose, attributes), chosen && this.#points(state, entry, label));
     }
 
     /**
@@ -196,6 +178,9 @@ export class StrokePanel extends HTMLElement {
     #points(state, entry, label) {
         const { store } = this.#context;
         const { ref } = entry;
+        const { strokes, nodes: points } = state.selection;
+        const key = `${ref.site} ${ref.stroke}`;
+        const takeOut = () => store.edit("delete", (design) => removeStrokes(design, [ref]), { selection: NOTHING });
         const nodes = entry.nodes.slice(0, NODES_MAX);
         const shown = nodes.map((node, k) => {
             const at = /** @type {[number, number]} */ (node.at);
@@ -206,27 +191,21 @@ export class StrokePanel extends HTMLElement {
                     (value) => {
                         const to = /** @type {[number, number]} */ ([...at]);
                         to[axis] = value / this.#factor;
+                        const moves = [{ node: node.node, to }];
                         store.edit("move point", (design) =>
                             replaceStroke(
                                 design,
                                 ref,
-                                moveNodes(
-                                    design.site[ref.site].strokes[ref.stroke],
-                                    entry.placement,
-                                    [{ node: node.node, to }],
-                                    {
-                                        alone: false,
-                                    },
-                                ),
+                                moveNodes(design.site[ref.site].strokes[ref.stroke], entry.placement, moves),
                             ),
                         );
                     },
                     {
                         "aria-label": `${label}, ${ROLES[node.role] ?? node.role} ${k + 1}, ${"xy"[axis]}`,
-                        "data-key": `${ref.site} ${ref.stroke} ${node.node} ${axis}`,
+                        "data-key": `${key} ${node.node} ${axis}`,
                     },
                 );
-            const has = state.selection.nodes.some((other) => isSameNode(other, { ...ref, node: node.node }));
+            const has = points.some((other) => isSameNode(other, { ...ref, node: node.node }));
             return make(
                 "li",
                 { class: has ? "point chosen" : "point" },
@@ -245,36 +224,14 @@ export class StrokePanel extends HTMLElement {
             make(
                 "p",
                 { class: "group" },
-                make(
-                    "button",
-                    {
-                        type: "button",
-                        "data-key": `double ${ref.site} ${ref.stroke}`,
-                        onclick: () => this.#double(entry),
-                    },
-                    "Double",
-                ),
-                make(
-                    "button",
-                    {
-                        type: "button",
-                        "data-key": `delete ${ref.site} ${ref.stroke}`,
-                        onclick: () =>
-                            store.edit("delete", (design) => removeStrokes(design, [ref]), { selection: NOTHING }),
-                    },
-                    "Take out",
-                ),
+                button("Double", () => this.#double(entry), { "data-key": `double ${key}` }),
+                button("Take out", takeOut, { "data-key": `delete ${key}` }),
                 joinSelected(state.design, state.selection) &&
-                    make(
-                        "button",
-                        {
-                            type: "button",
-                            "data-command": "join",
-                            "data-key": `join ${ref.site} ${ref.stroke}`,
-                            title: "The two ends that are selected, or those of the selected strokes that are nearest (J)",
-                        },
-                        state.selection.strokes.length > 1 || state.selection.nodes.length === 2 ? "Join" : "Close",
-                    ),
+                    button(strokes.length > 1 || points.length === 2 ? "Join" : "Close", null, {
+                        "data-command": "join",
+                        "data-key": `join ${key}`,
+                        title: "The two ends that are selected, or those of the selected strokes that are nearest (J)",
+                    }),
                 state.design.site.length > 1 && this.#otherSite(state, entry),
             ),
         );

@@ -104,7 +104,6 @@ export class SymmetryPanel extends HTMLElement {
         return make(
             "button",
             {
-                type: "button",
                 role: "radio",
                 "data-group": group.name,
                 title: inWords(group),

@@ -4,8 +4,8 @@
 import { latticeOf } from "../model/symmetry.js";
 import { length, plus, scaled } from "../model/plane.js";
 import { shownFactor } from "../store.js";
-import { setTrace } from "../tools/trace.js";
-import { above, deferred, field, lengthField, make, refill } from "./elements.js";
+import { lay, setTrace } from "../tools/trace.js";
+import { above, button, deferred, field, lengthField, make, refill } from "./elements.js";
 
 /**
  * The controls of the picture.
@@ -60,24 +60,19 @@ export function tracePart({ store }) {
             lengthField(
                 at[axis] * factor,
                 unit,
-                (value) => setTrace(store, { at: axis ? [at[0], value / factor] : [value / factor, at[1]] }),
+                (value) => lay(store, { at: axis ? [at[0], value / factor] : [value / factor, at[1]] }),
                 { "aria-label": `Middle of the picture, ${"xy"[axis]}`, "data-key": `picture ${axis}` },
             );
-        const width = lengthField(
-            trace.width * factor,
-            unit,
-            (value) => setTrace(store, { width: above(value) / factor }),
-            { "data-key": "picture width" },
-        );
+        const width = lengthField(trace.width * factor, unit, (value) => lay(store, { width: above(value) / factor }), {
+            "data-key": "picture width",
+        });
         const turn = make("input", {
             type: "number",
             step: "any",
             "data-key": "picture turn",
             ".value": trace.turn,
-            onchange: () => Number.isFinite(turn.valueAsNumber) && setTrace(store, { turn: turn.valueAsNumber }),
+            onchange: () => Number.isFinite(turn.valueAsNumber) && lay(store, { turn: turn.valueAsNumber }),
         });
-        const button = (/** @type {string} */ label, /** @type {() => void} */ onclick, more = {}) =>
-            make("button", { type: "button", "data-key": label, onclick, ...more }, label);
         refill(place, [
             make("div", { class: "field point" }, make("span", {}, "Middle"), coordinate(0), coordinate(1)),
             field(`Picture width, ${unit}`, width),
@@ -87,10 +82,11 @@ export function tracePart({ store }) {
                 { class: "group" },
                 button("Move picture", () => setTrace(store, { moves: !store.state.trace.moves }), {
                     id: "move-picture",
+                    "data-key": "move picture",
                     "aria-pressed": trace.moves,
                     title: "Drag it, or a corner of it; arrows move it",
                 }),
-                button("Take out", () => setTrace(store, { image: null, moves: false })),
+                button("Take out", () => setTrace(store, { image: null, moves: false }), { "data-key": "no picture" }),
             ),
         ]);
     };

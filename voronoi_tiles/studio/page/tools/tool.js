@@ -45,7 +45,8 @@
  *   held would be joined to: the pointer is drawn to that before all else
  * @property {(by: Point, hands: Hands) => void} [nudge] arrow keys move what it has
  * @property {(key: string, event: KeyboardEvent, hands: Hands) => boolean} [key_down] whether the key was for it
- * @property {(hands: Hands) => boolean} [undo] take back its own last point; whether there was one
+ * @property {(hands: Hands) => boolean} [undo] take back its own last step; whether there was one
+ * @property {(hands: Hands) => boolean} [redo] take it again; likewise
  * @property {(hands: Hands) => void} [leave] it is laid down: end what was begun
  * @property {(hands: Hands) => boolean} [cancel] Escape; whether there was something to end
  * @property {(context: CanvasRenderingContext2D, hands: Hands) => void} [draw] in pixels of the page

@@ -3,7 +3,7 @@
 
 import { distance, minus, plus } from "../model/plane.js";
 import { rounded } from "../model/snapping.js";
-import { cornersOf, pulled } from "../model/tracing.js";
+import { cornersOf, inUnits, pulled } from "../model/tracing.js";
 
 /**
  * @typedef {import("./tool.js").Point} Point
@@ -29,6 +29,46 @@ const shownIn = ({ state: { trace } }) => /** @type {Shown | null} */ (trace.ima
  */
 export const setTrace = (store, patch) => store.set({ trace: { ...store.state.trace, ...patch } });
 
+/** @type {{past: Shown[], future: Shown[], nudges: boolean}} where the picture lay before, and before undo */
+const steps = { past: [], future: [], nudges: false };
+
+/**
+ * Lay the picture elsewhere: a step of its own history, which is no part of the drawing's.
+ * @param {Store} store
+ * @param {Partial<Trace>} patch
+ * @param {Shown | null} [from] where it lay before, where that has been shown already
+ * @param {boolean} [nudges] whether steps of this kind that follow each other are one
+ */
+export function lay(store, patch, from = shownIn(store), nudges = false) {
+    if (from && !(nudges && steps.nudges)) {
+        Object.assign(steps, { past: [...steps.past, from], future: [] });
+    }
+    steps.nudges = nudges;
+    setTrace(store, patch);
+}
+
+/**
+ * The step that undo or redo goes to, null where there is none of this picture.
+ * @param {Store} store
+ * @param {"past" | "future"} list
+ */
+export function stepIn({ state }, list) {
+    const step = steps[list].at(-1);
+    return step && step.image === state.trace.image ? step : null;
+}
+
+/** @type {(store: Store, from: "past" | "future", to: "past" | "future") => boolean} whether there was a step to go */
+function go(store, from, to) {
+    const [step, now] = [stepIn(store, from), shownIn(store)];
+    if (!step || !now) {
+        return false;
+    }
+    Object.assign(steps, { [from]: steps[from].slice(0, -1), [to]: [...steps[to], now], nudges: false });
+    const { at, width, turn } = inUnits(step, now.units);
+    setTrace(store, { at, width, turn });
+    return true;
+}
+
 /** @type {Tool} */
 export const trace = {
     name: "trace",
@@ -49,13 +89,19 @@ export const trace = {
             store.set({ trace: corner ? pulled(laid, from, touch.raw, touch.shift) : { ...laid, at } });
         }
     },
-    up() {
+    up(_touch, { store }) {
+        const place = (/** @type {Trace} */ { at, width, turn }) => String([at, width, turn]);
+        if (drag && place(drag.laid) !== place(store.state.trace)) {
+            lay(store, {}, drag.laid);
+        }
         drag = null;
     },
     nudge(by, { store }) {
         const laid = shownIn(store);
-        setTrace(store, { at: laid && plus(laid.at, by) });
+        lay(store, { at: laid && plus(laid.at, by) }, laid, true);
     },
+    undo: (hands) => (drag ? trace.cancel?.(hands) : go(hands.store, "past", "future")) ?? false,
+    redo: ({ store }) => go(store, "future", "past"),
     cancel({ store }) {
         store.set({ trace: drag?.laid ?? { ...store.state.trace, moves: false } });
         drag = null;
