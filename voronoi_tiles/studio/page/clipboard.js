@@ -34,8 +34,7 @@ function svgOf(entries, strokes) {
 
 /**
  * The strokes in a text from the clipboard: ours, or null where it is another's SVG, or none.
- * @param {string} text
- * @returns {any[] | null}
+ * @type {(text: string) => any[] | null}
  */
 function ownStrokes(text) {
     const root = new DOMParser().parseFromString(text, "image/svg+xml").documentElement;

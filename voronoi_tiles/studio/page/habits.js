@@ -8,11 +8,7 @@ const NAME = "voronoi_tiles studio";
 /** How the page looks: nothing of the design. @type {(keyof import("./store.js").State)[]} */
 const HABITS = ["unit", "theme", "shown", "letters"];
 
-/**
- * What the browser keeps for this page under a name.
- * @param {string} name
- * @returns {any}
- */
+/** What the browser keeps for this page under a name. @type {(name: string) => any} */
 export function kept(name) {
     try {
         return JSON.parse(localStorage.getItem(name) ?? "{}");

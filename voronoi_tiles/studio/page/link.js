@@ -2,10 +2,9 @@
 // The live connection to the server: designs go out with a revision, the next when the last one's answer has come; what
 // comes back is for the newest, or it is left. A lost connection is made again, and the design sent anew.
 
+/** @import { Store } from "./store.js" */
+/** @import { Design } from "./model/design.js" */
 /**
- * @typedef {import("./store.js").Store} Store
- * @typedef {import("./model/design.js").Design} Design
- *
  * @typedef {object} Tile a tile as the server has computed it; lengths in the design's units, after its scale
  * @property {string} site
  * @property {string} path SVG path data of its rings, y up
@@ -16,7 +15,6 @@
  * @property {number} height
  * @property {number} copies in a cell
  * @property {number[]} operations one of the group's for each copy, as indices
- *
  * @typedef {object} Outline the exact tiles of a revision
  * @property {number} rev
  * @property {boolean} proved
@@ -26,12 +24,10 @@
  * @property {any} [colouring]
  * @property {number} ms
  * @property {Design} design that it is of
- *
  * @typedef {object} Refusal
  * @property {number} rev
  * @property {string} lane
  * @property {{message: string, remedy: string, key?: string, at?: [number, number]}} error
- *
  * @typedef {object} Product what a job comes to
  * @property {number} rev
  * @property {any} report

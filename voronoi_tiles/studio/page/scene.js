@@ -5,13 +5,11 @@ import { isSameStroke } from "./model/design.js";
 import { kindOf, cubicsOf, flatten, placementOf } from "./model/strokes.js";
 import { nodesOf } from "./model/nodes.js";
 
+/** @import { Design, Ref } from "./model/design.js" */
+/** @import { Placement } from "./model/strokes.js" */
+/** @import { Node } from "./model/nodes.js" */
 /**
- * @typedef {import("./model/design.js").Design} Design
- * @typedef {import("./model/design.js").Ref} Ref
- * @typedef {import("./model/strokes.js").Placement} Placement
- * @typedef {import("./model/nodes.js").Node} Node
  * @typedef {[number, number]} Point
- *
  * @typedef {object} Entry a stroke as it is drawn
  * @property {Ref} ref
  * @property {string} kind
@@ -85,8 +83,7 @@ export function segmentsOf(design, entries, tolerance) {
 
 /**
  * The box around some strokes, or null where there is none.
- * @param {readonly Entry[]} entries
- * @returns {[number, number, number, number] | null}
+ * @type {(entries: readonly Entry[]) => [number, number, number, number] | null}
  */
 export function boxOf(entries) {
     const box = /** @type {[number, number, number, number]} */ ([Infinity, Infinity, -Infinity, -Infinity]);

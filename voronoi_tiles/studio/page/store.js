@@ -5,17 +5,12 @@
 import { History } from "./model/history.js";
 import { UNLAID } from "./model/tracing.js";
 
+/** @import { Design, NodeRef, Ref } from "./model/design.js" */
+/** @import { Outline, Product, Refusal } from "./link.js" */
 /**
- * @typedef {import("./model/design.js").Design} Design
- * @typedef {import("./model/design.js").Ref} Ref
- * @typedef {import("./model/design.js").NodeRef} NodeRef
- * @typedef {import("./link.js").Outline} Outline
- * @typedef {import("./link.js").Refusal} Refusal
- * @typedef {import("./link.js").Product} Product
  * @typedef {{strokes: readonly Ref[], nodes: readonly NodeRef[]}} Selection
  * @typedef {{message: string, remedy: string, quiet?: boolean}} Trouble quiet: nothing is wrong
  * @typedef {import("./model/tracing.js").Laid & {image: ImageBitmap | null, moves: boolean}} Trace moves: whether the pointer has it
- *
  * @typedef {object} State
  * @property {Design} design what is drawn, as it is seen: during a drag not yet in the history
  * @property {number} revision counts the changes of `design`
@@ -56,8 +51,7 @@ export const NO_TRACE = Object.freeze({ ...UNLAID, image: null, moves: false });
 
 /**
  * The factor from the drawing's units, before the design's scale, to those in which lengths are shown.
- * @param {Pick<State, "design" | "tables" | "unit">} state
- * @returns {number}
+ * @type {(state: Pick<State, "design" | "tables" | "unit">) => number}
  */
 export function shownFactor({ design, tables, unit }) {
     return (tables.units[design.units ?? "mm"] * (design.scale ?? 1)) / tables.units[unit];

@@ -4,8 +4,8 @@
 import { cross, dot, length, minus, same } from "./plane.js";
 import { cubicsOf, kindOf } from "./strokes.js";
 
-/** @typedef {import("./plane.js").Point} Point */
-/** @typedef {import("./design.js").Stroke} Stroke */
+/** @import { Point } from "./plane.js" */
+/** @import { Stroke } from "./design.js" */
 
 /** @typedef {Point[]} Chain 3 n + 1 control points; it is closed where the last is the first */
 
@@ -14,9 +14,7 @@ export const isClosed = (points) => points.length > 1 && same(points[0], points[
 
 /**
  * Chains with the numbers of their first control points among those of all.
- *
- * @param {Chain[]} chains
- * @returns {{chain: Chain, offset: number}[]}
+ * @type {(chains: Chain[]) => {chain: Chain, offset: number}[]}
  */
 export function numbered(chains) {
     let end = 0;
@@ -25,7 +23,6 @@ export function numbered(chains) {
 
 /**
  * The chains of a stroke: one, but for path data with several moves.
- *
  * @param {Stroke} stroke
  * @param {string} [resolved] the path data of a file
  * @returns {Chain[]}
@@ -47,10 +44,7 @@ export function chainsOf(stroke, resolved) {
  * The strokes that are the chains of another one: one of kind `path` where it was one, else a `bezier` each.
  *
  * Keys that place it, and unknown ones, are kept.
- *
- * @param {Stroke} stroke
- * @param {Chain[]} chains
- * @returns {Stroke[]}
+ * @type {(stroke: Stroke, chains: Chain[]) => Stroke[]}
  */
 export function strokesOf(stroke, chains) {
     if (kindOf(stroke) === "path") return chains.length ? [{ ...stroke, path: pathData(chains) }] : [];
@@ -59,11 +53,7 @@ export function strokesOf(stroke, chains) {
 
 /**
  * A stroke of another kind, with what does not belong to that left out.
- *
- * @param {Stroke} stroke
- * @param {"segment" | "polyline" | "bezier"} kind
- * @param {Point[]} points
- * @returns {Stroke}
+ * @type {(stroke: Stroke, kind: "segment" | "polyline" | "bezier", points: Point[]) => Stroke}
  */
 export function withKind(stroke, kind, points) {
     const own = new Set([kindOf(stroke), "tangents", "alpha", "closed", "radius", "layer", "id"]);
@@ -73,7 +63,6 @@ export function withKind(stroke, kind, points) {
 
 /**
  * A stroke as strokes of kind `bezier`: one for each of its chains.
- *
  * @param {Stroke} stroke
  * @param {string} [resolved] the path data of a file
  * @returns {Stroke[]}
@@ -85,9 +74,7 @@ export function asBezier(stroke, resolved) {
 
 /**
  * Chains as SVG path data: lines where both inner control points are on their ends.
- *
- * @param {Chain[]} chains
- * @returns {string}
+ * @type {(chains: Chain[]) => string}
  */
 function pathData(chains) {
     return chains.map((chain) => `M ${chain[0].join(" ")}${pieces(chain).map(command).join("")}`).join(" ");
@@ -109,7 +96,6 @@ const STRAIGHT = 1e-6;
 
 /**
  * The number of a control point's anchor; the last one of a closed chain is the first.
- *
  * @type {(chain: Chain, k: number) => number}
  */
 export function anchorOf(chain, k) {
@@ -119,7 +105,6 @@ export function anchorOf(chain, k) {
 
 /**
  * The numbers of the handles before and after an anchor, -1 for one that there is not.
- *
  * @type {(c: Chain, k: number) => [number, number]}
  */
 export function handlesOf(chain, anchor) {
@@ -130,7 +115,6 @@ export function handlesOf(chain, anchor) {
 
 /**
  * Whether both handles of an anchor are there, and point opposite ways.
- *
  * @type {(chain: Chain, anchor: number) => boolean}
  */
 export function isSmooth(chain, anchor) {

@@ -5,9 +5,9 @@ import { cartesian, fractional } from "./lattice.js";
 import { compose, distance, length, minus, plus } from "./plane.js";
 import { boxOf, isNear, mapped } from "./segments.js";
 
-/** @typedef {import("./plane.js").Point} Point */
+/** @import { Point } from "./plane.js" */
+/** @import { Lattice } from "./lattice.js" */
 /** @typedef {import("./plane.js").Similarity} Motion a motion of the group */
-/** @typedef {import("./lattice.js").Lattice} Lattice */
 
 /** How near a site must be to its image to be the same; relative to the cell or the site, whichever is larger. */
 const SAME_POINT = 1e-11;
@@ -16,7 +16,6 @@ const SAME_POINT = 1e-11;
  * The numbers of the motions that make the copies of a site in one cell, each copy once; the first is the identity's.
  *
  * Those that map the site onto itself, with a translation of the lattice, make no new copies.
- *
  * @param {Motion[]} motions
  * @param {Lattice} lattice
  * @param {ArrayLike<number>} segments the site's, 4 numbers each
@@ -39,7 +38,6 @@ export function cosets(motions, lattice, segments) {
 
 /**
  * The motions that map a site onto itself, the identity first.
- *
  * @param {Motion[]} motions
  * @param {Lattice} lattice
  * @param {ArrayLike<number>} segments the site's, 4 numbers each
@@ -74,11 +72,7 @@ function latticeVector(lattice, v) {
 
 /**
  * The number of a motion, up to translations of the lattice.
- *
- * @param {Motion} motion
- * @param {Motion[]} motions
- * @param {Lattice} lattice
- * @returns {number}
+ * @type {(motion: Motion, motions: Motion[], lattice: Lattice) => number}
  */
 function numberOf(motion, motions, lattice) {
     const near = SAME_POINT ** 0.5;
@@ -93,11 +87,7 @@ function numberOf(motion, motions, lattice) {
  * Whether the ends and the middles of some segments lie on others.
  *
  * Ends alone would take two sides of a triangle for the third; how the others are divided does not matter.
- *
- * @param {ArrayLike<number>} some
- * @param {ArrayLike<number>} others
- * @param {number} close
- * @returns {boolean}
+ * @type {(some: ArrayLike<number>, others: ArrayLike<number>, close: number) => boolean}
  */
 function liesOn(some, others, close) {
     for (let k = 0; k < some.length; k += 4) {

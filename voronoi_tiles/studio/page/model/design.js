@@ -10,7 +10,7 @@ import { MILLIMETRES } from "./lengths.js";
 import { placementIn, kindOf, pointsOf } from "./strokes.js";
 import { inverse, tidyPlus, tidyProduct, turned } from "./plane.js";
 
-/** @typedef {import("./plane.js").Point} Point */
+/** @import { Point } from "./plane.js" */
 /**
  * @typedef {"point" | "segment" | "polyline" | "bezier" | "hermite" | "catmull_rom" | "bspline" | "circle" | "path" |
  * "file"} StrokeKind
@@ -19,7 +19,6 @@ import { inverse, tidyPlus, tidyProduct, turned } from "./plane.js";
 
 /**
  * The keys that place strokes, sites and art, applied in this order about the origin.
- *
  * @typedef {object} Placed
  * @property {boolean} [mirror] x -> -x
  * @property {number} [scale]
@@ -29,7 +28,6 @@ import { inverse, tidyPlus, tidyProduct, turned } from "./plane.js";
 
 /**
  * The keys of a stroke, one of the kinds among them.
- *
  * @typedef {object} StrokeKeys
  * @property {Point} [point]
  * @property {Point[]} [segment]
@@ -79,7 +77,6 @@ import { inverse, tidyPlus, tidyProduct, turned } from "./plane.js";
 
 /**
  * The stroke of a reference, undefined where there is none.
- *
  * @type {(design: Design, ref: Ref) => Stroke | undefined}
  */
 export const strokeAt = (design, ref) => design.site[ref.site]?.strokes[ref.stroke];
@@ -92,7 +89,6 @@ export const isSameNode = (one, other) => isSameStroke(one, other) && one.node =
 
 /**
  * The design with strokes added to sites, each a little beside where it was, and the references of the new ones.
- *
  * @param {Design} design
  * @param {readonly {site: number, stroke: Stroke}[]} strokes
  * @param {number} by to the right and down; units
@@ -108,23 +104,14 @@ export function copied(design, strokes, by) {
     return { design: moveStrokes(design, refs, [by, -by]), refs };
 }
 
-/**
- * The references of all strokes, in the order of the design.
- *
- * @param {Design} design
- * @returns {Ref[]}
- */
+/** The references of all strokes, in the order of the design. @type {(design: Design) => Ref[]} */
 export function allStrokes(design) {
     return design.site.flatMap((site, k) => site.strokes.map((_, stroke) => ({ site: k, stroke })));
 }
 
 /**
  * The design with another list of strokes in one site.
- *
- * @param {Design} design
- * @param {number} site
- * @param {(strokes: readonly Stroke[]) => readonly Stroke[]} edit
- * @returns {Design}
+ * @type {(design: Design, site: number, edit: (strokes: readonly Stroke[]) => readonly Stroke[]) => Design}
  */
 function withStrokes(design, site, edit) {
     return withSite(design, site, (old) => ({ ...old, strokes: edit(old.strokes) }));
@@ -132,11 +119,7 @@ function withStrokes(design, site, edit) {
 
 /**
  * The design with one site changed; itself where there is no such site.
- *
- * @param {Design} design
- * @param {number} index
- * @param {(site: Site) => Site} edit
- * @returns {Design}
+ * @type {(design: Design, index: number, edit: (site: Site) => Site) => Design}
  */
 export function withSite(design, index, edit) {
     if (!design.site[index]) return design;
@@ -145,7 +128,6 @@ export function withSite(design, index, edit) {
 
 /**
  * The design with a stroke after the others of a site; its reference is {site, stroke: how many there were}.
- *
  * @param {Design} design
  * @param {number} site
  * @param {Stroke} stroke
@@ -155,10 +137,7 @@ export const addStroke = (design, site, stroke) => withStrokes(design, site, (st
 
 /**
  * The design without some strokes; sites stay, also without any.
- *
- * @param {Design} design
- * @param {readonly Ref[]} refs
- * @returns {Design}
+ * @type {(design: Design, refs: readonly Ref[]) => Design}
  */
 export function removeStrokes(design, refs) {
     return [...new Set(refs.map((ref) => ref.site))].reduce((found, site) => {
@@ -169,11 +148,7 @@ export function removeStrokes(design, refs) {
 
 /**
  * The design with a stroke in the place of another, or with several, or none.
- *
- * @param {Design} design
- * @param {Ref} ref
- * @param {Stroke | readonly Stroke[]} stroke
- * @returns {Design}
+ * @type {(design: Design, ref: Ref, stroke: Stroke | readonly Stroke[]) => Design}
  */
 export function replaceStroke(design, ref, stroke) {
     const inPlace = /** @type {readonly Stroke[]} */ (Array.isArray(stroke) ? stroke : [stroke]);
@@ -184,11 +159,7 @@ export function replaceStroke(design, ref, stroke) {
 
 /**
  * The design with some strokes moved by a vector of the drawing.
- *
- * @param {Design} design
- * @param {readonly Ref[]} refs
- * @param {Point} vector
- * @returns {Design}
+ * @type {(design: Design, refs: readonly Ref[], vector: Point) => Design}
  */
 export function moveStrokes(design, refs, vector) {
     return refs.reduce((found, ref) => {
@@ -200,11 +171,7 @@ export function moveStrokes(design, refs, vector) {
 /**
  * A stroke of a site moved by a vector of the drawing: by its points, or by its `translate` where it is placed by keys
  * of its own or has no points.
- *
- * @param {Site} site
- * @param {Stroke} stroke
- * @param {Point} vector
- * @returns {Stroke}
+ * @type {(site: Site, stroke: Stroke, vector: Point) => Stroke}
  */
 export function movedStroke(site, stroke, vector) {
     const by = turned(inverse(placementIn(site)), vector);
@@ -215,10 +182,7 @@ export function movedStroke(site, stroke, vector) {
 
 /**
  * A stroke with other points: those of its own key, not the tangents.
- *
- * @param {Stroke} stroke
- * @param {(point: Point, index: number) => Point} map
- * @returns {Stroke}
+ * @type {(stroke: Stroke, map: (point: Point, index: number) => Point) => Stroke}
  */
 export function mapPoints(stroke, map) {
     const kind = kindOf(stroke);
@@ -228,10 +192,7 @@ export function mapPoints(stroke, map) {
 
 /**
  * The design with an empty site after the others, under the next name that is free.
- *
- * @param {Design} design
- * @param {readonly Stroke[]} [strokes]
- * @returns {Design}
+ * @type {(design: Design, strokes?: readonly Stroke[]) => Design}
  */
 export function addSite(design, strokes = []) {
     const taken = new Set(siteNames(design));
@@ -243,20 +204,13 @@ export function addSite(design, strokes = []) {
 /** The names of all sites. @type {(design: Design) => string[]} */
 export const siteNames = (design) => design.site.map((site, k) => site.name ?? `site${k + 1}`);
 
-/**
- * The design without a site.
- *
- * @param {Design} design
- * @param {number} index
- * @returns {Design}
- */
+/** The design without a site. @type {(design: Design, index: number) => Design} */
 export function removeSite(design, index) {
     return { ...design, site: design.site.filter((_, k) => k !== index) };
 }
 
 /**
  * The design with a site renamed; `nameProblem` says which names there can be.
- *
  * @param {Design} design
  * @param {number} index
  * @param {string} name
@@ -266,11 +220,7 @@ export const renameSite = (design, index, name) => withSite(design, index, (site
 
 /**
  * Why a site cannot have a name; null where it can.
- *
- * @param {Design} design
- * @param {number} index
- * @param {string} name
- * @returns {string | null}
+ * @type {(design: Design, index: number, name: string) => string | null}
  */
 export function nameProblem(design, index, name) {
     const word = name.trim();
@@ -283,10 +233,7 @@ export function nameProblem(design, index, name) {
 
 /**
  * The design with keys of its cell changed; undefined takes a key out.
- *
- * @param {Design} design
- * @param {Partial<Cell>} patch
- * @returns {Design}
+ * @type {(design: Design, patch: Partial<Cell>) => Design}
  */
 export function setCell(design, patch) {
     const entries = Object.entries({ ...design.cell, ...patch }).filter(([, value]) => value !== undefined);
@@ -295,11 +242,7 @@ export function setCell(design, patch) {
 
 /**
  * The design in other units; with `convert` its numbers change and its size stays, else the other way round.
- *
- * @param {Design} design
- * @param {Unit} units
- * @param {boolean} convert
- * @returns {Design}
+ * @type {(design: Design, units: Unit, convert: boolean) => Design}
  */
 export function setUnits(design, units, convert) {
     const from = design.units ?? "mm";
@@ -330,10 +273,7 @@ const larger = (factor) => (site) => {
 
 /**
  * A stroke larger by a factor. Path data become so by the stroke's `scale`; drawings in files have a size of their own.
- *
- * @param {Stroke} stroke
- * @param {number} factor
- * @returns {Stroke}
+ * @type {(stroke: Stroke, factor: number) => Stroke}
  */
 function largerStroke(stroke, factor) {
     const large = (/** @type {Point} */ point) => largerPoint(point, factor);
@@ -350,7 +290,6 @@ const largerPoint = ([x, y], factor) => [tidyProduct(x, factor), tidyProduct(y, 
 
 /**
  * What is placed, moved by a vector that is times a factor.
- *
  * @template {Placed} T
  * @param {T} table
  * @param {number} factor
@@ -362,7 +301,6 @@ function largerShift(table, factor) {
 
 /**
  * A key of a table with its number times a factor; nothing where it is not there.
- *
  * @template {string} K
  * @param {{[key in K]?: number}} table
  * @param {K} key

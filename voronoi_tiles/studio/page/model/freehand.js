@@ -10,8 +10,8 @@ import { between, distance, dot, minus, plus, same, scaled, unit } from "./plane
 import { pointOn } from "./nearest.js";
 import { rounded } from "./snapping.js";
 
-/** @typedef {import("./plane.js").Point} Point */
-/** @typedef {import("./design.js").Stroke} Stroke */
+/** @import { Point } from "./plane.js" */
+/** @import { Stroke } from "./design.js" */
 /** @typedef {[Point, Point, Point, Point]} Cubic */
 
 /** How often parameters are improved before a curve is divided. */
@@ -25,10 +25,7 @@ const CORNER = Math.cos((50 * Math.PI) / 180);
  *
  * The curve is within about `accuracy` of all points, and the points of it: corners stay corners. It is closed where it
  * ends within three accuracies of where it began, after a way that is long beside that.
- *
- * @param {readonly Point[]} points
- * @param {number} accuracy
- * @returns {Stroke | null}
+ * @type {(points: readonly Point[], accuracy: number) => Stroke | null}
  */
 export function fit(points, accuracy) {
     const trail = thinned(points, accuracy / 4);
@@ -43,7 +40,6 @@ export function fit(points, accuracy) {
 
 /**
  * The points that are at least so far from the one before, and the last one.
- *
  * @type {(points: readonly Point[], least: number) => Point[]}
  */
 function thinned(points, least) {
@@ -67,7 +63,6 @@ const way = (points) => points.slice(1).reduce((sum, point, k) => sum + distance
 
 /**
  * The numbers of the points at which a trail has a corner: the sharpest of each run of sharp ones.
- *
  * @param {Point[]} trail
  * @param {number} reach how far along it, before and after, its directions are taken
  * @returns {number[]}
@@ -94,7 +89,6 @@ function cornersOf(trail, reach) {
 
 /**
  * The first point at a distance from another, along a trail; null where there is none.
- *
  * @type {(trail: Point[], from: number, step: 1 | -1, reach: number) => Point | null}
  */
 function chordFrom(trail, from, step, reach) {
@@ -106,10 +100,7 @@ function chordFrom(trail, from, step, reach) {
 
 /**
  * Cubics through a smooth run of points; they meet with one tangent.
- *
- * @param {Point[]} points
- * @param {number} accuracy
- * @returns {Cubic[]}
+ * @type {(points: Point[], accuracy: number) => Cubic[]}
  */
 function fitted(points, accuracy) {
     const last = points.length - 1;
@@ -123,7 +114,6 @@ function fitted(points, accuracy) {
 
 /**
  * The direction in which a run leaves one of its ends, taken over some accuracies.
- *
  * @type {(points: Point[], from: number, step: 1 | -1, accuracy: number) => Point}
  */
 function endTangent(points, from, step, accuracy) {
@@ -134,12 +124,7 @@ function endTangent(points, from, step, accuracy) {
 
 /**
  * Cubics through a run of points that leave it in two directions, which point into the run.
- *
- * @param {Point[]} points
- * @param {Point} leaving
- * @param {Point} arriving
- * @param {number} accuracy
- * @returns {Cubic[]}
+ * @type {(points: Point[], leaving: Point, arriving: Point, accuracy: number) => Cubic[]}
  */
 function fitRun(points, leaving, arriving, accuracy) {
     const [start, end] = [points[0], points[points.length - 1]];
@@ -164,7 +149,6 @@ function fitRun(points, leaving, arriving, accuracy) {
 
 /**
  * A cubic with handles a third of its length.
- *
  * @type {(start: Point, end: Point, leaving: Point, arriving: Point) => Cubic}
  */
 function straight(start, end, leaving, arriving) {
@@ -181,12 +165,7 @@ function chordLengths(points) {
 
 /**
  * The cubic with given end directions that is nearest to points at given parameters.
- *
- * @param {Point[]} points
- * @param {number[]} places
- * @param {Point} leaving
- * @param {Point} arriving
- * @returns {Cubic}
+ * @type {(points: Point[], places: number[], leaving: Point, arriving: Point) => Cubic}
  */
 function leastSquares(points, places, leaving, arriving) {
     const [start, end] = [points[0], points[points.length - 1]];
@@ -211,7 +190,6 @@ function leastSquares(points, places, leaving, arriving) {
 
 /**
  * The point that is farthest from its place on a cubic, but for the ends.
- *
  * @type {(cubic: Cubic, points: Point[], places: number[]) => {error: number, index: number}}
  */
 function farthest(cubic, points, places) {
@@ -227,7 +205,6 @@ function farthest(cubic, points, places) {
 
 /**
  * A step of Newton's method towards the parameter of the point nearest to another.
- *
  * @type {(cubic: Cubic, point: Point, t: number) => number}
  */
 function improved(cubic, point, t) {

@@ -5,21 +5,16 @@ import { anchorOf, asBezier, chainsOf, handlesOf, isClosed, isSmooth, numbered, 
 import { inverse, length, minus, plus, same, scaled, tidyMinus, tidyPlus, tidyScaled, turned, unit } from "./plane.js";
 import { kindOf, pointsOf, tangentsOf, unplace } from "./strokes.js";
 
-/** @typedef {import("./plane.js").Point} Point */
-/** @typedef {import("./chains.js").Chain} Chain */
-/** @typedef {import("./design.js").Stroke} Stroke */
-/** @typedef {import("./strokes.js").Placement} Placement */
+/** @import { Point } from "./plane.js" */
+/** @import { Chain } from "./chains.js" */
+/** @import { Stroke } from "./design.js" */
+/** @import { Placement } from "./strokes.js" */
 
 /**
  * A stroke with one anchor's handles pulled out to a point of the drawing, the other one opposite.
  *
  * Straight lines become a `bezier`; curves through points alone, circles and drawings stay as they are.
- *
- * @param {Stroke} stroke
- * @param {Placement} placement
- * @param {number} node
- * @param {Point} to
- * @returns {Stroke}
+ * @type {(stroke: Stroke, placement: Placement, node: number, to: Point) => Stroke}
  */
 export function pullHandles(stroke, placement, node, to) {
     const handle = unplace(placement, to);
@@ -35,10 +30,7 @@ export function pullHandles(stroke, placement, node, to) {
  * A stroke with a smooth anchor made a corner, its handles gone; or a corner smooth.
  *
  * Straight lines become a `bezier`; curves through points alone, circles and drawings stay as they are.
- *
- * @param {Stroke} stroke
- * @param {number} node
- * @returns {Stroke}
+ * @type {(stroke: Stroke, node: number) => Stroke}
  */
 export function toggleSmooth(stroke, node) {
     return withAnchor(stroke, node, (chain, anchor) => {
@@ -53,10 +45,7 @@ export function toggleSmooth(stroke, node) {
 /**
  * Handles of an anchor that make it smooth: along the line from the anchor before to the one after, a third of the way
  * to each long; handles that are there keep their lengths.
- *
- * @param {Chain} chain
- * @param {number} anchor
- * @returns {[Point | null, Point | null]}
+ * @type {(chain: Chain, anchor: number) => [Point | null, Point | null]}
  */
 function smoothHandles(chain, anchor) {
     const at = chain[anchor];
@@ -77,7 +66,6 @@ function smoothHandles(chain, anchor) {
 
 /**
  * A stroke with the handles of one anchor set, before and after it; null leaves one as it is.
- *
  * @param {Stroke} stroke
  * @param {number} node
  * @param {(chain: Chain, anchor: number) => [Point | null, Point | null]} handles
@@ -110,12 +98,7 @@ function withAnchor(stroke, node, handles) {
 
 /**
  * A `hermite` stroke with the tangent at one point taken from its handles.
- *
- * @param {Stroke} stroke
- * @param {number} index
- * @param {Point} at
- * @param {[Point | null, Point | null]} handles
- * @returns {Stroke}
+ * @type {(stroke: Stroke, index: number, at: Point, handles: [Point | null, Point | null]) => Stroke}
  */
 function withTangent(stroke, index, at, [before, after]) {
     const points = pointsOf(stroke);
@@ -133,10 +116,7 @@ function withTangent(stroke, index, at, [before, after]) {
 
 /**
  * The stroke of the pen: `hermite` while the handles of each point are opposite and as long, else `bezier`.
- *
- * @param {readonly PenPoint[]} points
- * @param {Placement} placement
- * @returns {Stroke}
+ * @type {(points: readonly PenPoint[], placement: Placement) => Stroke}
  */
 export function penStroke(points, placement) {
     const back = inverse(placement);

@@ -1,11 +1,10 @@
 // @ts-check
 /** What undo and redo go back and forth through: whole designs, which share what an edit has not changed. */
 
-/** @typedef {import("./design.js").Design} Design */
+/** @import { Design } from "./design.js" */
 
 /**
  * A step: the design after an edit.
- *
  * @typedef {object} Step
  * @property {Design} design
  * @property {string} label what the edit did
@@ -54,7 +53,6 @@ export class History {
      *
      * Edits of one `merge` that follow each other, with neither undo nor redo between, are one step. The same design
      * again is no step.
-     *
      * @param {Design} design
      * @param {{label?: string, merge?: string}} [what]
      */

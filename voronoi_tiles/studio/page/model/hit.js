@@ -6,20 +6,18 @@ import { nearestOn } from "./nearest.js";
 import { imagesIn } from "./lattice.js";
 import { boxOf } from "./segments.js";
 
-/** @typedef {import("./plane.js").Point} Point */
+/** @import { Point } from "./plane.js" */
+/** @import { NodeRef, Ref } from "./design.js" */
+/** @import { Node } from "./nodes.js" */
+/** @import { Motion } from "./symmetry.js" */
+/** @import { Lattice } from "./lattice.js" */
 /** @typedef {import("./plane.js").Box} Box left, bottom, right, top */
-/** @typedef {import("./design.js").Ref} Ref */
-/** @typedef {import("./design.js").NodeRef} NodeRef */
-/** @typedef {import("./nodes.js").Node} Node */
-/** @typedef {import("./symmetry.js").Motion} Motion */
-/** @typedef {import("./lattice.js").Lattice} Lattice */
 
 /** @typedef {Node & {ref: Ref}} OwnedNode a node with the reference of its stroke */
 /** @typedef {{ref: Ref, cubics: Float64Array}} Drawn a stroke with its pieces where it is placed */
 
 /**
  * Which of two nodes at one place is taken: handles hide under their anchors.
- *
  * @type {Readonly<Record<string, number>>}
  */
 const ORDER = { in: 0, out: 0, radius: 0, anchor: 1, centre: 1 };
@@ -27,7 +25,6 @@ const ORDER = { in: 0, out: 0, radius: 0, anchor: 1, centre: 1 };
 /**
  * The node that is nearest to a point, null where none is within reach. Of two at one place the handle is taken, and of
  * two such the later one, which is drawn above the other.
- *
  * @template {OwnedNode} T
  * @param {readonly T[]} nodes
  * @param {Point} at
@@ -48,7 +45,6 @@ export function nearestNode(nodes, at, reach) {
 
 /**
  * The stroke that is nearest to a point, and where; null where none is within reach. Of two at one place the later one.
- *
  * @template {Drawn} T
  * @param {readonly T[]} entries
  * @param {Point} at
@@ -68,7 +64,6 @@ export function nearestStroke(entries, at, reach) {
 /**
  * The stroke whose copy is nearest to a point, with the number of the motion that makes it; null where none is within
  * reach. `at` is the place on the stroke itself, `distance` that from the copy.
- *
  * @param {readonly Drawn[]} entries
  * @param {readonly Motion[]} motions
  * @param {Lattice} lattice
@@ -95,10 +90,7 @@ const isIn = ([x0, y0, x1, y1], [x, y]) => x0 <= x && x <= x1 && y0 <= y && y <=
 
 /**
  * The strokes whose control points are all in a box, and so the curves.
- *
- * @param {readonly Drawn[]} entries
- * @param {Box} box
- * @returns {Ref[]}
+ * @type {(entries: readonly Drawn[], box: Box) => Ref[]}
  */
 export function strokesIn(entries, box) {
     const isInside = (/** @type {Drawn} */ { cubics }) =>
@@ -106,13 +98,7 @@ export function strokesIn(entries, box) {
     return entries.filter(isInside).map(({ ref }) => ref);
 }
 
-/**
- * The nodes in a box.
- *
- * @param {readonly OwnedNode[]} nodes
- * @param {Box} box
- * @returns {NodeRef[]}
- */
+/** The nodes in a box. @type {(nodes: readonly OwnedNode[], box: Box) => NodeRef[]} */
 export function nodesIn(nodes, box) {
     return nodes
         .filter(({ at }) => isIn(box, at))

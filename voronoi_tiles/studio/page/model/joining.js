@@ -8,11 +8,8 @@ import { apply, compose, distance, inverse, minus, same, tidyPlus } from "./plan
 import { deleteNodes } from "./reshaping.js";
 import { kindOf, placementIn, placementOf, pointsOf, tangentsOf } from "./strokes.js";
 
-/** @typedef {import("./plane.js").Point} Point */
-/** @typedef {import("./design.js").Design} Design */
-/** @typedef {import("./design.js").Stroke} Stroke */
-/** @typedef {import("./design.js").Ref} Ref */
-/** @typedef {import("./design.js").NodeRef} NodeRef */
+/** @import { Point } from "./plane.js" */
+/** @import { Design, NodeRef, Ref, Stroke } from "./design.js" */
 /** @typedef {{strokes: readonly Ref[], nodes: readonly NodeRef[]}} Selection */
 
 /** @typedef {{anchors: number[], closed: boolean}} Run the numbers of the anchors along a curve */
@@ -29,9 +26,7 @@ const isChain = (stroke) => ["bezier", "hermite", "path"].includes(kindOf(stroke
 
 /**
  * The curves of a stroke as runs of anchors; none for points, circles and drawings.
- *
- * @param {Stroke} stroke
- * @returns {Run[]}
+ * @type {(stroke: Stroke) => Run[]}
  */
 function runsOf(stroke) {
     if (isChain(stroke)) {
@@ -52,7 +47,6 @@ function runsOf(stroke) {
  * keeps the place and the keys of that other one: a `polyline` of straight strokes, else a `bezier`. With `bridged` a
  * line leads from end to end of the two instead. A node laid onto its neighbour is taken out. The shapes stay, but where
  * the node was moved.
- *
  * @param {Design} design
  * @param {NodeRef} from what is laid
  * @param {NodeRef} onto what stays where it is
@@ -77,11 +71,7 @@ export function joinNodes(design, from, onto, bridged = false) {
 
 /**
  * A stroke with one of its nodes laid onto another: closed, or without the node; null where neither can be.
- *
- * @param {Stroke} stroke
- * @param {number} from
- * @param {number} onto
- * @returns {Stroke | null}
+ * @type {(stroke: Stroke, from: number, onto: number) => Stroke | null}
  */
 function joinedWithin(stroke, from, onto) {
     const run = runsOf(stroke).find(({ anchors }) => anchors.includes(from) && anchors.includes(onto));
@@ -118,7 +108,6 @@ const carried = (handle, from, to) => (same(handle, from) ? to : tidyPlus(handle
 /**
  * Two strokes of a site as one, the end of the first laid onto that of the second, or `bridged`; null where they cannot
  * be, and where a line would lead there and back.
- *
  * @type {(stroke: Stroke, from: number, other: Stroke, onto: number, bridged: boolean) => Stroke | null}
  */
 function joinedTo(stroke, from, other, onto, bridged) {
@@ -148,7 +137,6 @@ function joinedTo(stroke, from, other, onto, bridged) {
 /**
  * A stroke whose end leads back to its start, all points as they are: on a line, but as its kind has it where that runs
  * through points; null where that would be a line there and back.
- *
  * @param {Stroke} stroke open, of one curve
  * @returns {Stroke | null}
  */
@@ -175,7 +163,6 @@ function endsOf(stroke) {
 
 /**
  * The nodes at both ends of an open stroke of one curve, the first one first; none of others.
- *
  * @param {Design} design
  * @param {Ref} ref
  */
@@ -188,7 +175,6 @@ export function shownEnds(design, { site, stroke }) {
 
 /**
  * The design with an open stroke closed; null where it cannot be. Ends that meet become one.
- *
  * @param {Design} design
  * @param {Ref} ref
  * @param {number} reach how far apart ends are that meet
@@ -206,7 +192,6 @@ function closeStroke(design, ref, reach) {
 /**
  * The design with what is selected joined: two nodes; else one stroke closed, or of two strokes the ends that are nearest
  * to each other, of one that has an end selected that end. Null where nothing can be, and of more strokes.
- *
  * @param {Design} design
  * @param {Selection} selection
  * @param {number} [reach] how far apart ends are of which one is laid onto the other: from others a line leads there
@@ -236,13 +221,7 @@ export function joinSelected(design, { strokes, nodes }, reach = 0) {
         );
 }
 
-/**
- * Why `joinSelected` joins nothing, and what to do.
- *
- * @param {Design} design
- * @param {Selection} selection
- * @returns {string}
- */
+/** Why `joinSelected` joins nothing, and what to do. @type {(design: Design, selection: Selection) => string} */
 export function whyNotJoined(design, { strokes, nodes }) {
     const refs = nodes.length === 2 ? nodes : strokes;
     if (refs.length === 2 && refs[0].site !== refs[1].site) {

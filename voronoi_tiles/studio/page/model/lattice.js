@@ -4,9 +4,7 @@
 import { apply, cross, dot, length, minus, plus, scaled } from "./plane.js";
 import { boxOf } from "./segments.js";
 
-/** @typedef {import("./plane.js").Point} Point */
-/** @typedef {import("./plane.js").Box} Box */
-/** @typedef {import("./plane.js").Similarity} Similarity */
+/** @import { Box, Point, Similarity } from "./plane.js" */
 
 /** @typedef {{a: Point, b: Point}} Lattice all i a + j b with integers i, j; b to the left of a, which lies along x */
 
@@ -29,10 +27,7 @@ export const fractional = ({ a, b }, z) => scaled([cross(z, b), cross(a, z)], 1 
 
 /**
  * The image of a point under the lattice that is in the cell at the origin.
- *
- * @param {Lattice} lattice
- * @param {Point} z
- * @returns {Point}
+ * @type {(lattice: Lattice, z: Point) => Point}
  */
 export function fold(lattice, z) {
     const [x, y] = fractional(lattice, z);
@@ -41,10 +36,7 @@ export function fold(lattice, z) {
 
 /**
  * The cells that can meet a box, by the integers i and j of their corners i a + j b.
- *
- * @param {Lattice} lattice
- * @param {Box} box
- * @returns {[number, number][]}
+ * @type {(lattice: Lattice, box: Box) => [number, number][]}
  */
 export function cellsIn(lattice, [x0, y0, x1, y1]) {
     const corners = /** @type {Point[]} */ ([
@@ -64,9 +56,7 @@ export function cellsIn(lattice, [x0, y0, x1, y1]) {
 
 /**
  * The shortest basis of a lattice, |p| <= |q|, q to the left of p. Source: Lagrange, Gauss.
- *
- * @param {Lattice} lattice
- * @returns {Basis}
+ * @type {(lattice: Lattice) => Basis}
  */
 export function reduced({ a, b }) {
     let [p, q] = [a, b];
@@ -95,11 +85,7 @@ export function reduced({ a, b }) {
  * The images of a point under the lattice in a box, its border included.
  *
  * They stand in rows along the shorter vector of the reduced basis, so that few rows have none.
- *
- * @param {Lattice} lattice
- * @param {Point} point
- * @param {Box} box
- * @returns {Point[]}
+ * @type {(lattice: Lattice, point: Point, box: Box) => Point[]}
  */
 export function imagesIn(lattice, point, box) {
     const { p: u, q: v } = reduced(lattice);
@@ -119,12 +105,7 @@ export function imagesIn(lattice, point, box) {
 
 /**
  * All images of a point under the group in a box.
- *
- * @param {Similarity[]} motions
- * @param {Lattice} lattice
- * @param {Point} point
- * @param {Box} box
- * @returns {Point[]}
+ * @type {(motions: Similarity[], lattice: Lattice, point: Point, box: Box) => Point[]}
  */
 export function orbitIn(motions, lattice, point, box) {
     return motions.flatMap((motion) => imagesIn(lattice, apply(motion, point), box));
@@ -135,11 +116,7 @@ export const marginOf = (box) => BORDER * Math.max(...box.map(Math.abs));
 
 /**
  * The least and the greatest cross product of a direction with a point of a box.
- *
- * @param {Box} box
- * @param {Point} direction
- * @param {number} margin
- * @returns {[number, number]}
+ * @type {(box: Box, direction: Point, margin: number) => [number, number]}
  */
 export function across([x0, y0, x1, y1], [dx, dy], margin) {
     const slack = margin * Math.hypot(dx, dy);
@@ -154,13 +131,7 @@ export function across([x0, y0, x1, y1], [dx, dy], margin) {
  * The range of s in which start + s direction is at most `slack` outside a box; first > last where it never is.
  *
  * What runs along a side may be outside by the margin.
- *
- * @param {Box} box
- * @param {Point} start
- * @param {Point} direction
- * @param {number} margin
- * @param {number} slack
- * @returns {[number, number]}
+ * @type {(box: Box, start: Point, direction: Point, margin: number, slack: number) => [number, number]}
  */
 export function clip(box, start, direction, margin, slack) {
     let [first, last] = [-Infinity, Infinity];

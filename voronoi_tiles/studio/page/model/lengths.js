@@ -1,7 +1,7 @@
 // @ts-check
 /** Lengths as people write and read them: sums and products of numbers with units. */
 
-/** @typedef {import("./design.js").Unit} Unit */
+/** @import { Unit } from "./design.js" */
 
 /** Millimetres in each unit. @type {Readonly<Record<Unit, number>>} */
 export const MILLIMETRES = Object.freeze({ mm: 1, cm: 10, in: 25.4 });
@@ -26,7 +26,6 @@ const SIGNS = { "−": "-", "×": "*", "·": "*", "÷": "/" };
 
 /**
  * A quantity: how much, and whether it is a length (in millimetres) or a number.
- *
  * @typedef {{value: number, isLength: boolean}} Quantity
  */
 
@@ -41,10 +40,7 @@ const SIGNS = { "−": "-", "×": "*", "·": "*", "÷": "/" };
  *
  * Sums, differences, products, quotients and brackets are taken; a comma is a point. Throws an Error whose message
  * tells what is wrong and what to write.
- *
- * @param {string} text
- * @param {string} unit
- * @returns {number}
+ * @type {(text: string, unit: string) => number}
  */
 export function evaluate(text, unit) {
     const reader = { tokens: tokensOf(text), at: 0, size: MILLIMETRES[WORDS.get(unit) ?? "mm"] };
@@ -71,7 +67,6 @@ function sum(from) {
 
 /**
  * A product of factors, of which one may be a length; a quotient's unit follows it.
- *
  * @type {(from: Reader) => Quantity}
  */
 function product(from) {
@@ -111,10 +106,7 @@ function factor(from) {
 
 /**
  * A quantity with the unit that follows it, if one does: 1/4in is a quarter of an inch.
- *
- * @param {Reader} from
- * @param {Quantity} quantity
- * @returns {Quantity}
+ * @type {(from: Reader, quantity: Quantity) => Quantity}
  */
 function withUnit(from, quantity) {
     const word = from.tokens[from.at]?.word;
@@ -137,12 +129,7 @@ function taken(from, signs) {
 /** What a token is called in messages. @type {(token: Token) => string} */
 const named = ({ number, word, sign }) => `“${number ?? word ?? sign}”`;
 
-/**
- * The numbers, words and signs of a text.
- *
- * @param {string} text
- * @returns {Token[]}
- */
+/** The numbers, words and signs of a text. @type {(text: string) => Token[]} */
 function tokensOf(text) {
     /** @type {Token[]} */
     const tokens = [];
@@ -161,10 +148,7 @@ function tokensOf(text) {
 
 /**
  * A length as it is shown: a number in a unit, to a thousandth of a millimetre or finer.
- *
- * @param {number} value
- * @param {string} unit
- * @returns {string}
+ * @type {(value: number, unit: string) => string}
  */
 export function shown(value, unit) {
     const digits = WORDS.get(unit) === "mm" ? 3 : 4;

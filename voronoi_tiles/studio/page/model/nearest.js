@@ -1,7 +1,7 @@
 // @ts-check
 /** The point of a curve that is nearest to another one. */
 
-/** @typedef {import("./plane.js").Point} Point */
+/** @import { Point } from "./plane.js" */
 
 /**
  * @typedef {{piece: number, t: number, at: Point, distance: number}} Nearest on which piece, where on it, how far away
@@ -19,11 +19,7 @@ const GOLDEN = (Math.sqrt(5) - 1) / 2;
  * The nearest point of cubic pieces, 8 numbers each; null where there are none, or all are farther than `reach`.
  *
  * Each piece is sampled, and the distance made least about every sample that is nearer than its neighbours.
- *
- * @param {Float64Array} cubics
- * @param {Point} at
- * @param {number} [reach]
- * @returns {Nearest | null}
+ * @type {(cubics: Float64Array, at: Point, reach?: number) => Nearest | null}
  */
 export function nearestOn(cubics, at, reach = Infinity) {
     /** @type {Nearest | null} */
@@ -37,14 +33,7 @@ export function nearestOn(cubics, at, reach = Infinity) {
     return best;
 }
 
-/**
- * The nearest point of one piece.
- *
- * @param {Float64Array} cubics
- * @param {number} piece
- * @param {Point} at
- * @returns {Nearest}
- */
+/** The nearest point of one piece. @type {(cubics: Float64Array, piece: number, at: Point) => Nearest} */
 function nearestOnPiece(cubics, piece, at) {
     const distanceAt = (/** @type {number} */ t) => {
         const [x, y] = pointOn(cubics, piece, t);
@@ -64,7 +53,6 @@ function nearestOnPiece(cubics, piece, at) {
 
 /**
  * Where a function is least in an interval in which it falls and then rises.
- *
  * @type {(f: (t: number) => number, low: number, high: number) => number}
  */
 function leastBetween(f, low, high) {
@@ -84,14 +72,7 @@ function leastBetween(f, low, high) {
     return (low + high) / 2;
 }
 
-/**
- * The point at a parameter of a piece.
- *
- * @param {Float64Array} cubics
- * @param {number} piece
- * @param {number} t
- * @returns {Point}
- */
+/** The point at a parameter of a piece. @type {(cubics: Float64Array, piece: number, t: number) => Point} */
 export function pointOn(cubics, piece, t) {
     const [s, k] = [1 - t, 8 * piece];
     const [a, b, c, d] = [s * s * s, 3 * s * s * t, 3 * s * t * t, t * t * t];
@@ -103,11 +84,7 @@ export function pointOn(cubics, piece, t) {
 
 /**
  * The distance of a point from the box around the control points of a piece, inside which it lies.
- *
- * @param {Float64Array} cubics
- * @param {number} piece
- * @param {Point} at
- * @returns {number}
+ * @type {(cubics: Float64Array, piece: number, at: Point) => number}
  */
 function boxDistance(cubics, piece, at) {
     const away = [0, 1].map((axis) => {

@@ -30,10 +30,10 @@ export { penStroke, pullHandles, toggleSmooth } from "./handles.js";
 export { nearestOn } from "./nearest.js";
 export { deleteNodes, insertNode } from "./reshaping.js";
 
-/** @typedef {import("./plane.js").Point} Point */
-/** @typedef {import("./chains.js").Chain} Chain */
-/** @typedef {import("./design.js").Stroke} Stroke */
-/** @typedef {import("./strokes.js").Placement} Placement */
+/** @import { Point } from "./plane.js" */
+/** @import { Chain } from "./chains.js" */
+/** @import { Stroke } from "./design.js" */
+/** @import { Placement } from "./strokes.js" */
 
 /**
  * @typedef {object} Node
@@ -48,10 +48,7 @@ export { deleteNodes, insertNode } from "./reshaping.js";
 
 /**
  * The nodes of a stroke where it is placed, in the order of their numbers.
- *
- * @param {Stroke} stroke
- * @param {Placement} [placement]
- * @returns {Node[]}
+ * @type {(stroke: Stroke, placement?: Placement) => Node[]}
  */
 export function nodesOf(stroke, placement = IDENTITY) {
     const kind = kindOf(stroke);
@@ -79,7 +76,6 @@ export function nodesOf(stroke, placement = IDENTITY) {
 
 /**
  * The nodes of a circle; its rim's is to the right, as a circle is not turned.
- *
  * @type {(s: Stroke, p: Placement) => Node[]}
  */
 function circleNodes(stroke, placement) {
@@ -93,13 +89,7 @@ function circleNodes(stroke, placement) {
     });
 }
 
-/**
- * The nodes of chains.
- *
- * @param {Chain[]} chains
- * @param {Placement} placement
- * @returns {Node[]}
- */
+/** The nodes of chains. @type {(chains: Chain[], placement: Placement) => Node[]} */
 function chainNodes(chains, placement) {
     return numbered(chains).flatMap(({ chain, offset }) =>
         chain.flatMap((own, k) => {
@@ -117,12 +107,7 @@ function chainNodes(chains, placement) {
  *
  * An anchor takes its handles along. A handle of a smooth anchor turns the opposite one; with `alone` it does not, and
  * a `hermite` stroke, whose points have one tangent each, becomes a `bezier`.
- *
- * @param {Stroke} stroke
- * @param {Placement} placement
- * @param {readonly Move[]} moves
- * @param {{alone?: boolean}} [how]
- * @returns {Stroke}
+ * @type {(stroke: Stroke, placement: Placement, moves: readonly Move[], how?: {alone?: boolean}) => Stroke}
  */
 export function moveNodes(stroke, placement, moves, { alone = false } = {}) {
     const kind = kindOf(stroke);
@@ -153,11 +138,7 @@ const shifted = (point, shift) => (shift ? tidyPlus(point, shift) : point);
 
 /**
  * A circle with its centre moved, or its rim moved to a point.
- *
- * @param {Stroke} stroke
- * @param {Placement} placement
- * @param {readonly Move[]} moves
- * @returns {Stroke}
+ * @type {(stroke: Stroke, placement: Placement, moves: readonly Move[]) => Stroke}
  */
 function movedCircle(stroke, placement, moves) {
     const [own] = pointsOf(stroke);
@@ -173,10 +154,7 @@ function movedCircle(stroke, placement, moves) {
 
 /**
  * A `hermite` stroke with some nodes moved: a handle is a third of the tangent, before the point its opposite.
- *
- * @param {Stroke} stroke
- * @param {Map<number, Point>} shifts
- * @returns {Stroke}
+ * @type {(stroke: Stroke, shifts: Map<number, Point>) => Stroke}
  */
 function movedHermite(stroke, shifts) {
     const points = pointsOf(stroke);
@@ -204,11 +182,7 @@ function hasSeam(stroke) {
 
 /**
  * A stroke of chains with some nodes moved.
- *
- * @param {Stroke} stroke
- * @param {Map<number, Point>} shifts
- * @param {boolean} alone
- * @returns {Stroke}
+ * @type {(stroke: Stroke, shifts: Map<number, Point>, alone: boolean) => Stroke}
  */
 function movedChains(stroke, shifts, alone) {
     const chains = numbered(chainsOf(stroke)).map(({ chain, offset }) =>
@@ -219,7 +193,6 @@ function movedChains(stroke, shifts, alone) {
 
 /**
  * A chain with some points moved.
- *
  * @param {Chain} chain
  * @param {(k: number) => Point | undefined} shiftOf by how much, for those that are moved
  * @param {boolean} alone
@@ -240,11 +213,7 @@ function movedChain(chain, shiftOf, alone) {
 
 /**
  * The point opposite to a handle, at a distance from the anchor.
- *
- * @param {Point} anchor
- * @param {Point} handle
- * @param {number} size
- * @returns {Point}
+ * @type {(anchor: Point, handle: Point, size: number) => Point}
  */
 function opposite(anchor, handle, size) {
     return plus(anchor, scaled(unit(minus(anchor, handle)), size));

@@ -7,11 +7,10 @@
 
 import { conjugate, minus, plus, same, scaled, times, unitAt } from "./plane.js";
 
-/** @typedef {import("./plane.js").Point} Point */
+/** @import { Point } from "./plane.js" */
 
 /**
  * The arc z(s) = (start + end) / 2 + across sin(s) + out (cos(s) - cos(half)), -half <= s <= half, of an ellipse.
- *
  * @typedef {object} Arc
  * @property {Point} start
  * @property {Point} end
@@ -37,9 +36,7 @@ const FLAG = /[\s,]*([01])/y;
 
 /**
  * The drawn pieces of path data in their order, 8 numbers each; straight ones are p, p, q, q.
- *
- * @param {string} data
- * @returns {number[]}
+ * @type {(data: string) => number[]}
  */
 export function pathCubics(data) {
     /** @type {number[]} */
@@ -53,7 +50,6 @@ export function pathCubics(data) {
 
 /**
  * Draw path data, up to the first character that breaks the grammar.
- *
  * @param {string} data
  * @param {Draw} draw
  */
@@ -121,7 +117,6 @@ function drawPath(data, draw) {
 
 /**
  * The commands of path data, each with the numbers that it takes once; what follows a move are lines.
- *
  * @param {string} data
  * @returns {Generator<{letter: string, values: number[]}>}
  */
@@ -163,7 +158,6 @@ const raised = (point, control) => [(point[0] + 2 * control[0]) / 3, (point[1] +
 
 /**
  * Draw an elliptical arc as cubics, or the line that it is.
- *
  * @param {Draw} draw
  * @param {Point} start
  * @param {Point} end
@@ -191,9 +185,7 @@ function drawArc(draw, start, end, [rx, ry, degrees, large, sweep]) {
 /**
  * How many cubics stay within ARC_SHARE of an arc's larger radius. Source: Goldapp, "Approximation of circular arcs by
  * cubic polynomials", 1991.
- *
- * @param {number} half
- * @returns {number}
+ * @type {(half: number) => number}
  */
 function cubicCount(half) {
     const cosine = Math.cos(Math.PI / 8); // the least, for a quarter
@@ -203,7 +195,6 @@ function cubicCount(half) {
 
 /**
  * The arc between two points as SVG gives it, null where it is a line; the points differ.
- *
  * @param {Point} start
  * @param {Point} end
  * @param {number} rx
@@ -229,13 +220,7 @@ function arcBetween(start, end, rx, ry, degrees, large, sweep) {
     return { start, end, across: onEllipse(along), out: onEllipse(times(along, [0, sweep ? -1 : 1])), half };
 }
 
-/**
- * The point z(s) of an arc.
- *
- * @param {Arc} arc
- * @param {number} s
- * @returns {Point}
- */
+/** The point z(s) of an arc. @type {(arc: Arc, s: number) => Point} */
 function arcPoint(arc, s) {
     // cos(s) - cos(half) as a product, free of cancellation.
     const height = 2 * Math.sin((arc.half - s) / 2) * Math.sin((arc.half + s) / 2);

@@ -10,7 +10,6 @@
 
 /**
  * The map z -> a z + b, or a conj(z) + b where `conj`.
- *
  * @typedef {object} Similarity
  * @property {Point} a
  * @property {Point} b
@@ -73,12 +72,7 @@ export const same = (p, q) => p[0] === q[0] && p[1] === q[1];
 /** The point at the share t of the way from p to q. @type {(p: Point, q: Point, t: number) => Point} */
 export const between = (p, q, t) => [p[0] + (q[0] - p[0]) * t, p[1] + (q[1] - p[1]) * t];
 
-/**
- * The unit complex number at an angle in degrees, exact at multiples of 30.
- *
- * @param {number} degrees
- * @returns {Point}
- */
+/** The unit complex number at an angle in degrees, exact at multiples of 30. @type {(degrees: number) => Point} */
 export function unitAt(degrees) {
     const turn = degrees % 360; // exact, unlike a reduction in radians
     const steps = Math.round(turn / 30);
@@ -89,33 +83,19 @@ export function unitAt(degrees) {
 
 /**
  * The multiple of 30 degrees that is nearest to a direction, as a unit complex number.
- *
- * @param {Point} direction
- * @returns {Point}
+ * @type {(direction: Point) => Point}
  */
 export function nearestUnit(direction) {
     return UNITS[(Math.round((Math.atan2(direction[1], direction[0]) * 6) / Math.PI) + 12) % 12];
 }
 
-/**
- * The image of a point.
- *
- * @param {Readonly<Similarity>} map
- * @param {Point} z
- * @returns {Point}
- */
+/** The image of a point. @type {(map: Readonly<Similarity>, z: Point) => Point} */
 export function apply(map, z) {
     const image = turned(map, z);
     return [image[0] + map.b[0], image[1] + map.b[1]];
 }
 
-/**
- * The image of a vector: of the difference of two points.
- *
- * @param {Readonly<Similarity>} map
- * @param {Point} v
- * @returns {Point}
- */
+/** The image of a vector: of the difference of two points. @type {(map: Readonly<Similarity>, v: Point) => Point} */
 export function turned(map, v) {
     const x = v[0];
     const y = map.conj ? -v[1] : v[1];
@@ -124,21 +104,13 @@ export function turned(map, v) {
 
 /**
  * The similarity that applies `inner` first and `outer` to its result.
- *
- * @param {Readonly<Similarity>} outer
- * @param {Readonly<Similarity>} inner
- * @returns {Similarity}
+ * @type {(outer: Readonly<Similarity>, inner: Readonly<Similarity>) => Similarity}
  */
 export function compose(outer, inner) {
     return { a: turned(outer, inner.a), b: apply(outer, inner.b), conj: outer.conj !== inner.conj };
 }
 
-/**
- * The similarity that undoes another one, but for rounding.
- *
- * @param {Readonly<Similarity>} map
- * @returns {Similarity}
- */
+/** The similarity that undoes another one, but for rounding. @type {(map: Readonly<Similarity>) => Similarity} */
 export function inverse(map) {
     const square = dot(map.a, map.a);
     const back = scaled(map.conj ? map.a : conjugate(map.a), 1 / square);
@@ -160,10 +132,7 @@ export const factorOf = (map) => length(map.a);
  *
  * It is rounded to 15 significant digits of the larger of the two, which every decimal number of so many digits
  * survives: what is moved and moved back is written as before.
- *
- * @param {number} x
- * @param {number} y
- * @returns {number}
+ * @type {(x: number, y: number) => number}
  */
 export function tidySum(x, y) {
     const largest = Math.max(Math.abs(x), Math.abs(y));

@@ -1,7 +1,7 @@
 // @ts-check
 /** Segments that follow each other as polylines of few points. */
 
-/** @typedef {import("./plane.js").Point} Point */
+/** @import { Point } from "./plane.js" */
 
 /**
  * Polylines within a tolerance of segments, 4 numbers each: one for each run of segments that join.
@@ -9,10 +9,7 @@
  * The points are some of the segments' own, and all others are within the tolerance of the polyline. Source: Sklansky
  * and Gonzalez, "Fast polygonal approximation of digitized curves", Pattern Recognition 12, 1980: from a point, the cone
  * of the rays that pass all that follow near enough.
- *
- * @param {ArrayLike<number>} segments
- * @param {number} tolerance
- * @returns {Point[][]}
+ * @type {(segments: ArrayLike<number>, tolerance: number) => Point[][]}
  */
 export function polylines(segments, tolerance) {
     /** @type {Point[][]} */

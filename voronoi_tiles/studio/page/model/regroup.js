@@ -5,11 +5,9 @@ import { between, cross, dot, fixed, length, minus, plus, scaled, tidyPlus, tidy
 import { groupOf, latticeOf, regionOf } from "./symmetry.js";
 import { copiesTouch, segmentsOf } from "./touching.js";
 
-/** @typedef {import("./plane.js").Point} Point */
-/** @typedef {import("./design.js").Cell} Cell */
-/** @typedef {import("./design.js").Design} Design */
-/** @typedef {import("./design.js").Site} Site */
-/** @typedef {import("./symmetry.js").Tables} Tables */
+/** @import { Point } from "./plane.js" */
+/** @import { Cell, Design, Site } from "./design.js" */
+/** @import { Tables } from "./symmetry.js" */
 
 /** The share of an asymmetric unit's width that is left free along each of its sides. */
 const BORDER = 0.06;
@@ -23,7 +21,6 @@ const STEPS = 40;
  * The side a stays, and the others where the group leaves them free; what it frees is as it was. The drawing stays
  * where it is; but where its copies would touch, or lie in each other, it is laid into one asymmetric unit, smaller if
  * need be, by the `scale` and `translate` of its sites: there no copies meet.
- *
  * @param {Design} design
  * @param {string} name
  * @param {Tables} tables
@@ -40,14 +37,7 @@ export function setGroup(design, name, tables, resolved = {}) {
     return { design: fitted?.design ?? renamed, note: notes.filter(Boolean).join(" ") };
 }
 
-/**
- * The cell of a design in another group.
- *
- * @param {Design} design
- * @param {string} name
- * @param {Tables} tables
- * @returns {Cell}
- */
+/** The cell of a design in another group. @type {(design: Design, name: string, tables: Tables) => Cell} */
 function cellFor(design, name, tables) {
     const { free } = groupOf({ ...design, group: name }, tables);
     const { a, b } = latticeOf(design, tables);
@@ -71,7 +61,6 @@ function cellNote(before, after) {
 /**
  * A design with its drawing laid into a convex region, as large as it fits but no larger than it is; null where there
  * is nothing to lay.
- *
  * @param {Design} design
  * @param {Point[]} region its corners, counterclockwise
  * @param {Readonly<Record<string, string>>} resolved
@@ -136,11 +125,7 @@ const middleOf = (polygon) => scaled(polygon.reduce(plus, [0, 0]), 1 / polygon.l
 
 /**
  * The part of a convex polygon where the product with a direction is at most a limit; no corners where there is none.
- *
- * @param {Point[]} polygon
- * @param {Point} direction
- * @param {number} limit
- * @returns {Point[]}
+ * @type {(polygon: Point[], direction: Point, limit: number) => Point[]}
  */
 function clipped(polygon, direction, limit) {
     const beyond = polygon.map((point) => dot(direction, point) - limit);

@@ -7,9 +7,9 @@ import { pointOn } from "./nearest.js";
 import { rounded } from "./snapping.js";
 import { cubicsOf, kindOf, pointsOf, tangentsOf } from "./strokes.js";
 
-/** @typedef {import("./plane.js").Point} Point */
-/** @typedef {import("./chains.js").Chain} Chain */
-/** @typedef {import("./design.js").Stroke} Stroke */
+/** @import { Point } from "./plane.js" */
+/** @import { Chain } from "./chains.js" */
+/** @import { Stroke } from "./design.js" */
 
 /** The fewest points that a listed kind needs, open and closed. @type {Readonly<Record<string, [number, number]>>} */
 const LEAST = { segment: [2, 2], polyline: [2, 3], catmull_rom: [2, 3], bspline: [4, 3] };
@@ -19,7 +19,6 @@ const LEAST = { segment: [2, 2], polyline: [2, 3], catmull_rom: [2, 3], bspline:
  *
  * Straight lines and Bezier curves keep their shape, and `hermite` ones too, as `bezier`; curves through points get one
  * more. Points, circles and drawings stay as they are.
- *
  * @param {Stroke} stroke
  * @param {number} piece
  * @param {number} t
@@ -54,7 +53,6 @@ export function insertNode(stroke, piece, t, pixel = 0) {
 
 /**
  * Chains with one piece divided (de Casteljau).
- *
  * @param {Chain[]} chains
  * @param {number} piece its number among those of all chains
  * @param {number} t
@@ -83,11 +81,7 @@ function splitChains(chains, piece, t) {
  *
  * The curve heals over an anchor; with `cut` its pieces at the anchor go as well. A handle goes back into its anchor.
  * What has too few points left for its kind becomes a polyline; with fewer than two points nothing is left.
- *
- * @param {Stroke} stroke
- * @param {readonly number[]} nodes
- * @param {{cut?: boolean}} [how]
- * @returns {Stroke[]}
+ * @type {(stroke: Stroke, nodes: readonly number[], how?: {cut?: boolean}) => Stroke[]}
  */
 export function deleteNodes(stroke, nodes, { cut = false } = {}) {
     const gone = new Set(nodes);
@@ -114,11 +108,7 @@ const kept = (list, gone) => list.filter((_, k) => !gone.has(k));
 
 /**
  * A stroke of a listed kind with other points, or what can be made of them.
- *
- * @param {Stroke} stroke
- * @param {Point[]} points
- * @param {boolean} closed
- * @returns {Stroke[]}
+ * @type {(stroke: Stroke, points: Point[], closed: boolean) => Stroke[]}
  */
 function listed(stroke, points, closed) {
     const kind = kindOf(stroke);
@@ -132,10 +122,7 @@ function listed(stroke, points, closed) {
 
 /**
  * The parts of a listed stroke between points that are cut out.
- *
- * @param {Stroke} stroke
- * @param {Set<number>} gone
- * @returns {Stroke[]}
+ * @type {(stroke: Stroke, gone: Set<number>) => Stroke[]}
  */
 function cutPoints(stroke, gone) {
     const points = pointsOf(stroke);
@@ -154,10 +141,7 @@ function cutPoints(stroke, gone) {
 
 /**
  * A `hermite` stroke without some of its points; the last one of a closed one is its first.
- *
- * @param {Stroke} stroke
- * @param {Set<number>} gone
- * @returns {Stroke[]}
+ * @type {(stroke: Stroke, gone: Set<number>) => Stroke[]}
  */
 function healedHermite(stroke, gone) {
     const [points, tangents] = [pointsOf(stroke), tangentsOf(stroke)];
@@ -171,11 +155,7 @@ function healedHermite(stroke, gone) {
 
 /**
  * Chains without some of their control points, which are numbered through all of them.
- *
- * @param {Chain[]} chains
- * @param {Set<number>} gone
- * @param {boolean} cut
- * @returns {Chain[]}
+ * @type {(chains: Chain[], gone: Set<number>, cut: boolean) => Chain[]}
  */
 function withoutNodes(chains, gone, cut) {
     return numbered(chains).flatMap(({ chain, offset }) => {
@@ -193,7 +173,6 @@ function withoutNodes(chains, gone, cut) {
 
 /**
  * The anchor at which a closed chain is opened: one that is cut out, else one that stays.
- *
  * @type {(a: Set<number>, c: Chain, cut: boolean) => number}
  */
 function behindAny(anchors, chain, cut) {
@@ -207,7 +186,6 @@ function behindAny(anchors, chain, cut) {
 
 /**
  * A closed chain that begins at another anchor, and that anchor.
- *
  * @type {(chain: Chain, from: number) => {chain: Chain, from: number}}
  */
 function rotated(chain, from) {
@@ -218,7 +196,6 @@ function rotated(chain, from) {
 
 /**
  * The runs of pieces that end at no anchor that is gone.
- *
  * @type {(chain: Chain, isGone: (k: number) => boolean) => Chain[]}
  */
 function cutChain(chain, isGone) {
@@ -236,11 +213,7 @@ function cutChain(chain, isGone) {
 
 /**
  * A chain whose pieces at each anchor that is gone have become one.
- *
- * @param {Chain} chain
- * @param {(anchor: number) => boolean} isGone
- * @param {boolean} closed
- * @returns {Chain[]}
+ * @type {(chain: Chain, isGone: (anchor: number) => boolean, closed: boolean) => Chain[]}
  */
 function healedChain(chain, isGone, closed) {
     /** @type {Point[][]} */
@@ -259,10 +232,7 @@ function healedChain(chain, isGone, closed) {
 
 /**
  * One piece in the place of two: the inverse of a division, where they came from one.
- *
- * @param {Point[]} before
- * @param {Point[]} after
- * @returns {Point[]}
+ * @type {(before: Point[], after: Point[]) => Point[]}
  */
 function joined([start, first, incoming, middle], [, outgoing, last, end]) {
     const [left, right] = [length(minus(middle, incoming)), length(minus(outgoing, middle))];

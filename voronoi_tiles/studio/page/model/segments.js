@@ -3,16 +3,11 @@
 
 import { apply, cross, minus } from "./plane.js";
 
-/** @typedef {import("./plane.js").Point} Point */
-/** @typedef {import("./plane.js").Box} Box */
-/** @typedef {import("./plane.js").Similarity} Similarity */
+/** @import { Box, Point, Similarity } from "./plane.js" */
 
 /**
  * The images of points, two numbers each: of segments, or of the control points of pieces.
- *
- * @param {Readonly<Similarity>} map
- * @param {ArrayLike<number>} numbers
- * @returns {Float64Array}
+ * @type {(map: Readonly<Similarity>, numbers: ArrayLike<number>) => Float64Array}
  */
 export function mapped(map, numbers) {
     const image = new Float64Array(numbers.length);
@@ -24,12 +19,7 @@ export function mapped(map, numbers) {
     return image;
 }
 
-/**
- * The smallest box around points, two numbers each.
- *
- * @param {ArrayLike<number>} numbers
- * @returns {Box}
- */
+/** The smallest box around points, two numbers each. @type {(numbers: ArrayLike<number>) => Box} */
 export function boxOf(numbers) {
     /** @type {Box} */
     const box = [Infinity, Infinity, -Infinity, -Infinity];
@@ -43,11 +33,7 @@ export function boxOf(numbers) {
 
 /**
  * The distance of a point from the segment whose numbers begin at k.
- *
- * @param {Point} z
- * @param {ArrayLike<number>} segments
- * @param {number} k
- * @returns {number}
+ * @type {(z: Point, segments: ArrayLike<number>, k: number) => number}
  */
 export function segmentDistance([x, y], segments, k) {
     const [x0, y0] = [segments[k], segments[k + 1]];
@@ -59,7 +45,6 @@ export function segmentDistance([x, y], segments, k) {
 
 /**
  * Whether a point is near one of some segments.
- *
  * @type {(z: Point, segments: ArrayLike<number>, near: number) => boolean}
  */
 export function isNear(z, segments, near) {
@@ -71,7 +56,6 @@ export function isNear(z, segments, near) {
 
 /**
  * Whether some segments come near others.
- *
  * @type {(some: Float64Array, others: Float64Array, apart: number) => boolean}
  */
 export function segmentsTouch(some, others, apart) {
@@ -93,7 +77,6 @@ export function segmentsTouch(some, others, apart) {
 
 /**
  * How far the boxes of two segments are apart along an axis.
- *
  * @type {(p: Float64Array, i: number, q: Float64Array, j: number) => number}
  */
 function boxesApart(p, i, q, j) {

@@ -3,9 +3,8 @@
 
 import { cross, distance, dot, fixed, length, minus, plus, scaled } from "./plane.js";
 
-/** @typedef {import("./plane.js").Point} Point */
-/** @typedef {import("./symmetry.js").Elements} Elements */
-/** @typedef {import("./symmetry.js").Line} Line */
+/** @import { Point } from "./plane.js" */
+/** @import { Elements, Line } from "./symmetry.js" */
 /** @typedef {"node" | "centre" | "origin" | "mirror" | "glide" | "grid" | "join"} SnapKind */
 /** @typedef {{at: Point, kind: SnapKind, label: string, onto?: import("./design.js").NodeRef}} Snapped onto: a node that is joined */
 
@@ -29,10 +28,7 @@ const CENTRES = {
  * The point that a point is drawn to, null where nothing is within reach.
  *
  * Single points come first, the nearest of them; then where two lines cross, then lines, then the grid.
- *
- * @param {Point} at
- * @param {Attractions} to
- * @returns {Snapped | null}
+ * @type {(at: Point, to: Attractions) => Snapped | null}
  */
 export function snap(at, { elements = { centres: [], mirrors: [], glides: [] }, nodes = [], grid = null, reach }) {
     /** @type {Snapped[]} */
@@ -75,7 +71,6 @@ function tidy(at) {
 
 /**
  * The nearest within reach; of two the first.
- *
  * @type {(choices: Snapped[], at: Point, reach: number) => Snapped | null}
  */
 function nearest(choices, at, reach) {
@@ -110,7 +105,6 @@ const onMultiple = (value, step) => Number((Math.round(value / step) * step).toP
 
 /**
  * A point with no more digits than a pixel is worth: what a hand draws is written short.
- *
  * @param {Point} at
  * @param {number} pixel the size of a pixel in the drawing
  * @returns {Point}

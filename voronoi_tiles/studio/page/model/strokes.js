@@ -10,11 +10,10 @@ import { pathCubics } from "./pathdata.js";
 import { IDENTITY, apply, compose, factorOf, inverse, minus, plus, same, scaled, unitAt } from "./plane.js";
 import { mapped } from "./segments.js";
 
-/** @typedef {import("./plane.js").Point} Point */
+/** @import { Point } from "./plane.js" */
+/** @import { Stroke, StrokeKind } from "./design.js" */
 /** @typedef {Readonly<import("./plane.js").Similarity>} Placement where a stroke is laid */
 /** @typedef {Readonly<import("./design.js").Placed>} Placed */
-/** @typedef {import("./design.js").Stroke} Stroke */
-/** @typedef {import("./design.js").StrokeKind} StrokeKind */
 
 /** @type {readonly StrokeKind[]} The kinds of strokes, each the name of a stroke's own key. */
 export const KINDS = Object.freeze([
@@ -41,9 +40,7 @@ export const kindOf = (stroke) => KINDS.find((kind) => stroke[kind] !== undefine
 
 /**
  * The points that a stroke's own key lists; none for kinds that have no list, and where something in it is no point.
- *
- * @param {Stroke} stroke
- * @returns {Point[]}
+ * @type {(stroke: Stroke) => Point[]}
  */
 export function pointsOf(stroke) {
     const own = stroke[kindOf(stroke)];
@@ -64,7 +61,6 @@ export function tangentsOf(stroke) {
 
 /**
  * What `mirror`, `scale`, `rotate` and `translate` of a table do, in this order about the origin.
- *
  * @param {Placed} table
  * @returns {Placement}
  */
@@ -74,7 +70,6 @@ export function placementIn({ mirror = false, scale = 1, rotate = 0, translate =
 
 /**
  * The placement of a stroke: by its own keys, then by its site's.
- *
  * @param {Placed} site
  * @param {Placed} stroke
  * @returns {Placement}
@@ -92,7 +87,6 @@ export const unplace = (placement, at) => (placement === IDENTITY ? at : apply(i
  *
  * All are exact but circles and arcs of ellipses, which are within 1e-6 of their radius. What cannot be drawn, as it
  * has no points yet or numbers that are none, has no pieces.
- *
  * @param {Stroke} stroke
  * @param {Placement} [placement]
  * @param {string} [resolved] the path data of the drawing that a stroke of kind `file` names
@@ -108,20 +102,13 @@ export function cubicsOf(stroke, placement = IDENTITY, resolved = "") {
 
 /**
  * The radius of a circle where it is placed.
- *
  * @param {Stroke} stroke
  * @param {Placement} placement
  * @returns {number}
  */
 export const radiusOf = (stroke, placement) => (stroke.radius ?? 0) * factorOf(placement);
 
-/**
- * A stroke's pieces before it is placed.
- *
- * @param {Stroke} stroke
- * @param {string} resolved
- * @returns {number[]}
- */
+/** A stroke's pieces before it is placed. @type {(stroke: Stroke, resolved: string) => number[]} */
 function ownCubics(stroke, resolved) {
     const kind = kindOf(stroke);
     if (kind === "path") return pathCubics(stroke.path ?? "");
@@ -145,21 +132,14 @@ function ownCubics(stroke, resolved) {
     }
 }
 
-/**
- * Straight pieces from point to point.
- *
- * @param {Point[]} points
- * @returns {number[]}
- */
+/** Straight pieces from point to point. @type {(points: Point[]) => number[]} */
 function chain(points) {
     return points.slice(1).flatMap((end, k) => [...points[k], ...points[k], ...end, ...end]);
 }
 
 /**
  * The pieces of a chain of 3 n + 1 control points; what is left over is none yet.
- *
- * @param {Point[]} points
- * @returns {number[]}
+ * @type {(points: Point[]) => number[]}
  */
 function bezierCubics(points) {
     const cubics = [];
@@ -169,10 +149,7 @@ function bezierCubics(points) {
 
 /**
  * The cubic Hermite curve through points with a tangent at each.
- *
- * @param {Point[]} points
- * @param {Point[]} tangents
- * @returns {number[]}
+ * @type {(points: Point[], tangents: Point[]) => number[]}
  */
 function hermiteCubics(points, tangents) {
     /** @type {Point} */
@@ -186,11 +163,7 @@ function hermiteCubics(points, tangents) {
 
 /**
  * The Catmull-Rom curve, its knots |distance|^alpha apart. Sources: Barry and Goldman 1988; Yuksel et al. 2011.
- *
- * @param {Point[]} given
- * @param {number} alpha
- * @param {boolean} closed
- * @returns {number[]}
+ * @type {(given: Point[], alpha: number, closed: boolean) => number[]}
  */
 function catmullRomCubics(given, alpha, closed) {
     const points = given.filter((point, k) => k === 0 || !same(point, given[k - 1]));
@@ -218,10 +191,7 @@ const reflected = (centre, point) => minus(scaled(centre, 2), point);
 
 /**
  * The uniform cubic B-spline of control points; an open one starts near the second. Fewer than 4 make none (3 closed).
- *
- * @param {Point[]} points
- * @param {boolean} closed
- * @returns {number[]}
+ * @type {(points: Point[], closed: boolean) => number[]}
  */
 function bsplineCubics(points, closed) {
     if (points.length < (closed ? 3 : 4)) return [];
@@ -238,13 +208,7 @@ function bsplineCubics(points, closed) {
 /** The point a third of the way. @type {(near: Point, far: Point) => Point} */
 const between3 = (near, far) => scaled(plus(scaled(near, 2), far), 1 / 3);
 
-/**
- * A circle that begins and ends to the right of its centre.
- *
- * @param {Point} centre
- * @param {number} radius
- * @returns {number[]}
- */
+/** A circle that begins and ends to the right of its centre. @type {(centre: Point, radius: number) => number[]} */
 function circleCubics(centre, radius) {
     const step = 360 / CIRCLE_PIECES;
     const handle = (4 / 3) * Math.tan(Math.PI / (2 * CIRCLE_PIECES));
@@ -262,10 +226,7 @@ function circleCubics(centre, radius) {
  *
  * Pieces are halved (de Casteljau) until each is proven flat, as `voronoi_tiles.designs.strokes.flatten` does; a point
  * is a segment whose ends are equal.
- *
- * @param {Float64Array} cubics
- * @param {number} tolerance
- * @returns {Float64Array}
+ * @type {(cubics: Float64Array, tolerance: number) => Float64Array}
  */
 export function flatten(cubics, tolerance) {
     /** @type {number[]} */
@@ -280,7 +241,6 @@ export function flatten(cubics, tolerance) {
 
 /**
  * Append the segments of one piece, which has been halved `depth` times.
- *
  * @param {Piece} piece
  * @param {number} tolerance
  * @param {number} depth
@@ -296,12 +256,7 @@ function flattenPiece(piece, tolerance, depth, segments) {
     flattenPiece(second, tolerance, depth + 1, segments);
 }
 
-/**
- * The two halves of a piece.
- *
- * @param {Piece} piece
- * @returns {[Piece, Piece]}
- */
+/** The two halves of a piece. @type {(piece: Piece) => [Piece, Piece]} */
 function halves([x0, y0, x1, y1, x2, y2, x3, y3]) {
     const xa = (x0 + x1) / 2,
         ya = (y0 + y1) / 2;
@@ -327,10 +282,7 @@ function halves([x0, y0, x1, y1, x2, y2, x3, y3]) {
  * The bound is that of `voronoi_tiles.designs.strokes`: 3/4 of the larger distance of the inner control points from
  * their places on the evenly run chord; only across the chord where they project into it, and 4/9 of that on different
  * sides.
- *
- * @param {Piece} piece
- * @param {number} tolerance
- * @returns {boolean}
+ * @type {(piece: Piece, tolerance: number) => boolean}
  */
 function isFlat([x0, y0, x1, y1, x2, y2, x3, y3], tolerance) {
     const cx = x3 - x0,

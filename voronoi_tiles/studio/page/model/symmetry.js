@@ -12,18 +12,16 @@ import { apply, length, nearestUnit, plus, scaled, unitAt } from "./plane.js";
 export { cosets } from "./copies.js";
 export { cellsIn, fold, orbitIn } from "./lattice.js";
 
-/** @typedef {import("./plane.js").Point} Point */
-/** @typedef {import("./plane.js").Similarity} Motion a motion of the group */
-/** @typedef {import("./plane.js").Box} Box */
+/** @import { Box, Point } from "./plane.js" */
 /** @typedef {import("./lattice.js").Lattice} Lattice */
-/** @typedef {import("./design.js").Design} Design */
+/** @import { Design } from "./design.js" */
+/** @typedef {import("./plane.js").Similarity} Motion a motion of the group */
 
 /** @typedef {{name: string, w: [number, number, number, number], t: Point}} Operation in fractional coordinates */
 /** @typedef {{through: Point, along: Point}} TableLine a mirror or glide line in fractional coordinates */
 
 /**
  * A wallpaper group as the server describes it; coordinates are fractional.
- *
  * @typedef {object} GroupTable
  * @property {string} name
  * @property {string} title what it does, in words
@@ -48,10 +46,7 @@ const CELLS_MAX = 2500;
 
 /**
  * The table of a design's group; that of p1 for a group that there is not.
- *
- * @param {Design} design
- * @param {Tables} tables
- * @returns {GroupTable}
+ * @type {(design: Design, tables: Tables) => GroupTable}
  */
 export function groupOf(design, tables) {
     return tables.groups.find((group) => group.name === design.group) ?? tables.groups[0];
@@ -59,10 +54,7 @@ export function groupOf(design, tables) {
 
 /**
  * The lattice of a design. What the cell lacks is taken from a square.
- *
- * @param {Design} design
- * @param {Tables} tables
- * @returns {Lattice}
+ * @type {(design: Design, tables: Tables) => Lattice}
  */
 export function latticeOf({ group, cell }, tables) {
     const { free, angle } = groupOf(/** @type {Design} */ ({ group }), tables);
@@ -75,10 +67,7 @@ export const moved = apply;
 
 /**
  * The motions of the group in one cell, the identity first: those of its table's operations, in their order.
- *
- * @param {Design} design
- * @param {Tables} tables
- * @returns {Motion[]}
+ * @type {(design: Design, tables: Tables) => Motion[]}
  */
 export function motionsOf(design, tables) {
     const lattice = latticeOf(design, tables);
@@ -91,11 +80,7 @@ export function motionsOf(design, tables) {
 
 /**
  * The symmetry elements of a design's group in a box; none where the box has too many cells to show them.
- *
- * @param {Design} design
- * @param {Tables} tables
- * @param {Box} box
- * @returns {Elements}
+ * @type {(design: Design, tables: Tables, box: Box) => Elements}
  */
 export function elementsIn(design, tables, box) {
     const lattice = latticeOf(design, tables);
@@ -111,13 +96,7 @@ export function elementsIn(design, tables, box) {
     };
 }
 
-/**
- * One asymmetric unit of a design's group: its corners.
- *
- * @param {Design} design
- * @param {Tables} tables
- * @returns {Point[]}
- */
+/** One asymmetric unit of a design's group: its corners. @type {(design: Design, tables: Tables) => Point[]} */
 export function regionOf(design, tables) {
     const lattice = latticeOf(design, tables);
     return groupOf(design, tables).region.map((corner) => cartesian(lattice, corner));
@@ -125,7 +104,6 @@ export function regionOf(design, tables) {
 
 /**
  * The pieces in a box of a line and its images under the lattice.
- *
  * @param {Lattice} lattice
  * @param {TableLine} line its direction is a shortest lattice vector p a + q b
  * @param {Box} box
@@ -155,10 +133,7 @@ function linesIn(lattice, { through, along: [p, q] }, box) {
 
 /**
  * Small integers i and j with q i - p j = 1; p and q have no common divisor.
- *
- * @param {number} p
- * @param {number} q
- * @returns {[number, number]}
+ * @type {(p: number, q: number) => [number, number]}
  */
 function unitStep(p, q) {
     for (let i = 0; p !== 0 && i < Math.abs(p); i++) {

@@ -8,10 +8,10 @@ import { boxOf, mapped, segmentsTouch } from "./segments.js";
 import { cubicsOf, flatten, placementOf } from "./strokes.js";
 import { latticeOf, motionsOf } from "./symmetry.js";
 
-/** @typedef {import("./plane.js").Box} Box */
-/** @typedef {import("./design.js").Design} Design */
-/** @typedef {import("./lattice.js").Lattice} Lattice */
-/** @typedef {import("./symmetry.js").Tables} Tables */
+/** @import { Box } from "./plane.js" */
+/** @import { Design } from "./design.js" */
+/** @import { Lattice } from "./lattice.js" */
+/** @import { Tables } from "./symmetry.js" */
 
 /** How far apart copies must be to stay; relative to a. */
 const APART = 2e-3;
@@ -21,11 +21,7 @@ const FLATTENING = 1e-3;
 
 /**
  * Whether copies of a design's sites touch, or nearly so.
- *
- * @param {Design} design
- * @param {Tables} tables
- * @param {Readonly<Record<string, string>>} [resolved]
- * @returns {boolean}
+ * @type {(design: Design, tables: Tables, resolved?: Readonly<Record<string, string>>) => boolean}
  */
 export function copiesTouch(design, tables, resolved = {}) {
     const lattice = latticeOf(design, tables);
@@ -44,7 +40,6 @@ export function copiesTouch(design, tables, resolved = {}) {
 
 /**
  * A site's segments, coarse.
- *
  * @type {(d: Design, k: number, resolved: Readonly<Record<string, string>>) => Float64Array}
  */
 export function segmentsOf(design, k, resolved) {
@@ -57,7 +52,6 @@ export function segmentsOf(design, k, resolved) {
 
 /**
  * Whether segments are nearer than `apart` to a translate of an image of theirs, or of another site's.
- *
  * @param {Float64Array} segments
  * @param {Float64Array} image
  * @param {Lattice} lattice

@@ -4,7 +4,7 @@
 import { MILLIMETRES } from "./lengths.js";
 import { conjugate, dot, length, minus, plus, scaled, times, unitAt } from "./plane.js";
 
-/** @typedef {import("./plane.js").Point} Point */
+/** @import { Point } from "./plane.js" */
 /** @typedef {{width: number, height: number}} Picture pixels */
 /**
  * @typedef {object} Laid where a picture lies
@@ -20,7 +20,6 @@ export const UNLAID = Object.freeze({ at: null, width: 0, units: "mm", turn: 0, 
 
 /**
  * The same place in other units, as when those of the design are changed.
- *
  * @template {Laid} T
  * @param {T} laid
  * @param {import("./design.js").Unit} units
@@ -32,12 +31,7 @@ export function inUnits(laid, units) {
     return { ...laid, at: laid.at && scaled(laid.at, factor), width: laid.width * factor, units };
 }
 
-/**
- * What was kept of where a picture lies, as far as it makes sense.
- *
- * @param {any} kept
- * @returns {Partial<Laid>}
- */
+/** What was kept of where a picture lies, as far as it makes sense. @type {(kept: any) => Partial<Laid>} */
 export function laidOf(kept) {
     const { at, width, units, turn, opacity } = kept ?? {};
     const numbers = [at?.[0], at?.[1], width, turn, opacity];
@@ -50,10 +44,7 @@ const WIDTH_MIN = 1e-3;
 
 /**
  * The corners of a picture, counterclockwise, the lower left one first.
- *
- * @param {Laid & {at: Point}} laid
- * @param {Picture} picture
- * @returns {Point[]}
+ * @type {(laid: Laid & {at: Point}, picture: Picture) => Point[]}
  */
 export function cornersOf({ at, width, turn }, picture) {
     const [x, y] = [width / 2, (width * picture.height) / picture.width / 2];
@@ -69,7 +60,6 @@ export function cornersOf({ at, width, turn }, picture) {
 /**
  * A picture turned and made larger about its middle, so that a point of it comes to another place; with `straight` it
  * is not turned.
- *
  * @template {Laid & {at: Point}} T
  * @param {T} laid
  * @param {Point} from not its middle

@@ -27,11 +27,7 @@ export function help(store) {
     box.querySelector("footer button")?.focus({ preventScroll: true });
 }
 
-/**
- * The tools with their letters, as a part of the help.
- * @param {import("../store.js").Store} store
- * @returns {HTMLElement}
- */
+/** The tools with their letters, as a part of the help. @type {(store: import("../store.js").Store) => HTMLElement} */
 function lettersPart(store) {
     const fields = TOOLS.map((tool) => {
         const shown = () => letterOf(tool, store.state.letters).toUpperCase();

@@ -3,11 +3,9 @@
 
 import { button, deferred, field, inLabels, labelOf, lengthField, make, refill } from "./elements.js";
 
-/**
- * @typedef {import("./panels.js").Context} Context
- * @typedef {import("../store.js").State} State
- * @typedef {{name: string, kind: string, default: any, help: string, words?: string[], shown?: string}} Option
- */
+/** @import { Context } from "./panels.js" */
+/** @import { State } from "../store.js" */
+/** @typedef {{name: string, kind: string, default: any, help: string, words?: string[], shown?: string}} Option */
 
 /** @type {[string, string[]][]} the options under headings; those that no heading names stand under the last */
 const HEADINGS = [

@@ -4,11 +4,9 @@
 import { shown } from "../model/lengths.js";
 import { button, inLabels, make, refill } from "./elements.js";
 
-/**
- * @typedef {import("./panels.js").Context} Context
- * @typedef {import("../store.js").State} State
- * @typedef {import("../link.js").Product["findings"][number]} Finding
- */
+/** @import { Context } from "./panels.js" */
+/** @import { State } from "../store.js" */
+/** @typedef {import("../link.js").Product["findings"][number]} Finding */
 
 /** @param {number} seconds */
 const duration = (seconds) => {
@@ -115,8 +113,7 @@ export class ReportPanel extends HTMLElement {
 
 /**
  * Findings by their severity and kind, in the order in which they come.
- * @param {Finding[]} findings
- * @returns {Finding[][]}
+ * @type {(findings: Finding[]) => Finding[][]}
  */
 function alike(findings) {
     /** @type {Map<string, Finding[]>} */

@@ -31,8 +31,7 @@ const LOST = {
 
 /**
  * Why there is no tile, in the page's words where it knows what to do here.
- * @param {import("../store.js").State} state
- * @returns {import("../store.js").Trouble | null}
+ * @type {(state: import("../store.js").State) => import("../store.js").Trouble | null}
  */
 function whyNoTile({ design, refusal }) {
     const bare = design.site.findIndex((site) => !site.strokes.length);

@@ -20,11 +20,9 @@ import { moveNodes } from "../model/nodes.js";
 import { NOTHING, shownFactor } from "../store.js";
 import { button, lengthField, make, refill, textField } from "./elements.js";
 
-/**
- * @typedef {import("./panels.js").Context} Context
- * @typedef {import("../store.js").State} State
- * @typedef {import("../scene.js").Entry} Entry
- */
+/** @import { Context } from "./panels.js" */
+/** @import { State } from "../store.js" */
+/** @import { Entry } from "../scene.js" */
 
 /** @type {Record<string, string>} what kinds of strokes are called */
 const NAMES = {

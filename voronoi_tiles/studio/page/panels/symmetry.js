@@ -9,10 +9,8 @@ import { drawThumbnail } from "../view/thumbnail.js";
 import { above, deferred, field, lengthField, make, refill } from "./elements.js";
 import { tracePart } from "./trace.js";
 
-/**
- * @typedef {import("./panels.js").Context} Context
- * @typedef {import("../store.js").State} State
- */
+/** @import { Context } from "./panels.js" */
+/** @import { State } from "../store.js" */
 
 /** @type {[keyof State["shown"], string][]} */
 const SHOWN = [

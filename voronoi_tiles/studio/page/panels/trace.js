@@ -7,11 +7,7 @@ import { shownFactor } from "../store.js";
 import { lay, setTrace } from "../tools/trace.js";
 import { above, button, deferred, field, lengthField, make, refill } from "./elements.js";
 
-/**
- * The controls of the picture.
- * @param {import("./panels.js").Context} context
- * @returns {HTMLElement}
- */
+/** The controls of the picture. @type {(context: import("./panels.js").Context) => HTMLElement} */
 export function tracePart({ store }) {
     const strength = make("input", {
         type: "range",

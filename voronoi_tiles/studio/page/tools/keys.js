@@ -8,11 +8,9 @@ import { moved, without } from "./select.js";
 import { TOOLS } from "./toolbox.js";
 import { NOTHING } from "../store.js";
 
-/**
- * @typedef {import("./tool.js").Hands} Hands
- * @typedef {import("./toolbox.js").Toolbox} Toolbox
- * @typedef {{keys: string, does: string}} Row
- */
+/** @import { Hands } from "./tool.js" */
+/** @import { Toolbox } from "./toolbox.js" */
+/** @typedef {{keys: string, does: string}} Row */
 
 /** @type {{title: string, rows: Row[]}[]} */
 export const HELP = [

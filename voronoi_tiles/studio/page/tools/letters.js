@@ -8,11 +8,7 @@ import { TOOLS } from "./toolbox.js";
 /** The letters that do something else. @type {Letters} */
 export const COMMAND_LETTERS = { e: "toggle-elements", g: "toggle-grid", k: "toggle-copies", j: "join" };
 
-/**
- * What was kept of the letters, as far as it makes sense.
- * @param {any} kept
- * @returns {Letters}
- */
+/** What was kept of the letters, as far as it makes sense. @type {(kept: any) => Letters} */
 export function lettersOf(kept) {
     /** @type {Letters} */
     let given = {};
@@ -32,11 +28,7 @@ export function lettersOf(kept) {
  */
 export const letterOf = (tool, given) => given[tool.name] ?? tool.key;
 
-/**
- * Why no tool can have a letter, null where one can.
- * @param {string} letter
- * @returns {string | null}
- */
+/** Why no tool can have a letter, null where one can. @type {(letter: string) => string | null} */
 export function letterProblem(letter) {
     if (!/^[\p{Ll}\p{Lo}\p{Nd}]$/u.test(letter)) {
         return "Give one letter or digit.";
@@ -46,10 +38,7 @@ export function letterProblem(letter) {
 
 /**
  * The letters after a tool was given one; another tool that had it gets the one that this tool had.
- * @param {import("./tool.js").Tool} tool
- * @param {string} letter
- * @param {Letters} given
- * @returns {Letters}
+ * @type {(tool: import("./tool.js").Tool, letter: string, given: Letters) => Letters}
  */
 export function withLetter(tool, letter, given) {
     const other = TOOLS.find((one) => letterOf(one, given) === letter);

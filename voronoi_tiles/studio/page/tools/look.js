@@ -1,7 +1,7 @@
 // @ts-check
 // The tools that move the window: hand and zoom.
 
-/** @typedef {import("./tool.js").Tool} Tool */
+/** @import { Tool } from "./tool.js" */
 
 /** @type {[number, number] | null} */
 let last = null;

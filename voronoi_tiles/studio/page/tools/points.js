@@ -8,11 +8,8 @@ import { rounded } from "../model/snapping.js";
 import { placementOf, unplace } from "../model/strokes.js";
 import { NOTHING } from "../store.js";
 
+/** @import { Hands, Point, Tool, Touch } from "./tool.js" */
 /**
- * @typedef {import("./tool.js").Point} Point
- * @typedef {import("./tool.js").Tool} Tool
- * @typedef {import("./tool.js").Touch} Touch
- * @typedef {import("./tool.js").Hands} Hands
  * @typedef {{at: Point, in: Point, out: Point}} Placed a point with its handles, as vectors from it
  * @typedef {(points: Placed[], closed: boolean, placement: any) => any} Maker
  */
@@ -21,11 +18,7 @@ const NONE = /** @type {Point} */ ([0, 0]);
 
 const STEP = Math.PI / 12;
 
-/**
- * A vector turned to the nearest multiple of 15 degrees.
- * @param {Point} vector
- * @returns {Point}
- */
+/** A vector turned to the nearest multiple of 15 degrees. @type {(vector: Point) => Point} */
 function onAngle([x, y]) {
     const [size, turn] = [Math.hypot(x, y), Math.round(Math.atan2(y, x) / STEP) * STEP];
     return [size * Math.cos(turn), size * Math.sin(turn)];
@@ -63,8 +56,7 @@ function pen(points, closed, placement) {
 }
 
 /**
- * @param {Pick<Tool, "name" | "key" | "title" | "icon" | "help"> & {make: Maker, handles?: boolean}} what
- * @returns {Tool}
+ * @type {(what: Pick<Tool, "name" | "key" | "title" | "icon" | "help"> & {make: Maker, handles?: boolean}) => Tool}
  */
 function pointTool({ make, handles = false, ...what }) {
     /** @type {Placed[]} */

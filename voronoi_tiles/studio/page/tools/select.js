@@ -10,17 +10,10 @@ import { rounded } from "../model/snapping.js";
 import { entriesOf, nodeRef, shownNodes } from "../scene.js";
 import { NOTHING } from "../store.js";
 
-/**
- * @typedef {import("./tool.js").Point} Point
- * @typedef {import("./tool.js").Tool} Tool
- * @typedef {import("./tool.js").Touch} Touch
- * @typedef {import("./tool.js").Hands} Hands
- * @typedef {import("../model/design.js").Design} Design
- * @typedef {import("../model/design.js").Ref} Ref
- * @typedef {import("../model/design.js").NodeRef} NodeRef
- * @typedef {import("../scene.js").Entry} Entry
- * @typedef {import("../scene.js").Node} Node
- */
+/** @import { Point, Tool } from "./tool.js" */
+/** @import { Design, NodeRef, Ref } from "../model/design.js" */
+/** @import { Node } from "../model/nodes.js" */
+/** @import { Entry } from "../scene.js" */
 
 /** @param {Ref} ref */
 const bare = ({ site, stroke }) => ({ site, stroke });
@@ -68,10 +61,7 @@ export function moved(design, { strokes, nodes }, [dx, dy], alone = false) {
 
 /**
  * A design without what is selected. Where nodes are, the curve heals over them, or is cut there.
- * @param {Design} design
- * @param {import("../store.js").Selection} selection
- * @param {boolean} [cut]
- * @returns {Design}
+ * @type {(design: Design, selection: import("../store.js").Selection, cut?: boolean) => Design}
  */
 export function without(design, { strokes, nodes }, cut = false) {
     if (!nodes.length) {

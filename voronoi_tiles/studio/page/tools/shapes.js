@@ -7,11 +7,7 @@ import { tidyProduct } from "../model/plane.js";
 import { rounded } from "../model/snapping.js";
 import { placementOf, unplace } from "../model/strokes.js";
 
-/**
- * @typedef {import("./tool.js").Point} Point
- * @typedef {import("./tool.js").Tool} Tool
- * @typedef {import("./tool.js").Hands} Hands
- */
+/** @import { Hands, Point, Tool } from "./tool.js" */
 
 /**
  * Add a stroke to the site in hand, whose coordinates are the site's own.

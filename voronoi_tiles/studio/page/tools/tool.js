@@ -1,11 +1,10 @@
 // @ts-check
 // What a tool is, and what it is given to work with.
 
+/** @import { Store } from "../store.js" */
+/** @import { Entry } from "../scene.js" */
 /**
  * @typedef {[number, number]} Point
- * @typedef {import("../store.js").Store} Store
- * @typedef {import("../scene.js").Entry} Entry
- *
  * @typedef {object} Touch a pointer's place, or the keyboard's cross hair
  * @property {Point} at in the drawing, snapped
  * @property {Point} raw in the drawing, as it is
@@ -18,16 +17,14 @@
  * @property {boolean} touch whether a finger, which hits less exactly
  * @property {number} reach how far away something is still hit; units
  * @property {Point[]} trail where the pointer has been since the last event, raw, the newest last
- *
  * @typedef {object} Hands what tools work on
  * @property {Store} store
  * @property {() => Entry[]} entries the strokes as they are drawn
  * @property {import("../view/camera.js").Camera} camera
- * @property {() => {motions: import("../model/symmetry.js").Motion[], lattice: import("../model/symmetry.js").Lattice}} symmetry
+ * @property {() => {motions: import("../model/symmetry.js").Motion[], lattice: import("../model/lattice.js").Lattice}} symmetry
  * @property {() => void} redraw
  * @property {(tool: string) => void} take take a tool, and see the drawing
  * @property {(text: string) => void} hint say what the tool waits for
- *
  * @typedef {object} Tool
  * @property {string} name
  * @property {string} key the letter that takes it, until the user gives it another

@@ -10,12 +10,7 @@ import { POINT_TOOLS } from "./points.js";
 import { select } from "./select.js";
 import { trace } from "./trace.js";
 
-/**
- * @typedef {import("./tool.js").Point} Point
- * @typedef {import("./tool.js").Tool} Tool
- * @typedef {import("./tool.js").Touch} Touch
- * @typedef {import("./tool.js").Hands} Hands
- */
+/** @import { Hands, Point, Tool, Touch } from "./tool.js" */
 
 /** @type {Tool[]} */
 export const TOOLS = [select, ...POINT_TOOLS, circle, point, freehand, hand, zoom];

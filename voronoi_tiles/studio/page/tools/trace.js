@@ -5,13 +5,9 @@ import { distance, minus, plus } from "../model/plane.js";
 import { rounded } from "../model/snapping.js";
 import { cornersOf, inUnits, pulled } from "../model/tracing.js";
 
-/**
- * @typedef {import("./tool.js").Point} Point
- * @typedef {import("./tool.js").Tool} Tool
- * @typedef {import("../store.js").Store} Store
- * @typedef {import("../store.js").Trace} Trace
- * @typedef {Trace & {at: Point, image: ImageBitmap}} Shown
- */
+/** @import { Point, Tool } from "./tool.js" */
+/** @import { Store, Trace } from "../store.js" */
+/** @typedef {Trace & {at: Point, image: ImageBitmap}} Shown */
 
 /** @type {{laid: Shown, from: Point, corner: boolean} | null} */
 let drag = null;

@@ -3,11 +3,11 @@
 
 import { between, conjugate, scaled, times } from "../model/plane.js";
 
-/** @typedef {import("../model/symmetry.js").Motion} Motion */
+/** @import { Motion } from "../model/symmetry.js" */
 /**
  * @typedef {object} Scene what is drawn of strokes
  * @property {import("../model/design.js").Design} design
- * @property {import("../model/symmetry.js").Lattice} lattice
+ * @property {import("../model/lattice.js").Lattice} lattice
  * @property {Motion[]} motions the copies in a cell
  * @property {import("../scene.js").Entry[]} entries
  */

@@ -7,12 +7,9 @@ import { cellsIn, elementsIn, regionOf } from "../model/symmetry.js";
 import { nodeRef, shownNodes } from "../scene.js";
 import { roundedScale, screenPath } from "./paths.js";
 
-/**
- * @typedef {import("../tools/tool.js").Hands} Hands
- * @typedef {import("../tools/tool.js").Point} Point
- * @typedef {import("../tools/toolbox.js").Toolbox} Toolbox
- * @typedef {CanvasRenderingContext2D} Context
- */
+/** @import { Hands, Point } from "../tools/tool.js" */
+/** @import { Toolbox } from "../tools/toolbox.js" */
+/** @typedef {CanvasRenderingContext2D} Context */
 
 const COPIES_MAX = 600;
 
@@ -132,7 +129,7 @@ const keptCopies = new Kept();
  * The copies of paths in a box; none where they are too many.
  * @param {Path2D[]} paths
  * @param {import("../model/symmetry.js").Motion[]} motions
- * @param {import("../model/symmetry.js").Lattice} lattice
+ * @param {import("../model/lattice.js").Lattice} lattice
  * @param {import("../model/plane.js").Box} box
  */
 function copiesOf(paths, motions, lattice, box) {
@@ -157,7 +154,7 @@ function copiesOf(paths, motions, lattice, box) {
  * @param {Context} context
  * @param {Hands} hands
  * @param {import("../model/symmetry.js").Motion[]} motions
- * @param {import("../model/symmetry.js").Lattice} lattice
+ * @param {import("../model/lattice.js").Lattice} lattice
  * @param {ReturnType<typeof colours>} colour
  */
 function strokes(context, hands, motions, lattice, colour) {
@@ -241,7 +238,7 @@ function nodes(context, hands, colour) {
  * @param {Hands} hands
  * @param {Toolbox} toolbox
  * @param {import("../model/symmetry.js").Motion[]} motions
- * @param {import("../model/symmetry.js").Lattice} lattice
+ * @param {import("../model/lattice.js").Lattice} lattice
  */
 export function drawOverlay(context, hands, toolbox, motions, lattice) {
     const { camera, store } = hands;

@@ -5,7 +5,7 @@
 import { shown } from "../model/lengths.js";
 import { Camera } from "./camera.js";
 
-/** @typedef {import("../store.js").Store} Store */
+/** @import { Store } from "../store.js" */
 
 const RULER = 26;
 
