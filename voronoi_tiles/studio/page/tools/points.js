@@ -4,9 +4,11 @@
 
 import { addStroke, replaceStroke } from "../model/design.js";
 import { penStroke } from "../model/nodes.js";
+import { distance, length, minus, plus, scaled } from "../model/plane.js";
 import { rounded } from "../model/snapping.js";
 import { placementOf, unplace } from "../model/strokes.js";
 import { NOTHING } from "../store.js";
+import { colours, line as drawLine, ring } from "../view/marks.js";
 
 /** @import { Hands, Point, Tool, Touch } from "./tool.js" */
 /**
@@ -83,8 +85,7 @@ function pointTool({ make, handles = false, ...what }) {
         if (!touch.shift || !last) {
             return touch.at;
         }
-        const [dx, dy] = onAngle([touch.raw[0] - last.at[0], touch.raw[1] - last.at[1]]);
-        return rounded([last.at[0] + dx, last.at[1] + dy], touch.reach / 1000);
+        return rounded(plus(last.at, onAngle(minus(touch.raw, last.at))), touch.reach / 1000);
     };
 
     /** @param {Hands} hands */
@@ -151,8 +152,7 @@ function pointTool({ make, handles = false, ...what }) {
             check(hands);
             reach = touch.reach;
             const first = points[0];
-            const closes =
-                points.length > 1 && Math.hypot(touch.raw[0] - first.at[0], touch.raw[1] - first.at[1]) <= touch.reach;
+            const closes = points.length > 1 && distance(touch.raw, first.at) <= touch.reach;
             if (closes && make(points, true, placementOf(hands.store.settled.site[hands.store.state.site], {}))) {
                 closed = true;
                 commit(hands);
@@ -160,10 +160,7 @@ function pointTool({ make, handles = false, ...what }) {
                 return;
             }
             const last = points.at(-1);
-            if (
-                closes ||
-                (last && Math.hypot(touch.raw[0] - last.at[0], touch.raw[1] - last.at[1]) <= touch.reach / 3)
-            ) {
+            if (closes || (last && distance(touch.raw, last.at) <= touch.reach / 3)) {
                 return;
             }
             const at = placeOf(touch);
@@ -186,10 +183,7 @@ function pointTool({ make, handles = false, ...what }) {
             if (held && pulling && handles) {
                 let last = points[points.length - 1];
                 if (touch.space) {
-                    const at = rounded(
-                        [last.at[0] + touch.raw[0] - grabbed[0], last.at[1] + touch.raw[1] - grabbed[1]],
-                        1 / hands.camera.scale,
-                    );
+                    const at = rounded(plus(last.at, minus(touch.raw, grabbed)), 1 / hands.camera.scale);
                     last = { ...last, at };
                     points = [...points.slice(0, -1), last];
                     grabbed = touch.raw;
@@ -198,8 +192,8 @@ function pointTool({ make, handles = false, ...what }) {
                     return;
                 }
                 grabbed = touch.raw;
-                let pull = /** @type {Point} */ ([touch.raw[0] - last.at[0], touch.raw[1] - last.at[1]]);
-                if (Math.hypot(...pull) < touch.reach / 3) {
+                let pull = minus(touch.raw, last.at);
+                if (length(pull) < touch.reach / 3) {
                     return;
                 }
                 if (touch.shift) {
@@ -209,14 +203,14 @@ function pointTool({ make, handles = false, ...what }) {
                 broken ||= touch.alt;
                 const placed = {
                     at: last.at,
-                    in: broken ? last.in : /** @type {Point} */ ([-pull[0], -pull[1]]),
+                    in: broken ? last.in : scaled(pull, -1),
                     out: pull,
                 };
                 points = [...points.slice(0, -1), placed];
                 hands.store.preview((design) => withStroke(design, points, hands));
             } else if (points.length) {
                 const [last, at] = [points[points.length - 1], pointer];
-                if (Math.hypot(at[0] - last.at[0], at[1] - last.at[1]) > touch.reach / 4) {
+                if (distance(at, last.at) > touch.reach / 4) {
                     hands.store.preview((design) =>
                         withStroke(design, [...points, { at, in: NONE, out: NONE }], hands),
                     );
@@ -228,11 +222,7 @@ function pointTool({ make, handles = false, ...what }) {
             const last = points.at(-1);
             if (pulling && handles && last) {
                 commit(hands);
-            } else if (
-                pulling &&
-                last &&
-                Math.hypot(touch.raw[0] - last.at[0], touch.raw[1] - last.at[1]) > touch.reach
-            ) {
+            } else if (pulling && last && distance(touch.raw, last.at) > touch.reach) {
                 // Who drags has drawn from one point to the next.
                 points = [...points, { at: placeOf(touch), in: NONE, out: NONE }];
                 commit(hands);
@@ -295,35 +285,21 @@ function pointTool({ make, handles = false, ...what }) {
             if (!points.length || (store.settled !== expected && expected)) {
                 return;
             }
-            const style = getComputedStyle(document.documentElement);
+            const { accent, panel, quiet } = colours();
             const ends = pointer ? [...points.map((p) => p.at), pointer] : points.map((p) => p.at);
             context.setLineDash([3, 3]);
-            context.strokeStyle = style.getPropertyValue("--quiet");
-            context.beginPath();
-            ends.slice(-2).forEach((at, k) => context[k ? "lineTo" : "moveTo"](...camera.toScreen(at)));
-            context.stroke();
+            context.strokeStyle = quiet;
+            drawLine(context, ...ends.slice(-2).map((at) => camera.toScreen(at)));
             context.setLineDash([]);
-            for (const [k, point] of points.entries()) {
-                const [x, y] = camera.toScreen(point.at);
-                context.fillStyle = k ? style.getPropertyValue("--panel") : style.getPropertyValue("--accent");
-                context.strokeStyle = style.getPropertyValue("--accent");
-                if (Math.hypot(...point.out) > 0 && k === points.length - 1) {
-                    const [a, b] = [
-                        camera.toScreen([point.at[0] + point.in[0], point.at[1] + point.in[1]]),
-                        camera.toScreen([point.at[0] + point.out[0], point.at[1] + point.out[1]]),
-                    ];
-                    context.beginPath();
-                    context.moveTo(...a);
-                    context.lineTo(...b);
-                    context.stroke();
-                }
-                context.beginPath();
-                const near =
-                    k === 0 &&
-                    points.length > 1 &&
-                    pointer &&
-                    Math.hypot(pointer[0] - point.at[0], pointer[1] - point.at[1]) <= reach;
-                context.arc(x, y, near ? 7 : 4, 0, 2 * Math.PI);
+            context.strokeStyle = accent;
+            const last = points[points.length - 1];
+            if (length(last.out) > 0) {
+                drawLine(context, ...[last.in, last.out].map((handle) => camera.toScreen(plus(last.at, handle))));
+            }
+            for (const [k, { at }] of points.entries()) {
+                const closes = k === 0 && points.length > 1 && pointer && distance(pointer, at) <= reach;
+                context.fillStyle = k ? panel : accent;
+                ring(context, camera.toScreen(at), closes ? 7 : 4);
                 context.fill();
                 context.stroke();
             }

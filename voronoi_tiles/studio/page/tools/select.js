@@ -5,10 +5,11 @@ import { addStroke, isSameNode, isSameStroke, moveStrokes, removeStrokes, replac
 import { joinNodes, shownEnds } from "../model/joining.js";
 import { nearestCopy, nearestNode, nearestStroke, nodesIn, strokesIn } from "../model/hit.js";
 import { deleteNodes, insertNode, moveNodes, pullHandles, toggleSmooth } from "../model/nodes.js";
-import { distance } from "../model/plane.js";
+import { distance, minus, plus } from "../model/plane.js";
 import { rounded } from "../model/snapping.js";
 import { entriesOf, nodeRef, shownNodes } from "../scene.js";
 import { NOTHING } from "../store.js";
+import { colours } from "../view/marks.js";
 
 /** @import { Point, Tool } from "./tool.js" */
 /** @import { Design, NodeRef, Ref } from "../model/design.js" */
@@ -47,14 +48,14 @@ function changeNodes(design, nodes, change) {
  * @param {boolean} [alone] whether a smooth node's other handle stays
  * @returns {Design}
  */
-export function moved(design, { strokes, nodes }, [dx, dy], alone = false) {
+export function moved(design, { strokes, nodes }, by, alone = false) {
     if (!nodes.length) {
-        return moveStrokes(design, strokes, [dx, dy]);
+        return moveStrokes(design, strokes, by);
     }
     return changeNodes(design, nodes, (stroke, entry, own) => {
         const moves = entry.nodes
             .filter((node) => own.includes(node.node))
-            .map((node) => ({ node: node.node, to: /** @type {Point} */ ([node.at[0] + dx, node.at[1] + dy]) }));
+            .map(({ node, at }) => ({ node, to: plus(at, by) }));
         return moveNodes(stroke, entry.placement, moves, { alone });
     });
 }
@@ -162,7 +163,7 @@ export const select = {
         const { store } = hands;
         const place = drag.kind === "strokes" ? touch.raw : touch.at;
         drag = { ...drag, to: drag.kind === "box" ? touch.raw : place };
-        const far = Math.hypot(drag.to[0] - drag.from[0], drag.to[1] - drag.from[1]) > touch.reach / 4;
+        const far = distance(drag.to, drag.from) > touch.reach / 4;
         if (!drag.moved && !far) {
             return;
         }
@@ -171,7 +172,7 @@ export const select = {
             hands.redraw();
             return;
         }
-        let by = /** @type {Point} */ ([drag.to[0] - drag.from[0], drag.to[1] - drag.from[1]]);
+        let by = minus(drag.to, drag.from);
         const { snapped } = touch;
         const onto = drag.kind === "nodes" ? snapped?.onto : null;
         if (touch.shift && !onto) {
@@ -293,8 +294,7 @@ export const select = {
     draw(context, { camera }) {
         if (drag.kind === "box" && drag.moved) {
             const [a, b] = [camera.toScreen(drag.from), camera.toScreen(drag.to)];
-            const style = getComputedStyle(document.documentElement);
-            context.strokeStyle = style.getPropertyValue("--accent");
+            context.strokeStyle = colours().accent;
             context.setLineDash([4, 3]);
             context.strokeRect(a[0], a[1], b[0] - a[0], b[1] - a[1]);
             context.setLineDash([]);

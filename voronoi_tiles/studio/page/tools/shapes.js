@@ -3,9 +3,10 @@
 
 import { addStroke } from "../model/design.js";
 import { fit } from "../model/freehand.js";
-import { tidyProduct } from "../model/plane.js";
+import { distance, tidyProduct } from "../model/plane.js";
 import { rounded } from "../model/snapping.js";
 import { placementOf, unplace } from "../model/strokes.js";
+import { colours, path } from "../view/marks.js";
 
 /** @import { Hands, Point, Tool } from "./tool.js" */
 
@@ -57,7 +58,16 @@ let middle = null;
  * @param {import("./tool.js").Touch} touch
  * @param {Hands} hands
  */
-const radiusTo = ([x, y], { at }, { camera }) => rounded([Math.hypot(at[0] - x, at[1] - y), 0], 1 / camera.scale)[0];
+const radiusTo = (centre, { at }, { camera }) => rounded([distance(at, centre), 0], 1 / camera.scale)[0];
+
+/** @param {Hands} hands @param {Point} centre @param {number} radius @param {"preview"} [how] */
+const addCircle = (hands, centre, radius, how) =>
+    add(
+        hands,
+        "circle",
+        (unplaced, factor) => ({ circle: unplaced(centre), radius: tidyProduct(radius, factor) }),
+        how,
+    );
 
 /** @type {Tool} */
 export const circle = {
@@ -83,12 +93,7 @@ export const circle = {
         const centre = middle;
         const radius = radiusTo(centre, touch, hands);
         if (radius > touch.reach / 4) {
-            add(
-                hands,
-                "circle",
-                (unplaced, factor) => ({ circle: unplaced(centre), radius: tidyProduct(radius, factor) }),
-                "preview",
-            );
+            addCircle(hands, centre, radius, "preview");
         }
     },
     up(touch, hands) {
@@ -97,10 +102,7 @@ export const circle = {
         const radius = centre ? radiusTo(centre, touch, hands) : 0;
         if (centre && radius > touch.reach / 2) {
             middle = null;
-            add(hands, "circle", (unplaced, factor) => ({
-                circle: unplaced(centre),
-                radius: tidyProduct(radius, factor),
-            }));
+            addCircle(hands, centre, radius);
         }
     },
     cancel(hands) {
@@ -137,10 +139,7 @@ export const freehand = {
     up(touch, hands) {
         const drawn = trail;
         trail = [];
-        const length = drawn.reduce(
-            (sum, at, k) => sum + (k ? Math.hypot(at[0] - drawn[k - 1][0], at[1] - drawn[k - 1][1]) : 0),
-            0,
-        );
+        const length = drawn.slice(1).reduce((sum, at, k) => sum + distance(at, drawn[k]), 0);
         if (length > touch.reach) {
             add(hands, "freehand", (unplaced, factor) => fit(drawn.map(unplaced), (2 / hands.camera.scale) * factor));
         }
@@ -153,10 +152,9 @@ export const freehand = {
     },
     draw(context, { camera }) {
         if (trail.length > 1) {
-            context.strokeStyle = getComputedStyle(document.documentElement).getPropertyValue("--accent");
+            context.strokeStyle = colours().accent;
             context.lineWidth = 2;
-            context.beginPath();
-            trail.forEach((at, k) => context[k ? "lineTo" : "moveTo"](...camera.toScreen(at)));
+            path(context, ...trail.map((at) => camera.toScreen(at)));
             context.stroke();
             context.lineWidth = 1;
         }

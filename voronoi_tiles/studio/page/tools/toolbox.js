@@ -2,6 +2,7 @@
 // All tools, and the way of pointers and keys to the one in hand.
 
 import { isSameStroke } from "../model/design.js";
+import { between, distance } from "../model/plane.js";
 import { rounded, snap } from "../model/snapping.js";
 import { elementsIn } from "../model/symmetry.js";
 import { circle, freehand, point } from "./shapes.js";
@@ -260,12 +261,11 @@ export class Toolbox {
     #pinch(event, old) {
         const now = this.#screen(event);
         const [other] = [...this.#fingers].filter(([id]) => id !== event.pointerId).map(([, at]) => at);
-        const before = Math.hypot(old[0] - other[0], old[1] - other[1]);
-        const after = Math.hypot(now[0] - other[0], now[1] - other[1]);
+        const before = distance(old, other);
         this.#fingers.set(event.pointerId, now);
         this.#hands.camera.pan((now[0] - old[0]) / 2, (now[1] - old[1]) / 2);
         if (before > 0) {
-            this.#hands.camera.zoomAt([(now[0] + other[0]) / 2, (now[1] + other[1]) / 2], after / before);
+            this.#hands.camera.zoomAt(between(now, other, 0.5), distance(now, other) / before);
         }
         this.#hands.redraw();
     }

@@ -4,6 +4,7 @@
 import { distance, minus, plus } from "../model/plane.js";
 import { rounded } from "../model/snapping.js";
 import { cornersOf, inUnits, pulled } from "../model/tracing.js";
+import { colours, path } from "../view/marks.js";
 
 /** @import { Point, Tool } from "./tool.js" */
 /** @import { Store, Trace } from "../store.js" */
@@ -106,11 +107,10 @@ export const trace = {
     draw(context, { camera, store }) {
         const laid = shownIn(store);
         const corners = laid ? cornersOf(laid, laid.image).map((at) => camera.toScreen(at)) : [];
-        const style = getComputedStyle(document.documentElement);
-        context.strokeStyle = style.getPropertyValue("--accent");
-        context.fillStyle = style.getPropertyValue("--panel");
-        context.beginPath();
-        corners.forEach((at, k) => context[k ? "lineTo" : "moveTo"](...at));
+        const { accent, panel } = colours();
+        context.strokeStyle = accent;
+        context.fillStyle = panel;
+        path(context, ...corners);
         context.closePath();
         context.stroke();
         for (const [x, y] of corners) {

@@ -2,9 +2,11 @@
 // What lies over the picture: the cell, symmetry elements, the grid, strokes and their nodes, and what a tool shows.
 
 import { Kept } from "../model/kept.js";
+import { minus, plus } from "../model/plane.js";
 import { isSameNode, isSameStroke } from "../model/design.js";
 import { cellsIn, elementsIn, regionOf } from "../model/symmetry.js";
 import { nodeRef, shownNodes } from "../scene.js";
+import { colours, line, path, ring } from "./marks.js";
 import { roundedScale, screenPath } from "./paths.js";
 
 /** @import { Hands, Point } from "../tools/tool.js" */
@@ -12,20 +14,6 @@ import { roundedScale, screenPath } from "./paths.js";
 /** @typedef {CanvasRenderingContext2D} Context */
 
 const COPIES_MAX = 600;
-
-/** The colours, as the style sheet has them. */
-function colours() {
-    const style = getComputedStyle(document.documentElement);
-    const of = (/** @type {string} */ name) => style.getPropertyValue(name).trim();
-    return {
-        accent: of("--accent"),
-        text: of("--text"),
-        quiet: of("--quiet"),
-        panel: of("--panel"),
-        line: of("--line"),
-        bad: of("--bad"),
-    };
-}
 
 /**
  * A rotation centre of an order, as the International Tables draw it.
@@ -65,8 +53,7 @@ function symmetry(context, { store, camera }, colour) {
         const region = regionOf(design, tables);
         context.globalAlpha = 0.1;
         context.fillStyle = colour.accent;
-        context.beginPath();
-        region.forEach((at, k) => context[k ? "lineTo" : "moveTo"](...camera.toScreen(at)));
+        path(context, ...region.map((at) => camera.toScreen(at)));
         context.fill();
         context.globalAlpha = 1;
     }
@@ -111,10 +98,8 @@ function grid(context, { camera }, colour) {
     ]) {
         for (let k = Math.ceil(first / step); k <= last / step; ++k) {
             context.globalAlpha = k % 10 ? 0.35 : 0.9;
-            context.beginPath();
-            context.moveTo(...camera.toScreen(axis ? [x0, k * step] : [k * step, y0]));
-            context.lineTo(...camera.toScreen(axis ? [x1, k * step] : [k * step, y1]));
-            context.stroke();
+            const from = camera.toScreen(axis ? [x0, k * step] : [k * step, y0]);
+            line(context, from, camera.toScreen(axis ? [x1, k * step] : [k * step, y1]));
         }
     }
     context.globalAlpha = 1;
@@ -221,11 +206,11 @@ function nodes(context, hands, colour) {
         const [x, y] = camera.toScreen(node.at);
         const chosen = selection.nodes.some((ref) => isSameNode(ref, nodeRef(node)));
         context.fillStyle = chosen ? colour.accent : colour.panel;
-        context.beginPath();
         if (node.role === "anchor" && !node.smooth) {
+            context.beginPath();
             context.rect(x - 4, y - 4, 8, 8);
         } else {
-            context.arc(x, y, node.role === "anchor" || node.role === "centre" ? 4.5 : 3.5, 0, 2 * Math.PI);
+            ring(context, [x, y], node.role === "anchor" || node.role === "centre" ? 4.5 : 3.5);
         }
         context.fill();
         context.stroke();
@@ -252,10 +237,7 @@ export function drawOverlay(context, hands, toolbox, motions, lattice) {
     if (shown.cell) {
         const { a, b } = lattice;
         context.strokeStyle = colour.quiet;
-        context.beginPath();
-        [[0, 0], a, [a[0] + b[0], a[1] + b[1]], b].forEach((at, k) =>
-            context[k ? "lineTo" : "moveTo"](...camera.toScreen(/** @type {Point} */ (at))),
-        );
+        path(context, ...[minus(a, a), a, plus(a, b), b].map((at) => camera.toScreen(at)));
         context.closePath();
         context.stroke();
     }
@@ -265,11 +247,9 @@ export function drawOverlay(context, hands, toolbox, motions, lattice) {
     strokes(context, hands, motions, lattice, colour);
     nodes(context, hands, colour);
     if (refusal?.error.at) {
-        const [x, y] = camera.toScreen(refusal.error.at);
         context.strokeStyle = colour.bad;
         context.lineWidth = 2.5;
-        context.beginPath();
-        context.arc(x, y, 12, 0, 2 * Math.PI);
+        ring(context, camera.toScreen(refusal.error.at), 12);
         context.stroke();
         context.lineWidth = 1;
     }
@@ -285,11 +265,7 @@ export function drawOverlay(context, hands, toolbox, motions, lattice) {
     if (toolbox.cross) {
         const [x, y] = camera.toScreen(toolbox.cross);
         context.strokeStyle = colour.text;
-        context.beginPath();
-        context.moveTo(x - 12, y);
-        context.lineTo(x + 12, y);
-        context.moveTo(x, y - 12);
-        context.lineTo(x, y + 12);
-        context.stroke();
+        line(context, [x - 12, y], [x + 12, y]);
+        line(context, [x, y - 12], [x, y + 12]);
     }
 }

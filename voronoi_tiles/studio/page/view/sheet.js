@@ -3,8 +3,11 @@
 // job or the report is looked at.
 
 import { shown } from "../model/lengths.js";
+import { minus, plus, scaled, unit } from "../model/plane.js";
 import { Camera } from "./camera.js";
+import { colours, line, ring } from "./marks.js";
 
+/** @import { Point } from "../model/plane.js" */
 /** @import { Store } from "../store.js" */
 
 const RULER = 26;
@@ -121,10 +124,9 @@ export class SheetView {
             Object.assign(canvas, { width, height });
         }
         const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-        const style = getComputedStyle(document.documentElement);
-        const of = (/** @type {string} */ name) => style.getPropertyValue(name).trim();
+        const { bad, edge, ground, text, warn } = colours();
         context.setTransform(1, 0, 0, 1, 0, 0);
-        context.fillStyle = of("--ground");
+        context.fillStyle = ground;
         context.fillRect(0, 0, width, height);
         if (!product) {
             return;
@@ -163,19 +165,17 @@ export class SheetView {
         }
         context.globalAlpha = 1;
         context.setTransform(camera.ratio, 0, 0, camera.ratio, 0, 0);
-        context.strokeStyle = of("--edge");
+        context.strokeStyle = edge;
         context.strokeRect(x0, y0, page.width * camera.scale, page.height * camera.scale);
-        this.#dimensions(context, page, of("--text"));
+        this.#dimensions(context, page, text);
         for (const finding of product.findings) {
             const chosen =
                 finding.at && this.#finding && finding.at[0] === this.#finding[0] && finding.at[1] === this.#finding[1];
             // Remarks are many and harmless: a ring is drawn around the one that is looked at.
             if (finding.at && (chosen || finding.severity !== "info")) {
-                const [x, y] = camera.toScreen([finding.at[0], -finding.at[1]]);
-                context.strokeStyle = of(finding.severity === "error" ? "--bad" : "--warn");
+                context.strokeStyle = finding.severity === "error" ? bad : warn;
                 context.lineWidth = chosen ? 3 : 1.5;
-                context.beginPath();
-                context.arc(x, y, chosen ? 11 : 7, 0, 2 * Math.PI);
+                ring(context, camera.toScreen([finding.at[0], -finding.at[1]]), chosen ? 11 : 7);
                 context.stroke();
             }
         }
@@ -188,41 +188,29 @@ export class SheetView {
      * @param {string} colour
      */
     #dimensions(context, page, colour) {
-        const { unit, tables } = this.#store.state;
-        const mm = tables?.units[unit] ?? 1;
+        const { unit: shownIn, tables } = this.#store.state;
+        const mm = tables?.units[shownIn] ?? 1;
         const [x0, y0] = this.#camera.toScreen([0, 0]);
         const [x1, y1] = this.#camera.toScreen([page.width, -page.height]);
         context.strokeStyle = context.fillStyle = colour;
         context.lineWidth = 1;
         context.font = "12px system-ui, sans-serif";
         context.textAlign = "center";
-        const line = (
-            /** @type {number} */ a,
-            /** @type {number} */ b,
-            /** @type {number} */ c,
-            /** @type {number} */ d,
-        ) => {
-            const across = Math.hypot(c - a, d - b) || 1;
-            const [u, v] = [((d - b) / across) * 4, ((c - a) / across) * 4];
-            context.beginPath();
-            context.moveTo(a, b);
-            context.lineTo(c, d);
-            for (const [x, y] of [
-                [a, b],
-                [c, d],
-            ]) {
-                context.moveTo(x - u, y - v);
-                context.lineTo(x + u, y + v);
+        const measured = (/** @type {Point} */ from, /** @type {Point} */ to) => {
+            line(context, from, to);
+            const [u, v] = scaled(unit(minus(to, from)), 4);
+            // Strokes across both ends.
+            for (const at of [from, to]) {
+                line(context, minus(at, [v, u]), plus(at, [v, u]));
             }
-            context.stroke();
         };
-        line(x0, y1 + RULER / 2, x1, y1 + RULER / 2);
-        context.fillText(`${shown(page.width / mm, unit)} ${unit}`, (x0 + x1) / 2, y1 + RULER + 5);
-        line(x0 - RULER / 2, y0, x0 - RULER / 2, y1);
+        measured([x0, y1 + RULER / 2], [x1, y1 + RULER / 2]);
+        context.fillText(`${shown(page.width / mm, shownIn)} ${shownIn}`, (x0 + x1) / 2, y1 + RULER + 5);
+        measured([x0 - RULER / 2, y0], [x0 - RULER / 2, y1]);
         context.save();
         context.translate(x0 - RULER / 2 - 7, (y0 + y1) / 2);
         context.rotate(-Math.PI / 2);
-        context.fillText(`${shown(page.height / mm, unit)} ${unit}`, 0, 0);
+        context.fillText(`${shown(page.height / mm, shownIn)} ${shownIn}`, 0, 0);
         context.restore();
     }
 }
