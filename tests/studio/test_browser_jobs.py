@@ -241,7 +241,7 @@ def test_coupon_picture_and_parts(window: Window) -> None:
     page.get_by_role("button", name="Test piece for the kerf").click()
     page.get_by_label("Format").select_option("gcode")
     page.get_by_role("button", name="Download").click()
-    page.get_by_role("dialog").get_by_role("alert").get_by_text("feed").wait_for()
+    page.get_by_role("dialog").get_by_role("alert").get_by_text("it needs Feed and Power").wait_for()
     page.get_by_label("Format").select_option("lbrn2")
     with page.expect_download() as found:
         page.get_by_role("button", name="Download").click()

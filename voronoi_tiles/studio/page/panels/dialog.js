@@ -1,7 +1,7 @@
 // @ts-check
 // The frame of a dialog: its buttons, what is being done, and what went wrong.
 
-import { button, byId, make, said } from "./elements.js";
+import { button, byId, inLabels, make, said } from "./elements.js";
 
 /**
  * @typedef {object} Action a button of a dialog; it closes the dialog, and what fails is said in it
@@ -37,7 +37,7 @@ export function showDialog(title, content, actions) {
                 }
                 box.close();
             } catch (error) {
-                failed.textContent = said(error);
+                failed.textContent = inLabels(said(error));
             } finally {
                 box.ariaBusy = null;
                 working.textContent = "";

@@ -44,7 +44,7 @@ export const HELP = [
             { keys: "Tab, Shift+Tab", does: "the next point, the one before" },
             {
                 keys: "J",
-                does: "join two ends that are selected, or the nearest ends of two selected strokes, by a line where they are apart; close the one selected",
+                does: "join two selected ends, or the nearest of two selected strokes, by a line where they are apart; close the one selected",
             },
             { keys: "Drag an end onto another", does: "join them; a point onto the next one takes it out" },
             { keys: "Delete, Shift+Delete", does: "take out: the curve heals; or is cut there" },
