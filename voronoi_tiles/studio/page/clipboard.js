@@ -49,10 +49,7 @@ function ownStrokes(text) {
     }
 }
 
-/**
- * Listen to copy, cut and paste over the drawing.
- * @param {import("./tools/tool.js").Hands} hands
- */
+/** Listen to copy, cut and paste over the drawing. @param {import("./tools/tool.js").Hands} hands */
 export function clipboard({ store, entries, camera }) {
     const typing = () => document.activeElement?.matches("input, select, textarea") ?? false;
 

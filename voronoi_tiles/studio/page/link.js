@@ -82,11 +82,7 @@ export class Link {
         store.subscribe(["job"], () => this.#scheduleJob());
     }
 
-    /**
-     * Call a function with every message of a type.
-     * @param {string} type
-     * @param {(message: any) => void} tell
-     */
+    /** Call a function with every message of a type. @param {string} type @param {(message: any) => void} tell */
     on(type, tell) {
         this.#heard.set(type, [...(this.#heard.get(type) ?? []), tell]);
     }
@@ -202,10 +198,7 @@ export class Link {
         }
     }
 
-    /**
-     * An answer has come: what has changed meanwhile goes out.
-     * @param {number} rev
-     */
+    /** An answer has come: what has changed meanwhile goes out. @param {number} rev */
     #answered(rev) {
         if (this.#asked && rev >= this.#asked.rev) {
             this.#asked = null;

@@ -1,10 +1,7 @@
 // @ts-check
 // Designs in links: the whole design stands behind the #, which browsers send to nobody.
 
-/**
- * The address that opens a design in a studio that runs here.
- * @param {import("./model/design.js").Design} design
- */
+/** The address that opens a design in a studio that runs here. @param {import("./model/design.js").Design} design */
 export function linkOf(design) {
     const bytes = new TextEncoder().encode(JSON.stringify(design));
     const binary = Array.from(bytes, (byte) => String.fromCharCode(byte)).join("");

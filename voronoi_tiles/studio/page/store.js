@@ -204,20 +204,13 @@ export class Store {
         }
     }
 
-    /**
-     * Know what the file holds; undo and redo lead back to it.
-     * @param {Design | null} design null: nothing of ours
-     */
+    /** Know what the file holds; undo and redo lead back to it. @param {Design | null} design null: nothing of ours */
     keep(design) {
         this.#kept = design;
         this.set({ saved: this.#history.design === design });
     }
 
-    /**
-     * Begin with another design: a new history.
-     * @param {Design} design
-     * @param {Partial<State>} patch
-     */
+    /** Begin with another design: a new history. @param {Design} design @param {Partial<State>} patch */
     open(design, patch) {
         this.#history = new History(design);
         this.#kept = null;
@@ -226,10 +219,7 @@ export class Store {
         this.#show(design, { selection: NOTHING, site: 0, dragging: false, begun, ...none, ...patch });
     }
 
-    /**
-     * @param {Design} design
-     * @param {Partial<State>} patch
-     */
+    /** @param {Design} design @param {Partial<State>} patch */
     #show(design, patch) {
         const site = Math.min(this.#state.site, design.site.length - 1);
         const saved = this.#history.design === this.#kept;

@@ -48,11 +48,7 @@ export function pathCubics(data) {
     return cubics;
 }
 
-/**
- * Draw path data, up to the first character that breaks the grammar.
- * @param {string} data
- * @param {Draw} draw
- */
+/** Draw path data, up to the first character that breaks the grammar. @param {string} data @param {Draw} draw */
 function drawPath(data, draw) {
     /** @type {Point} */
     let here = [0, 0];

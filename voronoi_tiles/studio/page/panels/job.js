@@ -93,10 +93,7 @@ export class JobPanel extends HTMLElement {
         );
     }
 
-    /**
-     * @param {string} name
-     * @param {any} value undefined: the default
-     */
+    /** @param {string} name @param {any} value undefined: the default */
     #set(name, value) {
         const { store } = this.#context;
         const { job, tables } = store.state;

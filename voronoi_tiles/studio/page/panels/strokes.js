@@ -141,10 +141,7 @@ export class StrokePanel extends HTMLElement {
         ];
     }
 
-    /**
-     * @param {State} state
-     * @param {Entry} entry
-     */
+    /** @param {State} state @param {Entry} entry */
     #stroke(state, entry) {
         const { store } = this.#context;
         const { ref } = entry;
@@ -235,11 +232,7 @@ export class StrokePanel extends HTMLElement {
         );
     }
 
-    /**
-     * Fields that move the whole stroke.
-     * @param {State} state
-     * @param {Entry} entry
-     */
+    /** Fields that move the whole stroke. @param {State} state @param {Entry} entry */
     #move(state, entry) {
         const by = (/** @type {0 | 1} */ axis) =>
             lengthField(
@@ -270,11 +263,7 @@ export class StrokePanel extends HTMLElement {
         store.edit("double", () => design, { selection: { strokes: refs, nodes: [] } });
     }
 
-    /**
-     * Where the stroke goes: another site.
-     * @param {State} state
-     * @param {Entry} entry
-     */
+    /** Where the stroke goes: another site. @param {State} state @param {Entry} entry */
     #otherSite(state, { ref }) {
         const options = state.design.site.map((_, i) =>
             make("option", { value: i, ".selected": i === ref.site }, siteNames(state.design)[i]),

@@ -75,10 +75,7 @@ export const HELP = [
 /** @type {Record<string, [number, number]>} */
 const ARROWS = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
 
-/**
- * Whether keys belong to what has the focus: a field in which one types.
- * @param {EventTarget | null} target
- */
+/** Whether keys belong to what has the focus: a field in which one types. @param {EventTarget | null} target */
 function types(target) {
     return target instanceof HTMLElement && (target.isContentEditable || target.matches("input, select, textarea"));
 }

@@ -21,11 +21,7 @@ export function lettersOf(kept) {
     return given;
 }
 
-/**
- * The letter of a tool, a small one.
- * @param {import("./tool.js").Tool} tool
- * @param {Letters} given
- */
+/** The letter of a tool, a small one. @param {import("./tool.js").Tool} tool @param {Letters} given */
 export const letterOf = (tool, given) => given[tool.name] ?? tool.key;
 
 /** Why no tool can have a letter, null where one can. @type {(letter: string) => string | null} */

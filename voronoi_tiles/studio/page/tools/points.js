@@ -57,9 +57,7 @@ function pen(points, closed, placement) {
     return all.length < 2 ? null : penStroke(all, placement);
 }
 
-/**
- * @type {(what: Pick<Tool, "name" | "key" | "title" | "icon" | "help"> & {make: Maker, handles?: boolean}) => Tool}
- */
+/** @type {(what: Pick<Tool, "name" | "key" | "title" | "icon" | "help"> & {make: Maker, handles?: boolean}) => Tool} */
 function pointTool({ make, handles = false, ...what }) {
     /** @type {Placed[]} */
     let points = [];

@@ -108,11 +108,7 @@ function clicked(selected, one, same, shift) {
 const still = { kind: "", from: [0, 0], to: [0, 0], moved: false, node: null, add: false };
 let drag = still;
 
-/**
- * The axis that a drag keeps to while Shift is held.
- * @param {Point} by
- * @returns {Point}
- */
+/** The axis that a drag keeps to while Shift is held. @param {Point} by @returns {Point} */
 const onAxis = ([dx, dy]) => (Math.abs(dx) > Math.abs(dy) ? [dx, 0] : [0, dy]);
 
 /** @type {Tool} */

@@ -113,10 +113,7 @@ export class Toolbox {
         this.#hands.redraw();
     }
 
-    /**
-     * Hold the hand tool while Space is down.
-     * @param {boolean} on
-     */
+    /** Hold the hand tool while Space is down. @param {boolean} on */
     borrow(on) {
         this.#space = on;
         if (on !== (this.#aside !== null) && !this.#held) {
@@ -125,19 +122,13 @@ export class Toolbox {
         }
     }
 
-    /**
-     * @param {PointerEvent | MouseEvent} event
-     * @returns {Point}
-     */
+    /** @param {PointerEvent | MouseEvent} event @returns {Point} */
     #screen(event) {
         const box = this.#canvas.getBoundingClientRect();
         return [event.clientX - box.left, event.clientY - box.top];
     }
 
-    /**
-     * @param {PointerEvent | MouseEvent} event
-     * @returns {Touch}
-     */
+    /** @param {PointerEvent | MouseEvent} event @returns {Touch} */
     #touch(event) {
         const touch = "pointerType" in event && event.pointerType === "touch";
         const past = "getCoalescedEvents" in event ? event.getCoalescedEvents() : [];
@@ -172,10 +163,7 @@ export class Toolbox {
         };
     }
 
-    /**
-     * @param {Point} at
-     * @param {number} reach
-     */
+    /** @param {Point} at @param {number} reach */
     #snap(at, reach) {
         const { store, entries } = this.#hands;
         const { design, tables, shown, tool, selection } = store.state;
@@ -253,11 +241,7 @@ export class Toolbox {
     /** @type {((at: Point | null) => void) | null} */
     pointed = null;
 
-    /**
-     * Two fingers move and zoom the window.
-     * @param {PointerEvent} event
-     * @param {Point} old
-     */
+    /** Two fingers move and zoom the window. @param {PointerEvent} event @param {Point} old */
     #pinch(event, old) {
         const now = this.#screen(event);
         const [other] = [...this.#fingers].filter(([id]) => id !== event.pointerId).map(([, at]) => at);

@@ -13,17 +13,10 @@ import { colours, path } from "../view/marks.js";
 /** @type {{laid: Shown, from: Point, corner: boolean} | null} */
 let drag = null;
 
-/**
- * The picture as it lies, null where there is none.
- * @param {Store} store
- */
+/** The picture as it lies, null where there is none. @param {Store} store */
 const shownIn = ({ state: { trace } }) => /** @type {Shown | null} */ (trace.image && trace.at ? trace : null);
 
-/**
- * Change where the picture lies, or what is shown of it.
- * @param {Store} store
- * @param {Partial<Trace>} patch
- */
+/** Change where the picture lies, or what is shown of it. @param {Store} store @param {Partial<Trace>} patch */
 export const setTrace = (store, patch) => store.set({ trace: { ...store.state.trace, ...patch } });
 
 /** @type {{past: Shown[], future: Shown[], nudges: boolean}} where the picture lay before, and before undo */

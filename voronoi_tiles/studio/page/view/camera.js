@@ -16,10 +16,7 @@ export class Camera {
     /** pixels of the screen for one of the page */
     ratio = 1;
 
-    /**
-     * @param {Point} at
-     * @returns {Point}
-     */
+    /** @param {Point} at @returns {Point} */
     toScreen([x, y]) {
         return [
             this.size[0] / 2 + (x - this.centre[0]) * this.scale,
@@ -27,10 +24,7 @@ export class Camera {
         ];
     }
 
-    /**
-     * @param {Point} at
-     * @returns {Point}
-     */
+    /** @param {Point} at @returns {Point} */
     toDrawing([x, y]) {
         return [
             this.centre[0] + (x - this.size[0] / 2) / this.scale,
@@ -38,20 +32,13 @@ export class Camera {
         ];
     }
 
-    /**
-     * The window in the drawing, [x0, y0, x1, y1].
-     * @returns {[number, number, number, number]}
-     */
+    /** The window in the drawing, [x0, y0, x1, y1]. @returns {[number, number, number, number]} */
     get box() {
         const [x, y] = [this.size[0] / 2 / this.scale, this.size[1] / 2 / this.scale];
         return [this.centre[0] - x, this.centre[1] - y, this.centre[0] + x, this.centre[1] + y];
     }
 
-    /**
-     * Zoom so that what is at a point of the page stays there.
-     * @param {Point} at
-     * @param {number} factor
-     */
+    /** Zoom so that what is at a point of the page stays there. @param {Point} at @param {number} factor */
     zoomAt(at, factor) {
         const before = this.toDrawing(at);
         this.scale = Math.min(SCALE_MAX, Math.max(SCALE_MIN, this.scale * factor));
@@ -59,11 +46,7 @@ export class Camera {
         this.centre = [this.centre[0] + before[0] - after[0], this.centre[1] + before[1] - after[1]];
     }
 
-    /**
-     * Move the drawing by pixels of the page.
-     * @param {number} dx
-     * @param {number} dy
-     */
+    /** Move the drawing by pixels of the page. @param {number} dx @param {number} dy */
     pan(dx, dy) {
         this.centre = [this.centre[0] - dx / this.scale, this.centre[1] + dy / this.scale];
     }
@@ -79,10 +62,7 @@ export class Camera {
         this.scale = Math.min(SCALE_MAX, share * Math.min(this.size[0] / width, this.size[1] / height));
     }
 
-    /**
-     * Make a canvas context draw in the drawing's coordinates.
-     * @param {CanvasRenderingContext2D} context
-     */
+    /** Make a canvas context draw in the drawing's coordinates. @param {CanvasRenderingContext2D} context */
     apply(context) {
         const k = this.scale * this.ratio;
         const [x, y] = [this.size[0] / 2, this.size[1] / 2];

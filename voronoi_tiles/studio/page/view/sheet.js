@@ -24,10 +24,7 @@ export class SheetView {
     /** @type {{product: any, paths: {path: Path2D, colour: string, kind: string}[]} | null} */
     #paths = null;
 
-    /**
-     * @param {HTMLCanvasElement} canvas
-     * @param {Store} store
-     */
+    /** @param {HTMLCanvasElement} canvas @param {Store} store */
     constructor(canvas, store) {
         this.#canvas = canvas;
         this.#store = store;
