@@ -24,9 +24,9 @@ from voronoi_tiles.raster.frame import BLOCK, Frame
 from voronoi_tiles.raster.scene import Labels
 
 _TEXTURE_WIDTH = 4096
-_LONGEST_LIST = 60_000
-"""Most elements and runs of one block; a count. Mesa's software renderer ends a shader's loops after 65,535 rounds in
-all, in silence."""
+_ROUNDS = 65_535
+"""Most rounds of loops in one run of a shader, all loops together; a count. Mesa's software renderer ends them there
+in silence, and counts one more for each loop that it begins."""
 
 _SOFTWARE = ("llvmpipe", "softpipe", "swrast", "swiftshader", "software")
 
@@ -192,12 +192,10 @@ class Prepared:
     def __init__(self, device: Device, candidates: BlockLists, frame: Frame, *, compute: bool) -> None:
         """Upload the lists. Raises GlError."""
         device.check()
-        rounds = np.diff(candidates.element_start[candidates.run_start]) + np.diff(candidates.run_start)
-        longest = int(rounds.max())
-        if longest > _LONGEST_LIST:
-            raise GlError(
-                f"{longest:,} elements and copies lie about one block of samples, more than {_LONGEST_LIST:,}"
-            )
+        in_elements, in_runs = np.diff(candidates.element_start[candidates.run_start]), np.diff(candidates.run_start)
+        rounds = int((in_elements + 2 * in_runs).max())
+        if rounds > _ROUNDS:
+            raise GlError(f"the copies about one block take {rounds:,} rounds of loops, more than {_ROUNDS:,}")
         self.device, self.frame, self.compute = device, frame, compute
         self._held: list[Any] = []
         context = device.context

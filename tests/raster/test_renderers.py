@@ -23,7 +23,7 @@ from voronoi_tiles.raster.block_lists import BlockLists
 from voronoi_tiles.raster.frame import BLOCK, Frame, cell_frame, rectangle_frame
 from voronoi_tiles.raster.gl import Device, GlError, Prepared, float32_error, gl_errors
 from voronoi_tiles.raster.renderer import LabelImage, Provenance, Renderer, spot_check
-from voronoi_tiles.raster.scene import Pattern
+from voronoi_tiles.raster.scene import Pattern, Scene
 
 Images = tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.float32], NDArray[np.float32]]
 Change = Callable[[int, Images], Images]
@@ -239,12 +239,43 @@ def test_long_lists_are_refused(device: Device, monkeypatch: pytest.MonkeyPatch)
     """Where a loop of the shader would not run to its end, the processor renders."""
     frame = cell_frame(BIRD.lattice, 40)
     lists = lists_of(BIRD, frame)
-    longest = int((np.diff(lists.element_start[lists.run_start]) + np.diff(lists.run_start)).max())
-    monkeypatch.setattr(gl, "_LONGEST_LIST", longest - 1)
+    rounds = int((np.diff(lists.element_start[lists.run_start]) + 2 * np.diff(lists.run_start)).max())
+    monkeypatch.setattr(gl, "_ROUNDS", rounds - 1)
     image = Renderer("auto").render(BIRD, frame)
     assert image.provenance.renderer == "cpu"
-    assert image.provenance.fallback.startswith(f"{longest} elements and copies lie about one block")
+    assert f"about one block take {rounds} rounds" in image.provenance.fallback
     assert device.info
+
+
+@VARIANT
+@pytest.mark.parametrize(("runs", "each"), [(21_845, 1), (255, 255), (2, 32_765)])
+def test_the_longest_lists_are_gone_through_to_the_end(device: Device, compute: bool, runs: int, each: int) -> None:
+    """The nearest copies are the last ones: Mesa's llvmpipe ends a shader's loops after 65,535 rounds in all.
+
+    What takes one more is refused, however short the single loops are.
+    """
+    if compute and not device.has_compute:
+        pytest.skip("the device has no compute shaders")
+    frame = Frame(0j, 1 + 0j, 1j, 2, 2)
+
+    def lists(more: int) -> BlockLists:
+        """One block: copies in a row, each of some points, which come nearer."""
+        sizes = np.full(runs, each)
+        sizes[0] += more
+        label = np.repeat(np.arange(runs, dtype=np.int32), sizes)
+        copies = np.zeros((runs, 3), np.intp)
+        middle = (1000.0 - 900.0 * label / runs).astype(np.complex128)
+        scene = Scene(0j, middle, np.zeros_like(middle), label, copies)
+        centre, radius = np.array([frame.offsets(BLOCK / 2, BLOCK / 2)]), frame.half_diagonal(BLOCK)
+        start = np.append(0, np.cumsum(sizes))
+        every = np.arange(len(label), dtype=np.int32)
+        return BlockLists(scene, 1, radius, centre, np.array([0, runs]), np.arange(runs, dtype=np.int32), start, every)
+
+    first, second, _, _ = device.render_exact(lists(0), frame, compute=compute)
+    assert (first == runs - 1).all()
+    assert (second == runs - 2).all()
+    with pytest.raises(GlError, match="rounds of loops, more than 65,535"):
+        device.render_exact(lists(65_536 - runs * (each + 2)), frame, compute=compute)
 
 
 @pytest.mark.parametrize(

@@ -31,6 +31,8 @@ import { gather, grown, square } from "./pattern.js";
 
 /** Keeps what rounding would drop; far above float64 and far below what costs time. */
 const SLACK = 1 + 1e-9;
+/** Rounds of loops in one run of a shader, all together, after which Mesa's software renderer ends them in silence. */
+const ROUNDS = 65535;
 /** Elements of a site from which the first bound is taken, at most. */
 const FEW = 48;
 let reals = new Float64Array(4 * 1024);
@@ -243,6 +245,8 @@ export class BlockLists {
                     this.elements[4 * count + 2] = elements.ends[4 * e + 2] * scale;
                     this.elements[4 * count + 3] = elements.ends[4 * e + 3] * scale;
                 }
+                // Both of the shader's passes go through all; a round each for a loop's beginning and end.
+                if (2 * size + 5 * (runs - before) > ROUNDS) throw new RangeError("too many strokes lie about a point");
                 this.blocks[at] = before;
                 this.blocks[at + 1] = runs - before;
                 this.blocks[at + 2] = across;
