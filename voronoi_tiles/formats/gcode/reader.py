@@ -28,12 +28,22 @@ _LINE_MAX: Final = 1_000
 _LAYER: Final = f"; {LAYER}"
 
 _MOTIONS: Final = (0, 1, 2, 3)
+_LASER: Final = (3, 4, 5)
 _IDLE: Final = {"G": (4, 17, 40, 49, 80, 91.1, 94), "M": (0, 1, 7, 8, 9)}
 """Words that move nothing."""
 
 _ORIGINS: Final = (54, 55, 56, 57, 58, 59)
 
 _ENDS: Final = (2, 30)
+
+_MODES: Final[dict[tuple[str, float], str]] = {
+    **{("G", value): "move" for value in (*_MOTIONS, 80)},
+    **{("G", value): "unit" for value in (20, 21)},
+    **{("G", value): "origin" for value in _ORIGINS},
+    **{("G", value): "way to count" for value in (90, 91)},
+    **{("M", value): "state of the laser" for value in _LASER},
+}
+"""What a word sets; of the words that set one thing a line has one, or GRBL refuses it (error 21)."""
 _ABSENT: Final = {
     "R": "arcs are read by their centres, I and J",
     "Z": "a laser's moves are in the plane, X and Y",
@@ -53,11 +63,12 @@ def gcode_drawing(data: bytes, name: str) -> ReadDrawing:
     """
     if len(data) > GCODE_BYTES_MAX:
         raise DrawingError(f"larger than {GCODE_BYTES_MAX >> 20} MiB", file=name, remedy="Split it.")
+    # A line ends with either, or both.
+    if max(data.count(b"\n"), data.count(b"\r")) > LINES_MAX:
+        raise DrawingError(f"has more than {LINES_MAX:,} lines", file=name, remedy="Split it.")
     tool = _LaserHead(name)
     for number, line in enumerate(TextIOWrapper(BytesIO(data), "utf-8-sig", errors="replace"), 1):
-        if number > LINES_MAX:
-            raise DrawingError(f"has more than {LINES_MAX:,} lines", file=name, remedy="Split it.")
-        if not tool.step(number, line):
+        if not line.isspace() and not tool.step(number, line):
             break
     return ReadDrawing(
         format="gcode",
@@ -153,19 +164,18 @@ class _LaserHead:
         if sum(len(word) for _, _, word in found) != len(text):
             rest = next(part for part in _WORD.sub(" ", text).split(" ") if part)
             raise self._error(f"{printable(rest)[:20]} is no word", "Words are a letter and a number, such as X12.5.")
-        letters = set()
-        for letter, _, _ in found:
-            if letter in letters:
-                raise self._error(f"{letter} stands twice", "Write one move in a line.")
-            if letter not in "GM":
-                letters.add(letter)
+        seen: set[str] = set()
+        for letter, value, word in found:
+            mode = _MODES.get((letter, value), "")
+            if mode in seen or letter in seen:
+                what = f"{word} is a second {mode}" if mode else f"{letter} stands twice"
+                raise self._error(f"{what} in a line", "Write one move in a line.")
+            seen.update(part for part in (mode, "" if letter in "GM" else letter) if part)
         return found
 
     def _mode(self, value: float, word: str, motion: float | None) -> float | None:
         """Take a G word; the motion of the line."""
         if value in _MOTIONS:
-            if motion is not None:
-                raise self._error(f"{word} is a second move in a line", "Write one move in a line.")
             return value
         if value in (20, 21):
             scale = _INCH if value == 20 else 1.0
@@ -184,7 +194,7 @@ class _LaserHead:
 
     def _laser(self, value: float, word: str) -> None:
         """Take an M word."""
-        if value in (3, 4, 5):
+        if value in _LASER:
             self._on = value != 5
         elif value not in _IDLE["M"]:
             raise self._error(f"{word} is not understood")
