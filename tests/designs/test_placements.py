@@ -180,9 +180,11 @@ def test_art_is_mirrored_as_strokes_are(tmp_path: Path) -> None:
     product = tiling.make(vt.Job())
     (engraved,) = (layer for layer in product.drawing.layers if layer.work == "engrave")
     drawn = np.append(engraved.paths.start, engraved.paths.end[-1])
-    # The page's corner is where the outline's box begins.
-    left, bottom, _, _ = tiling[0].outline.bounds
-    expected = image(matrix({"scale": 1.5}) @ matrix(placed), POINTS) - (left, bottom)
+    # The outline's box lies in the middle of the page.
+    left, bottom, right, top = tiling[0].outline.bounds
+    page = product.drawing
+    corner = ((left + right - page.width) / 2, (bottom + top - page.height) / 2)
+    expected = image(matrix({"scale": 1.5}) @ matrix(placed), POINTS) - corner
     assert np.abs(plane(drawn) - expected).max() < 1e-6
     art = tiling.template(tmp_path / "page.svg")
     laid = vt.Site([vt.polyline(POINTS)], name="bird", art=art, **placed)

@@ -14,7 +14,7 @@ from helpers.outlines import RIGHT
 
 from voronoi_tiles.base.maps import Isometry
 from voronoi_tiles.fabrication.exact import exact_drawing
-from voronoi_tiles.formats.page import page_length
+from voronoi_tiles.formats.page import fitting_page
 from voronoi_tiles.formats.svg.path_text import decimal_text, path_data
 from voronoi_tiles.formats.svg.writer import write_svg
 from voronoi_tiles.pictures.notebook import tiling_picture
@@ -117,16 +117,21 @@ def test_random_numbers_read_back_as_the_same_float() -> None:
     [
         (60.0, "60"),
         (60.000000000000014, "60"),
-        (33.46892311, "33.469"),
-        (1234567.2, "1234570"),
-        (0.00012345678, "0.000123457"),
-        (100.0, "100"),
-        (0.5, "0.5"),
+        (59.99999999999999, "60"),
+        (33.46892311, "33.5"),
+        (33.5, "33.5"),
+        (0.3, "0.3"),
+        (1234567.21, "1234567.3"),
+        (0.00012345678, "0.00013"),
     ],
 )
-def test_page_lengths_are_rounded_up_to_six_digits(length: float, text: str) -> None:
-    """The page is a short decimal that holds the tiles."""
-    assert decimal_text(page_length(length)) == text
+def test_pages_are_tenths_of_a_millimetre_with_the_tiles_in_the_middle(length: float, text: str) -> None:
+    """Short decimals, the smallest that hold the tiles; as much is free on the left as on the right."""
+    for low in (0.0, -17.3, 1000.1):
+        width, height, corner = fitting_page(low, 5.0, low + length, 6.0)
+        if low == 0.0:
+            assert (decimal_text(width), height, corner.imag) == (text, 1.0, 5.0)
+        assert corner.real + width / 2 == pytest.approx(low + length / 2, abs=1e-9)
 
 
 @pytest.mark.parametrize("unit_mm", [1.0, 10.0, 25.4])

@@ -10,7 +10,7 @@ import numpy as np
 from voronoi_tiles.base.arrays import offsets_of
 from voronoi_tiles.base.version import __version__
 from voronoi_tiles.designs.design import Design
-from voronoi_tiles.formats.page import Drawing, Layer, page_length
+from voronoi_tiles.formats.page import Drawing, Layer, fitting_page
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.vector.outline import Outline
 
@@ -27,21 +27,20 @@ def design_recipe(design: Design) -> dict[str, str]:
 def exact_drawing(tiles: Sequence[tuple[str, Outline]], unit_mm: float, recipe: Mapping[str, str]) -> Drawing:
     """Draw the named outlines of tiles, in units of `unit_mm` millimetres, one object each.
 
-    The page is the tiles' bounding box, rounded up to six digits. Its upper left corner is at 0: then a file
+    The page is the smallest of short sides, with the tiles in its middle. Its upper left corner is at 0: then a file
     whose y runs down has differences of the outlines' coordinates, rounded no further where the unit is the millimetre.
     """
     outlines = [outline for _, outline in tiles]
-    bounds = np.array([outline.bounds for outline in outlines])
-    left, bottom = bounds[:, :2].min(axis=0).tolist()
-    right, top = bounds[:, 2:].max(axis=0).tolist()
-    width, height = (page_length(length * unit_mm) for length in (right - left, top - bottom))
+    bounds = np.array([outline.bounds for outline in outlines]) * unit_mm
+    low, high = bounds[:, :2].min(axis=0).tolist(), bounds[:, 2:].max(axis=0).tolist()
+    width, height, corner = fitting_page(*low, *high)
     paths = Paths.concatenate([outline.paths for outline in outlines])
     layer = Layer(
         name=CUT_LAYER,
         work="cut",
         colour=CUT_COLOUR,
         stroke=HAIRLINE_MM,
-        paths=paths.moved(1.0, -complex(left, top)).moved(unit_mm, 0j),
+        paths=paths.moved(1.0, -(corner + 1j * height) / unit_mm).moved(unit_mm, 0j),
         items=offsets_of([len(outline.paths) for outline in outlines]),
         labels=tuple(name for name, _ in tiles),
     )

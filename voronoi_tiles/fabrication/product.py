@@ -34,7 +34,7 @@ from voronoi_tiles.fabrication.sizing import sized
 from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_tiles
 from voronoi_tiles.formats.burns import Burn, Role
 from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
-from voronoi_tiles.formats.page import Drawing, Layer, Work
+from voronoi_tiles.formats.page import Drawing, Layer, Work, fitting_page
 from voronoi_tiles.formats.presets import FORMATS, Format, Preset, load_preset
 from voronoi_tiles.formats.writing import write_drawing
 from voronoi_tiles.groups.periodic_colouring import palette
@@ -370,8 +370,7 @@ def _page(layers: list[Layer], sheet: Sheet, job: Job, design: Design) -> Drawin
     if sheet.region is None:
         boxes = np.array([layer.paths.bounds for layer in layers if len(layer.paths)])
         low, high = boxes[:, :2].min(axis=0) - job.margin, boxes[:, 2:].max(axis=0) + job.margin
-        shift = -complex(*low.tolist())
-        width, height = (high - low).tolist()
-        layers = [replace(layer, paths=layer.paths.moved(1.0, shift)) for layer in layers]
+        width, height, corner = fitting_page(*low.tolist(), *high.tolist())
+        layers = [replace(layer, paths=layer.paths.moved(1.0, -corner)) for layer in layers]
     recipe = {**design_recipe(design), "job": json.dumps(job.recipe(), sort_keys=True)}
     return Drawing(width, height, tuple(layers), f"{design.name} ({design.group.name})", recipe)

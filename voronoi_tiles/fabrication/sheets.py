@@ -10,6 +10,7 @@ from voronoi_tiles.fabrication.layout import Sheet
 from voronoi_tiles.fabrication.region import Region
 from voronoi_tiles.fabrication.sheet_outline import SheetOutline, reason_open, sheet_outline
 from voronoi_tiles.formats.caveats import caveats, unit_caveat
+from voronoi_tiles.formats.page import fitting_page
 from voronoi_tiles.paths.biarcs import to_arcs
 from voronoi_tiles.paths.offset import OffsetError, offset
 from voronoi_tiles.paths.orientation import oriented, simple
@@ -64,12 +65,11 @@ def _drawn_sheet(name: str, job: Job, budget: AccuracyBudget) -> Sheet:
             f"the closed paths of {name} cross or touch themselves or each other",
             remedy="Leave only the sheet's outline and its holes (Path > Union in Inkscape).",
         )
-    low_x, low_y, high_x, high_y = border.bounds
-    page = drawing.width is not None and drawing.height is not None
-    if not page:
-        border = border.moved(1.0, -complex(low_x, low_y))
-    width = float(drawing.width) if drawing.width is not None else high_x - low_x
-    height = float(drawing.height) if drawing.height is not None else high_y - low_y
+    if drawing.width is None or drawing.height is None:
+        width, height, corner = fitting_page(*border.bounds)
+        border = border.moved(1.0, -corner)
+    else:
+        width, height = drawing.width, drawing.height
     margin = job.margin + job.kerf / 2
     if margin > 0.0:
         try:

@@ -73,8 +73,18 @@ class Drawing:
         return replace(self, recipe={**self.recipe, "evidence": json.dumps(evidence, sort_keys=True)})
 
 
-def page_length(length: float) -> float:
-    """A positive length rounded up to six digits; an excess under 1e-12 of it is noise."""
-    step = Decimal(10) ** (math.floor(math.log10(length)) - 5)
-    steps = (Decimal(length) / step - Decimal("1e-6")).to_integral_value(ROUND_CEILING)
+def fitting_page(left: float, bottom: float, right: float, top: float) -> tuple[float, float, complex]:
+    """The sides of a page with a box in its middle, and where its lower left corner lies; millimetres.
+
+    Sides are rounded up to a tenth, or to two digits below a millimetre. Short decimals keep their unit in programs
+    that look for the shortest text: SVGO makes pixels of 44.6331mm, whose size readers do not agree on.
+    """
+    width, height = _short(right - left), _short(top - bottom)
+    return width, height, complex(left + right - width, bottom + top - height) / 2
+
+
+def _short(length: float) -> float:
+    """A positive length rounded up; an excess under 1e-12 of it is noise."""
+    step = Decimal(10) ** min(math.floor(math.log10(length)) - 1, -1)
+    steps = (Decimal(length) * Decimal("0.999999999999") / step).to_integral_value(ROUND_CEILING)
     return float(steps * step)

@@ -9,7 +9,7 @@ import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.designs.design import Design
-from voronoi_tiles.formats.page import page_length
+from voronoi_tiles.formats.page import fitting_page
 from voronoi_tiles.formats.svg.path_text import decimal_text, path_data
 from voronoi_tiles.formats.svg.writer import document_text, new_document
 from voronoi_tiles.groups.periodic_colouring import palette
@@ -32,8 +32,8 @@ class _Canvas:
         margin = size / 50
         self._scale = _SIZE / size
         self._corner = complex(low_x - margin, high_y + margin)
-        sides = (high_x - low_x, high_y - low_y)
-        width, height = (decimal_text(page_length((side + 2 * margin) * self._scale)) for side in sides)
+        sides = ((side + 2 * margin) * self._scale for side in (high_x - low_x, high_y - low_y))
+        width, height = map(decimal_text, fitting_page(0.0, 0.0, *sides)[:2])
         self._drawing = new_document(width, height, f"0 0 {width} {height}")
 
     def outline(self, outline: Outline, fill: str) -> None:
