@@ -31,6 +31,7 @@ from voronoi_tiles.fabrication.job_options import (
     read_size,
     read_text,
 )
+from voronoi_tiles.formats.presets import DxfVersion
 
 __all__ = ["ACCURACY_MM", "LABEL_MIN", "SHEET_MAX", "SHEET_MIN", "Job", "JobError"]
 
@@ -137,6 +138,11 @@ class Job:
     )
     curves: Choice[Curves | None] = choice(
         None, Curves, "Exact curves, circular arcs, cubic splines or chords [default: as the preset says]."
+    )
+    dxf_version: Choice[DxfVersion] = choice(
+        "R2000",
+        DxfVersion,
+        "The version of DXF files; R12 is for the oldest readers, and has arcs or chords, no splines [default: R2000].",
     )
     preset: Option[str | os.PathLike[str], str] = Option(
         "plain",

@@ -35,7 +35,7 @@ from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_tiles
 from voronoi_tiles.formats.burns import Burn, Role
 from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
 from voronoi_tiles.formats.page import Drawing, Layer, Work, fitting_page
-from voronoi_tiles.formats.presets import FORMATS, Format, Preset, load_preset
+from voronoi_tiles.formats.presets import FORMATS, DxfStyle, DxfVersion, Format, Preset, load_preset
 from voronoi_tiles.formats.writing import write_drawing
 from voronoi_tiles.groups.periodic_colouring import palette
 from voronoi_tiles.paths.biarcs import to_arcs
@@ -71,6 +71,8 @@ class Product:
     curves: str
     accuracy: float
     files: tuple[str, ...]
+    dxf_version: DxfVersion
+    spline_edges: bool
     hint: str = ""
 
     def __repr__(self) -> str:
@@ -124,7 +126,8 @@ class Product:
 
     def write(self, file: BinaryIO | RawIOBase) -> None:
         """Write the drawing into a file that is open for bytes."""
-        write_drawing(self.drawing, file, self.form, curves=self.curves, accuracy=self.accuracy)
+        style = DxfStyle(self.dxf_version, self.spline_edges)
+        write_drawing(self.drawing, file, self.form, curves=self.curves, accuracy=self.accuracy, dxf=style)
 
 
 def make(design: Design, tessellation: Tessellation, job: Job, file_format: str = "svg") -> Product:
@@ -254,11 +257,19 @@ class _Plan:
         drawing = _page(layers, layout.sheet, job, layout.design)
         said = (*self.said, *layout.sheet.notes, *layout.tiles.compensation.losses, *engraving.notes)
         more = (*unstroked(self.form, job), *doubled(layout, job), *untabbed(cuts, job))
-        notes = tuple(dict.fromkeys((*said, *more)))
-        files = tuple(files_read(layout.design, job))
-        scheme = None if job.split is None else job.scheme
         return Product(
-            self.form, drawing, pieces, colouring.count, scheme, notes, self.curves, job.accuracy, files, self.hint
+            form=self.form,
+            drawing=drawing,
+            pieces=pieces,
+            colours=colouring.count,
+            scheme=None if job.split is None else job.scheme,
+            notes=tuple(dict.fromkeys((*said, *more))),
+            curves=self.curves,
+            accuracy=job.accuracy,
+            files=tuple(files_read(layout.design, job)),
+            dxf_version=job.dxf_version,
+            spline_edges=False,
+            hint=self.hint,
         )
 
 
@@ -308,6 +319,8 @@ def _curves(job: Job, preset: Preset, form: Format) -> str:
         raise JobError(
             f"G-code has lines and circular arcs, and no `curves='{wanted}'`", remedy="Use polyline, or arc."
         )
+    if form == "dxf" and job.dxf_version == "R12" and wanted == "spline":
+        raise JobError("DXF of the version R12 has no splines", remedy="Use `curves='arc'` or `curves='polyline'`.")
     return wanted
 
 

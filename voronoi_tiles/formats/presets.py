@@ -12,7 +12,7 @@ from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import Any, Final, Literal, TypeVar, cast, get_args
+from typing import Any, Final, Literal, NamedTuple, TypeVar, cast, get_args
 
 from voronoi_tiles.base.documents import parse_document, read_document
 from voronoi_tiles.base.errors import ArgumentError, DesignError
@@ -24,6 +24,7 @@ _Value = TypeVar("_Value")
 
 SvgCurves = Literal["exact", "arc", "cubic", "polyline"]
 DxfCurves = Literal["arc", "spline", "polyline"]
+DxfVersion = Literal["R2000", "R12"]
 
 FORMATS: Final[tuple[Format, ...]] = get_args(Format)
 DEFAULT: Final = "plain"
@@ -53,6 +54,16 @@ _KEYS: Final = (
 )
 _TABLES: Final = ("colours", "layers", "dxf_layers", "curves", "feed", "power")
 _STROKE_MAX: Final = 10.0  # a line of more millimetres hides what it draws
+
+
+class DxfStyle(NamedTuple):
+    """How DXF files are written: their version, and whether each spline is one edge, not a whole contour."""
+
+    version: DxfVersion = "R2000"
+    spline_edges: bool = False
+
+
+USUAL_DXF: Final = DxfStyle()
 
 
 @dataclass(frozen=True)

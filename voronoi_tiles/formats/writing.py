@@ -9,15 +9,21 @@ from typing import BinaryIO, cast, get_args
 from voronoi_tiles.formats.burns import Role
 from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
 from voronoi_tiles.formats.page import Drawing
-from voronoi_tiles.formats.presets import FORMATS, DxfCurves, Format, load_preset
+from voronoi_tiles.formats.presets import FORMATS, USUAL_DXF, DxfCurves, DxfStyle, Format, load_preset
 from voronoi_tiles.paths.conversion import to_cubics
 from voronoi_tiles.paths.paths import ARC
 
 
 def write_drawing(
-    drawing: Drawing, file: BinaryIO | RawIOBase, form: str, *, accuracy: float, curves: str = "arc"
+    drawing: Drawing,
+    file: BinaryIO | RawIOBase,
+    form: str,
+    *,
+    accuracy: float,
+    curves: str = "arc",
+    dxf: DxfStyle = USUAL_DXF,
 ) -> None:
-    """Write a drawing as one of FORMATS; DXF with these curves. Raises ValueError for another format."""
+    """Write a drawing as one of FORMATS; DXF with these curves, in a style. Raises ValueError for another format."""
     # Writers only write, portions of bytes.
     out = cast("BinaryIO", file)
     match form:
@@ -29,7 +35,7 @@ def write_drawing(
             from voronoi_tiles.formats.dxf.writer import write_dxf
 
             assert curves in get_args(DxfCurves)
-            write_dxf(drawing, out, curves=cast("DxfCurves", curves), accuracy=accuracy)
+            write_dxf(drawing, out, curves=cast("DxfCurves", curves), accuracy=accuracy, **dxf._asdict())
         case "pdf":
             from voronoi_tiles.formats.pdf import write_pdf
 

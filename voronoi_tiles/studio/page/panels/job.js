@@ -11,7 +11,7 @@ import { button, deferred, field, inLabels, labelOf, lengthField, make, refill }
 const HEADINGS = [
     ["Sheet", ["sheet", "margin", "fit", "pieces"]],
     ["Cut", ["kerf", "edges", "gap", "tabs", "fillet"]],
-    ["Target", ["preset", "curves", "accuracy", "stroke", "feed", "power"]],
+    ["Target", ["preset", "curves", "accuracy", "dxf_version", "stroke", "feed", "power"]],
     ["Place", ["rotate", "offset", "frame"]],
     ["Engrave", ["labels", "label_height", "art", "marks", "bar"]],
     ["Colours", ["colours", "into", "pack", "stock", "only_colour"]],
