@@ -7,19 +7,25 @@ import re
 from pathlib import Path
 
 import pytest
+from helpers.cutting import squares
 
 from voronoi_tiles import Job, starter
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.formats.burns import ROLES
-from voronoi_tiles.formats.presets import FORMATS, _built_in, load_preset
+from voronoi_tiles.formats.presets import FORMATS, load_preset, preset_names
+
+SQUARES = squares()
 
 
 def test_the_presets_are_there() -> None:
     """By their names, the neutral one first."""
-    assert tuple(_built_in()) == ("plain", "lightburn", "redcut", "ponoko", "boxes", "glowforge", "cnc")
+    cutters = ("lightburn", "redcut", "ponoko", "boxes", "glowforge", "cnc", "meerk40t")
+    others = ("inkscape", "blender", "openscad", "freecad", "cadquery", "build123d", "jscad", "trimesh")
+    assert preset_names() == ("plain", *cutters, *others)
+    assert ", ".join(preset_names()) in Job.options()["preset"].help
 
 
-@pytest.mark.parametrize("name", _built_in())
+@pytest.mark.parametrize("name", preset_names())
 def test_every_preset_is_whole(name: str) -> None:
     """Colours and names for every role; what is read instead of an unread format is read."""
     preset = load_preset(name)
@@ -119,6 +125,12 @@ def test_an_unknown_name_is_refused(name: str) -> None:
         ("layers.cut = 3", "layers.cut", "must be a text"),
         ('unread = { dxf = "dxf" }', "unread.dxf", "must not be 'dxf'"),
         ('unread = { dwg = "dxf" }', "unread", "unknown key 'dwg'"),
+        ('contours = "closd"', "contours", 'Did you mean "closed"'),
+        ('solid = "no"', "solid", "must be true or false"),
+        ("spline_edges = 1", "spline_edges", "must be true or false"),
+        ('misread = { dxf = "spline" }', "misread.dxf", r"must be an array, not 'spline'\. Write \[\"spline\"\]"),
+        ('misread = { dxf = ["arc", "splin"] }', "misread.dxf[1]", 'Did you mean "spline"'),
+        ('misread = { dwg = ["arc"] }', "misread", "unknown key 'dwg'"),
         ('extends = "lightbrun"', "extends", 'Did you mean "lightburn"'),
         ("extends = 1", "extends", "must be a text"),
         ("stroke = ", None, "line 1: not TOML: invalid value at the end"),
@@ -149,17 +161,18 @@ def test_files_that_cannot_be_read(tmp_path: Path) -> None:
         load_preset(str(file))
 
 
-@pytest.mark.parametrize("name", _built_in())
+@pytest.mark.parametrize("name", preset_names())
 def test_lines_are_as_wide_as_asked_for_or_as_the_preset_says(name: str) -> None:
     """In SVG, all layers alike; a wider kerf changes nothing then."""
-    tiles = starter("p4").tessellate()
     own = load_preset(name).stroke_width(0.2)
     for stroke, kerf, wanted in ((None, 0.2, own), ("0.3mm", 0.2, 0.3), (0.05, 0.0, 0.05)):
-        product = tiles.make(Job(preset=name, stroke=stroke, kerf=kerf, bar=True))
+        form = load_preset(name).first_format
+        product = SQUARES.make(Job(preset=name, stroke=stroke, kerf=kerf, bar=True), form)
         assert {layer.stroke for layer in product.drawing.layers} == {wanted}
-        file = io.BytesIO()
-        product.write(file)
-        assert set(re.findall(rb'stroke-width="([^"]*)"', file.getvalue())) == {f"{wanted:g}".encode()}
+        if form == "svg":
+            file = io.BytesIO()
+            product.write(file)
+            assert set(re.findall(rb'stroke-width="([^"]*)"', file.getvalue())) == {f"{wanted:g}".encode()}
 
 
 def test_where_files_have_no_widths_it_is_said() -> None:

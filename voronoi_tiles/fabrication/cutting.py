@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools
+from voronoi_tiles.base.arrays import Bools, Ints, offsets_of, ranges
 from voronoi_tiles.fabrication.clipping import OUTSIDE, Strands
 from voronoi_tiles.fabrication.edge_tabs import bridged
 from voronoi_tiles.fabrication.job import Job, JobError
@@ -23,12 +23,16 @@ from voronoi_tiles.paths.paths import Paths
 
 @dataclass(frozen=True, eq=False)
 class Cut:
-    """The cuts of one layer: `suffix` is added to the name of its role; `colour` is a number of the palette."""
+    """The cuts of one layer: `suffix` is added to the name of its role; `colour` is a number of the palette.
+
+    With `items` the paths from items[k] up to items[k + 1] are the outlines of a shape that is to be filled.
+    """
 
     role: Role
     suffix: str
     colour: int | None
     paths: Paths
+    items: Ints | None = None
 
 
 def cut_once(layout: Layout, job: Job) -> Paths:
@@ -82,17 +86,35 @@ def cut_pieces(contours: Contours, colouring: TileColouring, job: Job) -> list[C
     of = np.repeat(np.arange(len(contours.copy)), np.diff(contours.items))
     colour = colouring.of_copies(contours.copy)
     cuts = []
-    groups: Sequence[int | None] = sorted(set(colour.tolist())) if job.split == "layers" else [None]
     roles: tuple[tuple[Role, Bools], ...] = (("inner", ~outer), ("cut", outer))
     for role, chosen in roles:
-        for group in groups:
-            picked = np.flatnonzero(chosen if group is None else chosen & (colour[of] == group))
+        for group, suffix, in_group in _groups(colour, job):
+            picked = np.flatnonzero(chosen & in_group[of])
             if not len(picked):
                 continue
             paths = toured(contours.paths.take(picked))
             if job.tabs > 0.0:
                 # The beam takes half a kerf from either end of a bridge.
                 paths = _tabbed(paths, job.tabs + job.kerf)
-            suffix = "" if group is None else f"-{group + 1}" if group >= 0 else "-frame"
             cuts.append(Cut(role, suffix, group, paths))
     return cuts
+
+
+def cut_shapes(contours: Contours, colouring: TileColouring, job: Job) -> list[Cut]:
+    """The pieces as shapes, each with its holes, each colour on its own."""
+    cuts = []
+    for group, suffix, in_group in _groups(colouring.of_copies(contours.copy), job):
+        picked = np.flatnonzero(in_group)
+        counts = np.diff(contours.items)[picked]
+        paths = contours.paths.take(ranges(contours.items[picked], counts))
+        cuts.append(Cut("cut", suffix, group, paths, offsets_of(counts)))
+    return cuts
+
+
+def _groups(colour: Ints, job: Job) -> Iterator[tuple[int | None, str, Bools]]:
+    """What goes on a layer of its own: a colour, the end of the layer's name, and which pieces have it."""
+    if job.split != "layers":
+        yield None, "", np.ones(len(colour), np.bool_)
+        return
+    for group in np.unique(colour).tolist():
+        yield group, f"-{group + 1}" if group >= 0 else "-frame", colour == group

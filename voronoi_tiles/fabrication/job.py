@@ -147,8 +147,8 @@ class Job:
     preset: Option[str | os.PathLike[str], str] = Option(
         "plain",
         read_text,
-        "Colours, layers and curves for a target: plain, lightburn, redcut, ponoko, boxes, glowforge, cnc, or a .toml "
-        "file [default: plain].",
+        "Colours, layers and curves for a target: plain, lightburn, redcut, ponoko, boxes, glowforge, cnc, meerk40t, "
+        "inkscape, blender, openscad, freecad, cadquery, build123d, jscad, trimesh, or a .toml file [default: plain].",
         kind="text",
         shown="NAME|FILE",
     )

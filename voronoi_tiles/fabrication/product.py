@@ -20,7 +20,8 @@ from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.arc_fitting import curve_fit
 from voronoi_tiles.fabrication.artwork import Works
-from voronoi_tiles.fabrication.cutting import Cut, cut_once, cut_pieces, toured
+from voronoi_tiles.fabrication.cutting import Cut, cut_once, cut_pieces, cut_shapes, toured
+from voronoi_tiles.fabrication.demands import as_demanded, refuse_misread
 from voronoi_tiles.fabrication.engraving import engrave
 from voronoi_tiles.fabrication.exact import design_recipe
 from voronoi_tiles.fabrication.gap_hint import smaller_gap
@@ -164,7 +165,7 @@ def make_reported(design: Design, tessellation: Tessellation, job: Job) -> tuple
 
     The rows, in the types of JSON, have "colour", "pieces", "sheets" and "share". Raises what `make` does.
     """
-    plan = _Plan.of(design, tessellation, job, "svg")
+    plan = _Plan.of(design, tessellation, job, load_preset(job.preset).first_format)
     job = plan.layout.job
     if job.split != "files":
         return plan.product(job), []
@@ -199,6 +200,7 @@ class _Plan:
         """Lay out the tiles, of a design or on a sheet that is found for a number of pieces."""
         preset = load_preset(job.preset)
         preset.require(form)
+        job = as_demanded(job, preset)
         curves = _curves(job, preset, form)
         if form == "gcode":
             preset.burns(["cut"], job.feed, job.power)  # before anything is computed for nothing
@@ -244,7 +246,7 @@ class _Plan:
         layout, colouring, preset = self.layout, self.colouring, self.preset
         if job.cuts_pieces:
             contours = _of_colour(layout.contours, colouring, job)
-            cuts = cut_pieces(contours, colouring, job)
+            cuts = (cut_shapes if self.solid else cut_pieces)(contours, colouring, job)
             pieces = inventory(layout, colouring, contours.copy, contours.area)
         else:
             cuts = [Cut("cut", "", None, cut_once(layout, job))]
@@ -256,7 +258,8 @@ class _Plan:
         layers = _layers(preset, self.form, job, cuts, engraving, _converter(self.curves, layout.budget))
         drawing = _page(layers, layout.sheet, job, layout.design)
         said = (*self.said, *layout.sheet.notes, *layout.tiles.compensation.losses, *engraving.notes)
-        more = (*unstroked(self.form, job), *doubled(layout, job), *untabbed(cuts, job))
+        twice = doubled(layout, job) if preset.contours == "shared" else []  # the others do not cut
+        more = (*unstroked(self.form, job), *twice, *untabbed(cuts, job))
         return Product(
             form=self.form,
             drawing=drawing,
@@ -268,9 +271,14 @@ class _Plan:
             accuracy=job.accuracy,
             files=tuple(files_read(layout.design, job)),
             dxf_version=job.dxf_version,
-            spline_edges=False,
+            spline_edges=preset.spline_edges,
             hint=self.hint,
         )
+
+    @property
+    def solid(self) -> bool:
+        """Whether pieces are filled shapes."""
+        return self.preset.solid and self.form in {"svg", "pdf"}
 
 
 def files_read(design: Design, job: Job | None) -> list[str]:
@@ -319,8 +327,7 @@ def _curves(job: Job, preset: Preset, form: Format) -> str:
         raise JobError(
             f"G-code has lines and circular arcs, and no `curves='{wanted}'`", remedy="Use polyline, or arc."
         )
-    if form == "dxf" and job.dxf_version == "R12" and wanted == "spline":
-        raise JobError("DXF of the version R12 has no splines", remedy="Use `curves='arc'` or `curves='polyline'`.")
+    refuse_misread(job, preset, form, wanted)
     return wanted
 
 
@@ -363,6 +370,8 @@ def _layers(
         layers.append(layer("score", "score", convert(toured(engraving.scored))))
     for cut in cuts:
         plain = layer(cut.role, "cut", convert(cut.paths))
+        if cut.items is not None:
+            plain = replace(plain, items=cut.items, filled=True)
         coloured = cut.colour is not None and cut.colour >= 0 and cut.role == "cut"
         colour = _palette(preset, cut.colour) if cut.colour is not None and coloured else plain.colour
         layers.append(replace(plain, name=plain.name + cut.suffix, colour=colour))
@@ -370,8 +379,10 @@ def _layers(
 
 
 def _palette(preset: Preset, number: int) -> str:
-    """The colour of a layer of cuts; the first is the preset's own."""
+    """The colour of a layer of cuts; the first is the preset's own, and without a palette all are."""
     colours = (preset.colours["cut"], *preset.palette)
+    if not preset.palette:
+        return colours[0]
     if number < len(colours):
         return colours[number]
     return f"#{bytes(palette(number + 1)[number]).hex()}"

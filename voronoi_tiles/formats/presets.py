@@ -25,9 +25,11 @@ _Value = TypeVar("_Value")
 SvgCurves = Literal["exact", "arc", "cubic", "polyline"]
 DxfCurves = Literal["arc", "spline", "polyline"]
 DxfVersion = Literal["R2000", "R12"]
+ContourUse = Literal["shared", "closed", "apart"]
 
 FORMATS: Final[tuple[Format, ...]] = get_args(Format)
 DEFAULT: Final = "plain"
+R12: Final = "R12"
 
 SUFFIXES: Final[Mapping[str, Format]] = {"nc": "gcode"}
 """Other suffixes that files of a format have."""
@@ -46,7 +48,11 @@ _KEYS: Final = (
     "layers",
     "dxf_layers",
     "curves",
+    "spline_edges",
+    "contours",
+    "solid",
     "unread",
+    "misread",
     "fill_engraving",
     "feed",
     "power",
@@ -71,11 +77,15 @@ class Preset:
     """What a fabrication target takes; `title` says in a line which one that is.
 
     `colours` ("#rrggbb"), `layers` and `dxf_layers` (names) have an entry for each of ROLES: cuts around pieces, cuts
-    inside them, scores, engraving. `palette` are the colours of further layers of cuts. `stroke` is the width of lines
-    in millimetres; with `stroke_kerf` a wider kerf takes its place. `svg_curves` and `dxf_curves` say what curves
-    become. `unread` gives, for a format that the target does not read, the one to use instead. With `fill_engraving`
-    the target engraves what is filled. `feed` in mm/min and `power`, up to `power_max`, are for files that drive a
-    laser themselves; they have entries for those of ROLES that the preset knows them for.
+    inside them, scores, engraving. `palette` are the colours of further layers of cuts; where there are none, all have
+    that of cuts. `stroke` is the width of lines in millimetres; with `stroke_kerf` a wider kerf takes its place.
+    `svg_curves` and `dxf_curves` say what curves become; with `spline_edges` each spline of DXF is one edge. `contours`
+    is what the target takes of pieces: "shared", also edges that are cut once; "closed" ones alone; or "apart", since
+    it unites what touches. With `solid` a piece is one filled shape with its holes, where a format fills shapes.
+    `unread` gives, for a format that the target does not read, the one to use instead, `misread` what of a format it
+    gets wrong: curves, and R12. With `fill_engraving` the target engraves what is filled. `feed` in mm/min and `power`,
+    up to `power_max`, are for files that drive a laser themselves; they have entries for those of ROLES that the preset
+    knows them for.
     """
 
     name: str
@@ -88,11 +98,20 @@ class Preset:
     dxf_layers: Mapping[Role, str]
     svg_curves: SvgCurves
     dxf_curves: DxfCurves
+    spline_edges: bool
+    contours: ContourUse
+    solid: bool
     unread: Mapping[Format, Format]
+    misread: Mapping[Format, tuple[str, ...]]
     fill_engraving: bool
     feed: Mapping[Role, float]
     power: Mapping[Role, float]
     power_max: float
+
+    @property
+    def first_format(self) -> Format:
+        """The first of FORMATS that the target reads."""
+        return next(form for form in FORMATS if form not in self.unread)
 
     def stroke_width(self, kerf: float = 0.0) -> float:
         """The width of lines for a kerf; both in millimetres."""
@@ -148,7 +167,7 @@ def load_preset(name_or_path: str) -> Preset:
     """
     if name_or_path.lower().endswith(".toml"):
         return _load_file(name_or_path)
-    return _read(name_or_path, _known(name_or_path, "preset"))
+    return _read(name_or_path, _whole(name_or_path, "preset"))
 
 
 def preset_names() -> tuple[str, ...]:
@@ -158,18 +177,19 @@ def preset_names() -> tuple[str, ...]:
 
 @cache
 def _built_in() -> dict[str, Any]:
-    """The table of presets."""
+    """The table of presets; each has the keys that differ from the one that it extends."""
     from importlib import resources
 
     text = resources.files("voronoi_tiles.formats").joinpath("presets.toml").read_text(encoding="utf-8")
     return tomllib.loads(text)
 
 
-def _known(name: str, key: str) -> Mapping[str, Any]:
-    """The table of one preset; `key` is where its name was written."""
+def _whole(name: str, key: str) -> Mapping[str, Any]:
+    """All keys of one preset, its own and those of the one that it extends; `key` is where its name was written."""
     presets = _built_in()
     if name in presets:
-        return cast("Mapping[str, Any]", presets[name])
+        own = cast("Mapping[str, Any]", presets[name])
+        return own if name == DEFAULT else _merged(_whole(own.get("extends", DEFAULT), "extends"), own)
     listed = f"Presets are {', '.join(presets)}, or the path of a file that ends in .toml."
     raise DesignError(f"unknown preset {shown(name)}", key=key, remedy=suggestion(name, presets) + listed)
 
@@ -184,7 +204,7 @@ def _load_file(path: str) -> Preset:
         text = read_document(path, "preset", missing=f"Check the path, or take one of {', '.join(_built_in())}.")
         own = table(parse_document(text, "toml", remedy=remedy), ("extends", *_KEYS), remedy)
         base = _at("extends", _text, own.get("extends", DEFAULT))
-        return _read(Path(path).stem, _merged(_known(base, "extends"), own))
+        return _read(Path(path).stem, _merged(_whole(base, "extends"), own))
     except DesignError as error:
         raise error.with_file(path) from None
 
@@ -229,7 +249,13 @@ def _read(name: str, values: Mapping[str, Any]) -> Preset:
         dxf_layers=_names(values, "dxf_layers"),
         svg_curves=cast("SvgCurves", svg),
         dxf_curves=cast("DxfCurves", dxf),
+        spline_edges=_at("spline_edges", _flag, values["spline_edges"]),
+        contours=cast(
+            "ContourUse", _at("contours", lambda value: _choice(value, get_args(ContourUse)), values["contours"])
+        ),
+        solid=_at("solid", _flag, values["solid"]),
         unread=_unread(values),
+        misread=_misread(values),
         fill_engraving=_at("fill_engraving", _flag, values["fill_engraving"]),
         feed=_rates(values, "feed"),
         power=_rates(values, "power"),
@@ -274,12 +300,35 @@ def _unread(values: Mapping[str, Any]) -> dict[Format, Format]:
         }
 
 
+def _misread(values: Mapping[str, Any]) -> dict[Format, tuple[str, ...]]:
+    """What of each format is read wrong."""
+    misread = _table(values, "misread", FORMATS)
+    with within("misread"):
+        return {
+            cast("Format", form): _at(form, lambda value: _array(value, _misreading, '["spline"]'), value)
+            for form, value in misread.items()
+        }
+
+
+def _contours(value: object) -> str:
+    return _choice(value, get_args(ContourUse))
+
+
+def _misreading(value: object) -> str:
+    return _choice(value, dict.fromkeys((*get_args(SvgCurves), *get_args(DxfCurves), R12)))
+
+
 def _palette(value: object) -> tuple[str, ...]:
     """A list of colours."""
     with within("palette"):
-        if not isinstance(value, list):
-            raise DesignError(f"must be an array, not {shown(value)}", remedy='Write ["#0000ff", "#00ff00"].')
-        return tuple(each(value, _colour))
+        return _array(value, _colour, '["#0000ff", "#00ff00"]')
+
+
+def _array(value: object, read: Callable[[object], str], example: str) -> tuple[str, ...]:
+    """A list of texts, each as it is read."""
+    if not isinstance(value, list):
+        raise DesignError(f"must be an array, not {shown(value)}", remedy=f"Write {example}.")
+    return tuple(each(value, read))
 
 
 def _colour(value: object) -> str:
