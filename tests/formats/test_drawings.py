@@ -128,11 +128,11 @@ def test_curves_keep_their_kind() -> None:
 
 @pytest.mark.parametrize(("size", "millimetres"), [("96", 25.4), ("96px", 25.4), ("1in", 25.4), ("72pt", 25.4)])
 def test_units(size: str, millimetres: float) -> None:
-    """All units of CSS, and what declares none."""
+    """All units of CSS, and what declares none, or pixels, which other programs take for 1/72 or 1/90 inch."""
     drawing = svg("<path d='M0 0H5V10'/>", f'width="{size}" height="{size}" viewBox="0 0 10 10"')
     assert drawing.width == pytest.approx(millimetres)
     assert drawing.shapes[0].paths.bounds == pytest.approx((0, 0, millimetres / 2, millimetres))
-    assert drawing.unit_known == (size != "96")
+    assert drawing.unit_known == (size not in {"96", "96px"})
 
 
 def test_pages_keep_their_proportions() -> None:

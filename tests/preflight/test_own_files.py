@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
 import pytest
+from helpers.cutting import squares
 from helpers.examples import EXAMPLES, tiling
 
 from voronoi_tiles import Job
@@ -34,7 +36,10 @@ JOBS: dict[str, dict[str, Any]] = {
     },
 }
 
-PRESETS = {"svg": ("lightburn", "redcut", "ponoko", "boxes", "glowforge", "cnc"), "dxf": ("lightburn", "redcut", "cnc")}
+PRESETS = {
+    "svg": ("lightburn", "redcut", "ponoko", "boxes", "glowforge", "cnc", "meerk40t", "inkscape"),
+    "dxf": ("lightburn", "redcut", "cnc"),
+}
 
 
 def serious(name: str, form: str, folder: Path, **job: Any) -> list[str]:
@@ -49,6 +54,15 @@ def serious(name: str, form: str, folder: Path, **job: Any) -> list[str]:
 def test_the_first_sheet_passes(form: str, job: str, tmp_path: Path) -> None:
     """The starter that README begins with, on a sheet with kerf, and with all that can be on one."""
     assert serious("p4", form, tmp_path, **JOBS[job]) == []
+
+
+def test_what_optimisers_make_of_a_size_is_found(tmp_path: Path) -> None:
+    """A page of ours whose size has become pixels, as SVGO writes it, though the file has its recipe yet."""
+    path = tmp_path / "tile.svg"
+    squares().export(path, edges="pieces")
+    assert preflight(path).findings == ()
+    path.write_text(re.sub(r'(width|height)="([\d.]+)mm"', r'\1="\2"', path.read_text()))
+    assert [finding.kind for finding in preflight(path).findings] == ["unit"]
 
 
 @pytest.mark.slow

@@ -267,8 +267,10 @@ def test_layers() -> None:
 
 
 def test_units_and_extents() -> None:
-    """A page without a unit is a warning; DXF has its y up."""
-    assert [f.kind for f in judged("<path d='M1 1h50v50z'/>", 'width="200" height="100"').findings] == ["unit"]
+    """A page without a unit is a warning, and so are pixels; DXF has its y up."""
+    for unit, kinds in (("", ["unit"]), ("px", ["unit"]), ("mm", [])):
+        size = f'width="200{unit}" height="100{unit}"'
+        assert [f.kind for f in judged("<path d='M1 1h50v50z'/>", size).findings] == kinds
     document = ezdxf.new("R2000", units=0)
     document.modelspace().add_lwpolyline([(0, 10), (20, 30), (20, 10), (0, 30)], close=True)
     report = judge(read(written(document)), "t.dxf")

@@ -8,14 +8,17 @@ from voronoi_tiles.formats.shapes import ReadDrawing
 
 
 def unit_caveat(drawing: ReadDrawing) -> str:
-    """A sentence on the unit that was taken where the file declares none, "" where it declares one."""
+    """A sentence on the unit that was taken where the file declares none, or pixels; "" where it declares another."""
     if drawing.unit_known:
         return ""
     if drawing.format == "dxf":
         return drawing.unit_guess
     if drawing.unit in RELATIVE:
         return f"the page's size is in {drawing.unit}, which every program takes for another length"
-    size = "the page has no size" if drawing.width is None else "the page's size has no unit"
+    if drawing.unit == "px":
+        size = "the page's size is in px"
+    else:
+        size = "the page has no size" if drawing.width is None else "the page's size has no unit"
     return f"{size}; 96 user units to the inch were taken, as CSS says, and other programs take 72 or 90"
 
 

@@ -68,8 +68,8 @@ def judge(
     Raises DrawingError for a layer that the drawing has not, and ArgumentError.
     """
     layers = _check(limits, layers)
-    if drawing.job:  # a file of our own is in millimetres, also where its version cannot say so
-        drawing = replace(drawing, unit=drawing.unit or "mm", unit_known=True)
+    if drawing.job and drawing.format == "dxf" and not drawing.unit_known:
+        drawing = replace(drawing, unit="mm", unit_known=True)  # R12 of our own, before it said so
     if limits.tabs is None:
         limits = replace(limits, tabs=tab_width(drawing.job))
     cut = cut_shapes(drawing, layers)

@@ -62,7 +62,7 @@ def read_page(attributes: Mapping[str, str], units: Units, note: Note) -> Page:
         sides.append(value)
         found.append(unit)
     unit = found[0] if found else ""
-    known = all(found) and not {*RELATIVE, "calc()"}.intersection(found)
+    known = all(found) and not {*RELATIVE, "calc()", "px"}.intersection(found)
     known = known and (len(found) == 2 or (len(found) == 1 and box is not None))
     width, height = sides
     if box is not None:
