@@ -182,3 +182,10 @@ def test_where_files_have_no_widths_it_is_said() -> None:
     assert said["svg"] == said["pdf"] == ()
     for form in ("dxf", "lbrn2"):
         assert said[form] == (f"{form} files have no line widths: `stroke` changes nothing",)
+
+
+def test_where_files_have_no_version_of_dxf_it_is_said() -> None:
+    """In all other formats."""
+    job = Job(dxf_version="R12")
+    assert SQUARES.make(job, "dxf").notes == ()
+    assert SQUARES.make(job, "svg").notes == ("svg files are not DXF: `dxf_version` changes nothing",)

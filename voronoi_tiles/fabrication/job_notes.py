@@ -23,11 +23,14 @@ def untabbed(cuts: list[Cut], job: Job) -> list[str]:
     return [f"{counted(small, 'contour')} {are} too short for tabs of {job.tabs:g} mm, and {fall} out"]
 
 
-def unstroked(form: Format, job: Job) -> list[str]:
-    """Say that a format has no widths of lines, where one is asked for."""
-    return (
-        [f"{form} files have no line widths: `stroke` changes nothing"] if job.stroke and form not in _STROKED else []
-    )
+def without_effect(form: Format, job: Job) -> list[str]:
+    """Say that a format has no widths of lines, or no version of DXF, where one is asked for."""
+    said = []
+    if job.stroke and form not in _STROKED:
+        said.append(f"{form} files have no line widths: `stroke` changes nothing")
+    if job.dxf_version != "R2000" and form != "dxf":
+        said.append(f"{form} files are not DXF: `dxf_version` changes nothing")
+    return said
 
 
 def doubled(layout: Layout, job: Job) -> list[str]:

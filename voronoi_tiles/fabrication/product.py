@@ -27,7 +27,7 @@ from voronoi_tiles.fabrication.exact import design_recipe
 from voronoi_tiles.fabrication.gap_hint import smaller_gap
 from voronoi_tiles.fabrication.inventory import Inventory, cut_free, inventory
 from voronoi_tiles.fabrication.job import Job, JobError
-from voronoi_tiles.fabrication.job_notes import doubled, unstroked, untabbed
+from voronoi_tiles.fabrication.job_notes import doubled, untabbed, without_effect
 from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, Sheet, lay_out
 from voronoi_tiles.fabrication.packed_sheets import pack_colours
 from voronoi_tiles.fabrication.sheets import read_sheet
@@ -259,7 +259,7 @@ class _Plan:
         drawing = _page(layers, layout.sheet, job, layout.design)
         said = (*self.said, *layout.sheet.notes, *layout.tiles.compensation.losses, *engraving.notes)
         twice = doubled(layout, job) if preset.contours == "shared" else []  # the others do not cut
-        more = (*unstroked(self.form, job), *twice, *untabbed(cuts, job))
+        more = (*without_effect(self.form, job), *twice, *untabbed(cuts, job))
         return Product(
             form=self.form,
             drawing=drawing,
