@@ -38,7 +38,6 @@ from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
 from voronoi_tiles.formats.page import Drawing, Layer, Work, fitting_page
 from voronoi_tiles.formats.presets import FORMATS, DxfStyle, DxfVersion, Format, Preset, load_preset
 from voronoi_tiles.formats.writing import write_drawing
-from voronoi_tiles.groups.periodic_colouring import palette
 from voronoi_tiles.paths.biarcs import to_arcs
 from voronoi_tiles.paths.conversion import to_cubics, to_lines
 from voronoi_tiles.paths.paths import Paths
@@ -373,19 +372,9 @@ def _layers(
         if cut.items is not None:
             plain = replace(plain, items=cut.items, filled=True)
         coloured = cut.colour is not None and cut.colour >= 0 and cut.role == "cut"
-        colour = _palette(preset, cut.colour) if cut.colour is not None and coloured else plain.colour
+        colour = preset.cut_colour(cut.colour) if cut.colour is not None and coloured else plain.colour
         layers.append(replace(plain, name=plain.name + cut.suffix, colour=colour))
     return layers
-
-
-def _palette(preset: Preset, number: int) -> str:
-    """The colour of a layer of cuts; the first is the preset's own, and without a palette all are."""
-    colours = (preset.colours["cut"], *preset.palette)
-    if not preset.palette:
-        return colours[0]
-    if number < len(colours):
-        return colours[number]
-    return f"#{bytes(palette(number + 1)[number]).hex()}"
 
 
 def _page(layers: list[Layer], sheet: Sheet, job: Job, design: Design) -> Drawing:

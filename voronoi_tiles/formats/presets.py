@@ -117,6 +117,15 @@ class Preset:
         """The width of lines for a kerf; both in millimetres."""
         return max(self.stroke, kerf) if self.stroke_kerf else self.stroke
 
+    def cut_colour(self, number: int) -> str:
+        """The colour of a layer of cuts, "#rrggbb": that of the first is for all where there is no palette."""
+        colours = (self.colours["cut"], *self.palette)
+        if number < len(colours) or not self.palette:
+            return colours[min(number, len(colours) - 1)]
+        from voronoi_tiles.groups.periodic_colouring import palette
+
+        return f"#{bytes(palette(number + 1)[number]).hex()}"
+
     def layer_name(self, role: Role, form: Format) -> str:
         """What a layer is called in a format."""
         return self.dxf_layers[role] if form == "dxf" else self.layers[role]
