@@ -256,7 +256,7 @@ def test_without_webgl(chromium: Any, studio: Studio, how: str) -> None:
             window.begin(design_of([WING]))
             assert page.locator("#picture").is_hidden()
             seen = (
-                "([x, y]) => [...document.getElementById('overlay').getContext('2d')"
+                "([x, y]) => [...document.getElementById('outlines').getContext('2d')"
                 ".getImageData(x, y, 1, 1).data].join()"
             )
             box = page.locator("#overlay").bounding_box()

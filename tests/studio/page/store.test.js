@@ -7,8 +7,18 @@ import { NOTHING, Store } from "../../../voronoi_tiles/studio/page/store.js";
 
 const DESIGN = { schema: 1, group: "p4", cell: { a: 60 }, site: [{ strokes: [{ point: [1, 2] }] }] };
 
-/** Whatever runs before the next task has run. */
-const later = (ms = 0) => new Promise((done) => setTimeout(done, ms));
+/**
+ * What lets time pass in a test: what runs meanwhile has run.
+ * @param {import("node:test").TestContext} context
+ */
+function clock({ mock: { timers } }) {
+    timers.enable({ apis: ["setTimeout"] });
+    return async (ms = 0) => {
+        await null;
+        timers.tick(ms);
+        await null;
+    };
+}
 
 /** A store, and what its listeners were told: each revision that they saw. */
 function watched() {
@@ -22,11 +32,12 @@ function watched() {
 /** @param {number} a */
 const wide = (a) => (design) => ({ ...design, cell: { a } });
 
-test("while something is dragged calm listeners are told of the newest a few times a second", async () => {
+test("while something is dragged calm listeners are told of the newest a few times a second", async (context) => {
+    const later = clock(context);
     const { store, told } = watched();
     for (let a = 61; a <= 70; a++) {
         store.preview(wide(a));
-        await later();
+        await later(10);
     }
     assert.deepEqual(told.quick, [60, 61, 62, 63, 64, 65, 66, 67, 68, 69, 70]);
     assert.deepEqual(told.calm, [60]);
@@ -34,7 +45,8 @@ test("while something is dragged calm listeners are told of the newest a few tim
     assert.deepEqual(told.calm, [60, 70]);
 });
 
-test("calm listeners are told at once of what is no drag, and of a drag's end", async () => {
+test("calm listeners are told at once of what is no drag, and of a drag's end", async (context) => {
+    const later = clock(context);
     const { store, told } = watched();
     store.edit("wider", wide(61));
     await later();

@@ -45,6 +45,7 @@ const store = new Store({
     theme: "",
     trace: NO_TRACE,
     connected: true,
+    behind: false,
     dragging: false,
     pointer: null,
     trouble: null,

@@ -46,6 +46,8 @@ const TOO_LARGE = {
     remedy: "Take strokes out, or cut it by the command line.",
 };
 const REST_MS = 60;
+/** For how long outlines may stay away until they are said to be behind what is drawn. */
+const BEHIND_MS = 100;
 /** After this long an answer is no longer waited for. */
 const ANSWER_MS = 1000;
 const JOB_MS = 150;
@@ -59,6 +61,9 @@ export class Link {
     #tries = 0;
     #rest = 0;
     #jobTimer = 0;
+    #late = 0;
+    /** @type {Outline | null} the last outlines that came */
+    #newest = null;
     #sent = { revision: -1, rest: false };
     /** @type {{rev: number, at: number} | null} what was sent while it was dragged, and has no answer yet */
     #asked = null;
@@ -80,6 +85,7 @@ export class Link {
         this.#store = store;
         store.subscribe(["revision", "dragging"], () => this.#schedule());
         store.subscribe(["job"], () => this.#scheduleJob());
+        store.subscribe(["revision", "exact"], () => this.#follow());
     }
 
     /** Call a function with every message of a type. @param {string} type @param {(message: any) => void} tell */
@@ -182,6 +188,21 @@ export class Link {
         clearTimeout(this.#rest);
         this.#rest = window.setTimeout(() => this.#send(true), REST_MS);
         this.#scheduleJob();
+    }
+
+    /** See whether outlines follow what is drawn: for a while after each, and after the first change without them. */
+    #follow() {
+        const { exact, revision } = this.#store.state;
+        const isCurrent = exact?.rev === revision;
+        if (isCurrent || exact !== this.#newest) {
+            clearTimeout(this.#late);
+            this.#late = 0;
+            this.#newest = exact;
+            this.#store.set({ behind: false });
+        }
+        if (!isCurrent) {
+            this.#late ||= window.setTimeout(() => this.#store.set({ behind: true }), BEHIND_MS);
+        }
     }
 
     /** @param {boolean} rest whether the pointer rests: the answer is to be proved, at full tolerance */

@@ -33,6 +33,7 @@ import { UNLAID } from "./model/tracing.js";
  * @property {import("./tools/letters.js").Letters} letters of tools, where the user has given them others
  * @property {Trace} trace a picture that is traced
  * @property {boolean} connected
+ * @property {boolean} behind whether the exact outlines do not follow what is drawn, or not closely
  * @property {boolean} dragging whether `design` is still in the hand
  * @property {readonly [number, number] | null} pointer where in the drawing it is
  * @property {Trouble | null} trouble what else there is to say, until it is closed; where quiet, until the next change

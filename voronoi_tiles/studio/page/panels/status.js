@@ -7,18 +7,15 @@ import { shownFactor } from "../store.js";
 import { stepIn } from "../tools/trace.js";
 import { button, byId, make } from "./elements.js";
 
-/** Of outlines that are this many changes behind while something is dragged, the page says so. */
-const BEHIND = 8;
-
 /** @param {import("../store.js").State} state @returns {[string, string]} */
-function proofOf({ exact, refusal, revision, connected, dragging }) {
+function proofOf({ exact, refusal, revision, connected, behind, dragging }) {
     if (!connected) {
         return ["behind", "no connection"];
     }
     if (refusal) {
         return ["refused", "no tile"];
     }
-    if (!exact || exact.rev < revision - (dragging ? BEHIND : 0)) {
+    if (!exact || (exact.rev < revision && (behind || !dragging))) {
         return ["behind", "exact tile follows"];
     }
     return exact.proved ? ["proved", "proved"] : ["proving", "exact, proof follows"];
@@ -51,17 +48,21 @@ export function showStatus(store) {
         document.title = `${saved ? "" : "* "}${file || "studio"} - voronoi_tiles`;
     });
 
-    store.subscribe(["revision", "dragging", "trace"], ({ trace: { moves } }) => {
-        for (const [command, can] of /** @type {const} */ ([
-            ["undo", store.canUndo || (moves && stepIn(store, "past"))],
-            ["redo", store.canRedo || (moves && stepIn(store, "future"))],
-        ])) {
-            /** @type {HTMLButtonElement} */ (document.querySelector(`[data-command=${command}]`)).disabled = !can;
-        }
-    });
+    store.subscribe(
+        ["revision", "dragging", "trace"],
+        ({ trace: { moves } }) => {
+            for (const [command, can] of /** @type {const} */ ([
+                ["undo", store.canUndo || (moves && stepIn(store, "past"))],
+                ["redo", store.canRedo || (moves && stepIn(store, "future"))],
+            ])) {
+                /** @type {HTMLButtonElement} */ (document.querySelector(`[data-command=${command}]`)).disabled = !can;
+            }
+        },
+        { calm: true },
+    );
 
     store.subscribe(
-        ["exact", "refusal", "revision", "connected", "dragging"],
+        ["exact", "refusal", "revision", "connected", "behind", "dragging"],
         (state) => {
             const [name, text] = proofOf(state);
             byId("exact").dataset.state = name;

@@ -104,18 +104,20 @@ export class Outlines {
 }
 
 /**
- * Fill copies with their colours. The context's transform and styles are as before.
+ * Fill the window with the colours of copies, all of which cover it: that of one is everywhere where no other is. The
+ * context's transform and styles are as before.
  * @param {CanvasRenderingContext2D} context
  * @param {Camera} camera
  * @param {Copies} copies
  * @param {Style} style
  */
-export function fillCopies(context, { ratio }, { parts }, { dark = false }) {
+export function fillCopies(context, { ratio, size }, { parts }, { dark = false }) {
     context.save();
     context.setTransform(ratio, 0, 0, ratio, 0, 0);
-    for (const [colour, part] of parts) {
+    for (const [k, [colour, part]] of [...parts].entries()) {
         context.fillStyle = css(tileColour(colour, dark));
-        context.fill(part, "evenodd");
+        if (k) context.fill(part, "evenodd");
+        else context.fillRect(0, 0, ...size);
     }
     context.restore();
 }

@@ -16,25 +16,53 @@ import { roundedScale, screenPath } from "./paths.js";
 const COPIES_MAX = 600;
 
 /**
- * A rotation centre of an order, as the International Tables draw it.
- * @param {Context} context
+ * A rotation centre of an order, as the International Tables draw it, added to a path.
+ * @param {Path2D} path
  * @param {Point} at
  * @param {number} order
  */
-function centre(context, [x, y], order) {
+function centre(path, [x, y], order) {
     const r = order === 2 ? 5 : 6;
-    context.beginPath();
     if (order === 2) {
-        context.ellipse(x, y, 3, r, 0, 0, 2 * Math.PI);
+        path.moveTo(x + 3, y);
+        path.ellipse(x, y, 3, r, 0, 0, 2 * Math.PI);
     } else {
         for (let k = 0; k < order; ++k) {
             const turn = (2 * Math.PI * k) / order - Math.PI / 2 + (order === 4 ? Math.PI / 4 : 0);
-            context[k ? "lineTo" : "moveTo"](x + r * Math.cos(turn), y + r * Math.sin(turn));
+            path[k ? "lineTo" : "moveTo"](x + r * Math.cos(turn), y + r * Math.sin(turn));
         }
-        context.closePath();
+        path.closePath();
     }
-    context.fill();
-    context.stroke();
+}
+
+/** @typedef {{centres: Path2D, mirrors: Path2D, glides: Path2D}} Elements paths in the window */
+/** @type {Kept<Elements | null>} the same while strokes are dragged */
+const keptElements = new Kept();
+
+/**
+ * The symmetry elements in the window, null where they are too many.
+ * @param {Hands} hands
+ * @returns {Elements | null}
+ */
+function elementPaths({ store, camera }) {
+    const { design, tables } = store.state;
+    const found = elementsIn(design, tables, camera.box);
+    if (found.mirrors.length + found.glides.length > 400 || found.centres.length > 1500) {
+        return null;
+    }
+    const lines = (/** @type {(readonly [Point, Point])[]} */ pairs) => {
+        const path = new Path2D();
+        for (const [from, to] of pairs) {
+            path.moveTo(...camera.toScreen(from));
+            path.lineTo(...camera.toScreen(to));
+        }
+        return path;
+    };
+    const centres = new Path2D();
+    for (const { at, order } of found.centres) {
+        centre(centres, camera.toScreen(at), order);
+    }
+    return { centres, mirrors: lines(found.mirrors), glides: lines(found.glides) };
 }
 
 /**
@@ -42,11 +70,12 @@ function centre(context, [x, y], order) {
  * @param {Hands} hands
  * @param {ReturnType<typeof colours>} colour
  */
-function symmetry(context, { store, camera }, colour) {
+function symmetry(context, hands, colour) {
+    const { store, camera } = hands;
     const { design, tables, shown } = store.state;
-    const { centres, mirrors, glides } = elementsIn(design, tables, camera.box);
-    const strips = mirrors.length + glides.length;
-    if (strips > 400 || centres.length > 1500) {
+    const { lattice } = hands.symmetry();
+    const elements = keptElements.get([lattice, tables, camera.scale, ...camera.box], () => elementPaths(hands));
+    if (!elements) {
         return;
     }
     if (shown.region) {
@@ -59,25 +88,15 @@ function symmetry(context, { store, camera }, colour) {
     }
     context.strokeStyle = colour.accent;
     context.globalAlpha = 0.75;
-    for (const [lines, dash] of /** @type {[(readonly [Point, Point])[], number[]][]} */ ([
-        [mirrors, []],
-        [glides, [7, 5]],
-    ])) {
-        context.setLineDash(dash);
-        context.beginPath();
-        for (const [from, to] of lines) {
-            context.moveTo(...camera.toScreen(from));
-            context.lineTo(...camera.toScreen(to));
-        }
-        context.stroke();
-    }
+    context.stroke(elements.mirrors);
+    context.setLineDash([7, 5]);
+    context.stroke(elements.glides);
     context.setLineDash([]);
     context.globalAlpha = 1;
     context.fillStyle = colour.accent;
     context.strokeStyle = colour.panel;
-    for (const { at, order } of centres) {
-        centre(context, camera.toScreen(at), order);
-    }
+    context.fill(elements.centres);
+    context.stroke(elements.centres);
 }
 
 /**

@@ -1,9 +1,10 @@
 // @ts-check
-// The drawing's window: the live picture below, the exact outlines and the overlay above it, drawn once a frame at most.
+// The drawing's window: the live picture below, the exact outlines and the overlay above it, each drawn when it changes.
 
 import { Preview, watchSize } from "../gl/preview.js";
 import { boxOf, entriesOf, segmentsOf } from "../scene.js";
 import { isSameStroke } from "../model/design.js";
+import { Kept } from "../model/kept.js";
 import { cosets, latticeOf, motionsOf } from "../model/symmetry.js";
 import { Camera } from "./camera.js";
 import { Outlines, fillCopies, strokeCopies } from "./outlines.js";
@@ -20,14 +21,14 @@ import { drawTrace } from "./trace.js";
 
 /** Outlines that the server makes this fast follow the pointer; milliseconds. */
 const QUICK_MS = 50;
-/** For how long they may be behind; milliseconds. */
-const LATE_MS = 100;
 
 export class Stage {
     camera = new Camera();
     #store;
-    #overlay;
-    #context;
+    /** of the overlay, and of the outlines with the picture to trace below it */
+    #contexts;
+    /** @type {Kept<void>} what the outlines' canvas shows */
+    #drawn = new Kept();
     /** @type {Preview | null} */
     #preview = null;
     #frame = 0;
@@ -43,9 +44,6 @@ export class Stage {
     /** @type {State["exact"]} the outlines that were drawn last */
     shownExact = null;
     #paths = new Outlines();
-    /** when they were last seen to follow; milliseconds */
-    #newest = 0;
-    #late = 0;
     /** @type {any} what the preview has drawn last */
     #previewed = null;
     /** @type {any} the sites that the preview could not draw */
@@ -61,11 +59,15 @@ export class Stage {
      */
     constructor(picture, overlay, store) {
         this.#store = store;
-        this.#overlay = overlay;
+        this.#picture = picture;
+        const outlines = document.createElement("canvas");
+        outlines.id = "outlines";
+        outlines.ariaHidden = "true";
+        overlay.before(outlines);
         // Drawn by the processor: where WebGL is software, Chromium would draw lines by it too, four times slower.
-        this.#context = /** @type {CanvasRenderingContext2D} */ (
-            overlay.getContext("2d", { willReadFrequently: true })
-        );
+        const contextOf = (/** @type {HTMLCanvasElement} */ canvas) =>
+            /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { willReadFrequently: true }));
+        this.#contexts = { overlay: contextOf(overlay), outlines: contextOf(outlines) };
         watchSize(overlay, ({ size, ratio, pixels }) => {
             Object.assign(this.camera, { size, ratio, pixels });
             if (!this.#fitted) {
@@ -74,13 +76,19 @@ export class Stage {
             this.redraw();
         });
         store.subscribe(
-            ["design", "refusal", "selection", "shown", "tables", "theme", "dragging", "trace", "connected"],
+            ["design", "refusal", "selection", "shown", "tables", "theme", "dragging", "trace", "behind"],
             () => this.redraw(),
         );
-        // What has come is drawn at once, for the screen's next picture, unless that is drawn in any case.
-        store.subscribe(["exact"], () => this.#frame || this.#draw());
+        // What has come is drawn at once, for the screen's next picture, unless the other one is drawn then in any case.
+        store.subscribe(["exact"], ({ exact }) => {
+            if (!this.#frame || this.#picture.hidden) {
+                this.#drawTiles();
+            }
+            if (Object.keys(exact?.resolved ?? {}).length) {
+                this.redraw(); // strokes that are files
+            }
+        });
         this.#system.addEventListener("change", () => this.redraw());
-        this.#picture = picture;
     }
 
     #picture;
@@ -156,43 +164,86 @@ export class Stage {
     redraw() {
         this.#frame ||= requestAnimationFrame(() => {
             this.#frame = 0;
-            this.#draw();
+            this.#drawTiles();
+            this.#drawStrokes();
         });
     }
 
-    #draw() {
-        const state = this.#store.state;
-        if (!state.tables || !state.design || !this.hands || !this.toolbox || this.camera.size[0] < 2) {
+    /** Whether there is something to draw, and where. */
+    get #isReady() {
+        return this.#store.state.tables && this.#store.state.design && this.camera.size[0] >= 2;
+    }
+
+    /** Draw the tiles: the live picture, or the exact outlines for it. */
+    #drawTiles() {
+        if (!this.#isReady) {
             return;
         }
-        const { camera } = this;
-        const [width, height] = camera.size.map((side) => Math.round(side * camera.ratio));
-        if (this.#overlay.width !== width || this.#overlay.height !== height) {
-            Object.assign(this.#overlay, { width, height });
-        }
-        const context = this.#context;
-        context.setTransform(1, 0, 0, 1, 0, 0);
-        context.clearRect(0, 0, width, height);
+        const { state } = this.#store;
         const { lattice, motions } = this.symmetry();
         this.#colouring = state.exact?.colouring ?? this.#colouring;
         const hasPicture = state.shown.colours && !this.#outlinesDo(state) && this.#drawPicture(lattice, motions);
-        this.#picture.hidden = !hasPicture;
-        const outlines = this.#outlines(state, state.shown.colours && !hasPicture);
-        if (outlines?.style.fill) {
-            fillCopies(context, camera, outlines.copies, outlines.style);
+        if (this.#picture.hidden === hasPicture) {
+            this.#picture.hidden = !hasPicture;
         }
-        drawTrace(context, camera, state.trace);
-        if (outlines?.style.line) {
-            strokeCopies(context, camera, outlines.copies, outlines.style);
+        this.#drawOutlines(state, state.shown.colours && !hasPicture);
+        this.shownExact = state.exact;
+    }
+
+    /** Draw what lies over the tiles. */
+    #drawStrokes() {
+        if (!this.#isReady || !this.hands || !this.toolbox) {
+            return;
         }
-        const scene = { design: state.design, lattice, motions, entries: this.entries() };
+        const scene = { design: this.#store.state.design, ...this.symmetry(), entries: this.entries() };
         const seen = this.#morph.at(scene, performance.now());
         const hands = { ...this.hands, entries: () => seen.entries };
-        drawOverlay(context, hands, this.toolbox, seen.motions, seen.lattice);
-        this.shownExact = state.exact;
+        drawOverlay(this.#cleared("overlay"), hands, this.toolbox, seen.motions, seen.lattice);
         if (seen.moves) {
             this.redraw();
         }
+    }
+
+    /**
+     * A canvas to draw on, empty, in the size of the window.
+     * @param {"overlay" | "outlines"} which
+     */
+    #cleared(which) {
+        const context = this.#contexts[which];
+        const [width, height] = this.#pixels;
+        if (context.canvas.width !== width || context.canvas.height !== height) {
+            Object.assign(context.canvas, { width, height });
+        }
+        context.setTransform(1, 0, 0, 1, 0, 0);
+        context.clearRect(0, 0, width, height);
+        return context;
+    }
+
+    /** Width and height of the canvases. */
+    get #pixels() {
+        return this.camera.size.map((side) => Math.round(side * this.camera.ratio));
+    }
+
+    /**
+     * Draw the exact outlines and the picture to trace, if they have changed.
+     * @param {State} state
+     * @param {boolean} filled whether the outlines are the picture
+     */
+    #drawOutlines(state, filled) {
+        const { camera } = this;
+        const outlines = this.#outlines(state, filled);
+        const looks = outlines ? Object.values(outlines.style).flat() : [];
+        const causes = [outlines?.copies, ...looks, state.trace, camera.scale, ...camera.centre, ...this.#pixels];
+        this.#drawn.get(causes, () => {
+            const context = this.#cleared("outlines");
+            if (outlines?.style.fill) {
+                fillCopies(context, camera, outlines.copies, outlines.style);
+            }
+            drawTrace(context, camera, state.trace);
+            if (outlines?.style.line) {
+                strokeCopies(context, camera, outlines.copies, outlines.style);
+            }
+        });
     }
 
     /**
@@ -200,18 +251,13 @@ export class Stage {
      * the processor that makes them would draw the other picture as well, several times slower.
      * @param {State} state
      */
-    #outlinesDo({ exact, refusal, revision, connected }) {
-        if (!exact || refusal || !this.#preview?.software) {
-            return false;
-        }
-        const now = performance.now();
-        if (exact !== this.shownExact || exact.rev === revision) {
-            this.#newest = now;
-        } else {
-            clearTimeout(this.#late);
-            this.#late = window.setTimeout(() => this.redraw(), LATE_MS);
-        }
-        return exact.rev === revision || (connected && exact.ms < QUICK_MS && now - this.#newest < LATE_MS);
+    #outlinesDo({ exact, refusal, revision, behind }) {
+        return (
+            exact !== null &&
+            !refusal &&
+            Boolean(this.#preview?.software) &&
+            (exact.rev === revision || (!behind && exact.ms < QUICK_MS))
+        );
     }
 
     /**

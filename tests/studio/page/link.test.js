@@ -1,0 +1,44 @@
+/** When outlines that come from the server are behind what is drawn. */
+
+import assert from "node:assert/strict";
+import { test } from "node:test";
+
+import { Link } from "../../../voronoi_tiles/studio/page/link.js";
+import { Store } from "../../../voronoi_tiles/studio/page/store.js";
+
+const DESIGN = { schema: 1, group: "p4", cell: { a: 60 }, site: [{ strokes: [{ point: [1, 2] }] }] };
+
+test("outlines are behind when none has come for a while, and not because none was needed", async (context) => {
+    const { timers } = context.mock;
+    timers.enable({ apis: ["setTimeout"] });
+    Object.assign(globalThis, { window: globalThis, WebSocket: { OPEN: 1 } }); // there is no connection
+    const store = new Store({ design: DESIGN, revision: 0, begun: 0, exact: { rev: 0 }, behind: false });
+    new Link(store);
+    const change = () => store.preview((design) => ({ ...design }));
+    const come = (/** @type {number} */ rev) => store.set({ exact: { rev } });
+    /** Whether they are behind after so many milliseconds. */
+    const after = async (/** @type {number} */ ms) => {
+        await null;
+        timers.tick(ms);
+        await null;
+        await null;
+        return store.state.behind;
+    };
+
+    assert.equal(await after(5000), false);
+    change();
+    assert.equal(await after(90), false);
+    assert.equal(await after(10), true);
+    change();
+    assert.equal(await after(0), true);
+    come(2);
+    assert.equal(await after(5000), false);
+    change();
+    for (let rev = 3; rev < 10; rev++) {
+        change(); // there is always something that they do not show
+        assert.equal(await after(90), false);
+        come(rev);
+    }
+    assert.equal(await after(90), false);
+    assert.equal(await after(10), true);
+});
