@@ -107,6 +107,52 @@ def test_the_newest_wins() -> None:
     in_lane(story)
 
 
+def test_what_is_given_up_is_not_done() -> None:
+    """Whoever does not wait any more has the worker ended that does it, and no other; the next is served."""
+
+    async def story(served: Lane) -> None:
+        before = (await served.ask({"task": "echo"})).head["pid"]
+        spinning = asyncio.create_task(served.ask({"task": "spin"}))
+        waiting = asyncio.create_task(served.ask({"task": "spin"}))
+        asked = asyncio.create_task(served.ask({"task": "echo"}))
+        await asyncio.sleep(0.1)
+        waiting.cancel()
+        await asyncio.sleep(0.1)
+        assert is_alive(before)
+        spinning.cancel()
+        answer = await asyncio.wait_for(asked, 30)
+        assert answer.error is None
+        assert answer.head["pid"] != before
+        assert not is_alive(before)
+
+    in_lane(story, limit_s=60)
+
+
+def test_what_is_replaced_is_done_for_a_while_alone() -> None:
+    """A newer request has the worker ended when the one before takes longer than it may; only for the same slot."""
+
+    async def story(served: Lane) -> None:
+        heard: list[tuple[object, bool]] = []
+        before = (await served.ask({"task": "echo"})).head["pid"]
+
+        async def deliver(answer: Answer) -> None:
+            heard.append((answer.head["said"], is_alive(before)))
+
+        served.put("job", {"task": "nap", "seconds": 0.2, "say": "quick"}, deliver)
+        await asyncio.sleep(0.1)
+        served.put("job", {"task": "nap", "seconds": 1.0, "say": "alone"}, deliver)
+        await asyncio.sleep(0.3)
+        served.put("other", {"task": "echo", "say": "other"}, deliver)
+        await served.ask({"task": "echo"}, urgent=False)
+        served.put("job", {"task": "spin"}, deliver)
+        await asyncio.sleep(0.1)
+        served.put("job", {"task": "echo", "say": "newest"}, deliver)
+        await served.ask({"task": "echo"}, urgent=False)
+        assert heard == [("quick", True), ("alone", True), ("other", True), ("newest", False)]
+
+    in_lane(story, limit_s=60, replaced_s=0.6)
+
+
 @pytest.mark.parametrize(("task", "error"), [("spin", TOO_LONG), ("die", DIED)])
 def test_a_worker_that_does_not_answer_is_replaced(task: str, error: dict[str, str]) -> None:
     """One that takes too long is ended, one that dies is replaced; whoever asked is told, and the next is served."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import http.client
 import json
 import os
 import signal
@@ -235,6 +236,29 @@ def test_what_changed_while_the_page_was_away_is_not_overwritten(studio: Running
         tell(page, "save", rev=1, design={**design, "cell": {"a": 63}})
         assert told(page, "conflict")["design"]["cell"]["a"] == 62
         file.write_text(before, encoding="utf-8")
+
+
+@linux
+def test_an_export_that_is_given_up_is_not_made(tmp_path: Path) -> None:
+    """Who hangs up has the worker ended that makes the file: whatever comes next does not wait for it."""
+    body = json.dumps(
+        {"design": tomllib.loads(starter_text("p4")), "job": {"sheet": "2000x2000mm", "kerf": 0.15}}
+    ).encode()
+    with running(tmp_path, "bird.toml") as studio:
+        assert studio.ask("/tables.json").status == 200
+        (outliner,) = studio.workers()
+        export = http.client.HTTPConnection("127.0.0.1", studio.port)
+        export.request("POST", "/export", body, studio.ours)
+        end = time.monotonic() + 60
+        while not (found := [pid for pid in studio.workers() if pid != outliner]) and time.monotonic() < end:
+            time.sleep(0.02)
+        (worker,) = found
+        time.sleep(0.3)  # it starts, or has begun
+        assert is_alive(worker)
+        export.close()
+        assert is_gone(worker)
+        assert is_alive(outliner)
+        assert studio.ask("/coupon", method="POST", body=b'{"thickness": "3mm"}').status == 200
 
 
 @linux

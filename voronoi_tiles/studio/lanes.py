@@ -2,7 +2,8 @@
 
 A lane has one worker, which does one thing at a time. What is asked for meanwhile waits in slots, one for each kind of
 work: a newer request takes the slot of an older one, which is never done. So a drag leaves no queue behind it. A worker
-that dies, or takes too long, is replaced, and whoever asked is told.
+that dies, or takes too long, is replaced, and whoever asked is told. One that does what nobody waits for any more is
+replaced, too.
 
 Workers are told over their standard input, and end when it ends: they outlive nobody, however the server dies.
 """
@@ -143,18 +144,30 @@ class _Asked:
     urgent: bool
 
 
+class _Doing(NamedTuple):
+    """What is being done, for which slot, and since when by the clock of the loop; its cancellation ends the worker."""
+
+    slot: object
+    work: asyncio.Future[Answer]
+    begun: float
+
+
 class Lane:
     """A worker with its slots. `run` serves them until it is cancelled.
 
-    An `early` worker is started at once, others when there is something to do.
+    An `early` worker is started at once, others when there is something to do. What a newer request replaces while it
+    is done may take so many seconds, `replaced_s`, after which the worker is ended: more than it takes to start.
     """
 
-    def __init__(self, worker: Worker, *, limit_s: float = SECONDS_MAX, early: bool = False) -> None:
+    def __init__(
+        self, worker: Worker, *, limit_s: float = SECONDS_MAX, replaced_s: float | None = None, early: bool = False
+    ) -> None:
         self.worker = worker
         self._early = early
-        self._limit_s = limit_s
+        self._limit_s, self._replaced_s = limit_s, replaced_s
         self._slots: dict[object, _Asked] = {}
         self._filled = asyncio.Event()
+        self._doing: _Doing | None = None
 
     def put(
         self, slot: object, head: Mapping[str, Any], deliver: Deliver, *, body: bytes = b"", urgent: bool = True
@@ -166,6 +179,9 @@ class Lane:
         self._slots.pop(slot, None)
         self._slots[slot] = _Asked(head, body, deliver, urgent)
         self._filled.set()
+        doing, loop = self._doing, asyncio.get_running_loop()
+        if doing is not None and doing.slot == slot and self._replaced_s is not None:
+            loop.call_at(doing.begun + self._replaced_s, doing.work.cancel)
 
     def forget(self, *slots: object) -> None:
         """Leave undone what waits in some slots."""
@@ -173,7 +189,10 @@ class Lane:
             self._slots.pop(slot, None)
 
     async def ask(self, head: Mapping[str, Any], body: bytes = b"", *, urgent: bool = True) -> Answer:
-        """Have something done that no newer request replaces, and wait for it; refused where too much waits already."""
+        """Have something done that no newer request replaces, and wait for it; refused where too much waits already.
+
+        Where the waiting is cancelled it is not done, or no longer: the worker that does it is ended.
+        """
         if sum(isinstance(slot, asyncio.Future) for slot in self._slots) >= _WAITING_MAX:
             return Answer({}, b"", BUSY)
         done: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
@@ -187,6 +206,8 @@ class Lane:
             return await done
         finally:
             self.forget(done)
+            if self._doing is not None and self._doing.slot is done:
+                self._doing.work.cancel()
 
     async def run(self) -> None:
         """Do what is asked for, one thing after the other, urgent things first and then in the order of asking."""
@@ -201,7 +222,14 @@ class Lane:
                     continue
                 slot = min(self._slots, key=lambda key: not self._slots[key].urgent)
                 asked = self._slots.pop(slot)
-                answer = await self.worker.ask(asked.head, asked.body, self._limit_s)
-                await asked.deliver(answer)
+                work = asyncio.ensure_future(self.worker.ask(asked.head, asked.body, self._limit_s))
+                self._doing = _Doing(slot, work, asyncio.get_running_loop().time())
+                await asyncio.wait((work,))
+                self._doing = None
+                if not work.cancelled():
+                    await asked.deliver(work.result())
         finally:
+            if self._doing is not None:
+                self._doing.work.cancel()
+                await asyncio.wait((self._doing.work,))
             await self.worker.end()

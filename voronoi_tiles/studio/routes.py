@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Callable, Coroutine, Mapping
 from importlib.util import find_spec
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, Final
@@ -64,6 +65,7 @@ _SHADER: Final = "gl/exact.glsl"
 """What the page calls the shader of the raster stage."""
 
 
+_GIVEN_UP: Final = {"message": "This was given up.", "remedy": "Ask for it again."}
 _TOO_LARGE: Final = {"message": "This is too large.", "remedy": "Draw less, or split the file."}
 
 
@@ -147,10 +149,14 @@ class _Routes:
             return _failed(_TOO_LARGE, 413)
         if asked["units"] not in UNIT_MM:
             return _failed({"message": "The units of the design are missing.", "remedy": "Load the page again."}, 422)
-        answer = await self._desk.jobs.ask({"task": "drop", **asked, "folder": self._desk.document.folder}, data)
-        if answer.error is not None:
-            return _failed(answer.error, 422)
-        return Response(answer.body, media_type="application/json")
+
+        async def dropped() -> Response:
+            answer = await self._desk.jobs.ask({"task": "drop", **asked, "folder": self._desk.document.folder}, data)
+            if answer.error is not None:
+                return _failed(answer.error, 422)
+            return Response(answer.body, media_type="application/json")
+
+        return await _unless_given_up(request, dropped())
 
     async def _computed(self, task: str) -> Response:
         """What a worker computes once."""
@@ -162,15 +168,34 @@ class _Routes:
         return self._known[task]
 
 
-async def _answered(request: Request, answer: Callable[[Table], Awaitable[Response]]) -> Response:
+async def _answered(request: Request, answer: Callable[[Table], Coroutine[Any, Any, Response]]) -> Response:
     """The answer to a request whose body is an object of JSON; what goes wrong is said."""
     data = await _body_of(request, MESSAGE_MAX)
     if data is None:
         return _failed(_TOO_LARGE, 413)
     try:
-        return await answer(read_object(data))
+        return await _unless_given_up(request, answer(read_object(data)))
     except Exception as error:  # noqa: BLE001 - whatever it is, the page is told
         return _failed(error_document(error), 422 if isinstance(error, VoronoiTilesError) else 500)
+
+
+async def _unless_given_up(request: Request, answering: Coroutine[Any, Any, Response]) -> Response:
+    """The answer to a request whose body was read; where who asked hangs up, what makes it is cancelled."""
+    answer = asyncio.ensure_future(answering)
+    gone = asyncio.ensure_future(_hung_up(request))
+    try:
+        await asyncio.wait((answer, gone), return_when=asyncio.FIRST_COMPLETED)
+        return answer.result() if answer.done() else _failed(_GIVEN_UP, 499)
+    finally:
+        for task in (answer, gone):
+            task.cancel()
+        await asyncio.gather(answer, gone, return_exceptions=True)
+
+
+async def _hung_up(request: Request) -> None:
+    """Wait until who asked is gone; that the body has ended may be said once more before."""
+    while (await request.receive())["type"] != "http.disconnect":
+        pass
 
 
 async def _body_of(request: Request, most: int) -> bytes | None:

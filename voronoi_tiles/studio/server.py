@@ -28,6 +28,9 @@ _ENDING: Final = ("SIGINT", "SIGTERM", "SIGHUP")
 _GRACE_S: Final = 1
 """How long open connections are waited for at the end; seconds."""
 
+_REPLACED_S: Final = 1.0
+"""How long a report may take that a newer one replaces; seconds. A worker takes half as long to start."""
+
 _LOGGERS: Final = ("uvicorn.error", "websockets", "asyncio")
 """What would print lines that are for programmers."""
 
@@ -77,7 +80,8 @@ async def _serve(
     loop.set_exception_handler(lambda _, context: say(f"Error: {context.get('exception') or context['message']}"))
     for name in _LOGGERS:
         logging.getLogger(name).disabled = True
-    outlines, jobs = Lane(Worker(document.folder), early=True), Lane(Worker(document.folder))
+    outlines = Lane(Worker(document.folder), early=True)
+    jobs = Lane(Worker(document.folder), replaced_s=_REPLACED_S)
     desk = Desk(document, outlines, jobs)
     guard = Guard(application(desk), listener.getsockname()[1])
     server = _Server(
