@@ -106,7 +106,6 @@ def tile_document(tile: TileRecord, group: WallpaperGroup) -> dict[str, Any]:
     return {
         "site": tile.name,
         "path": path_of(outline),
-        "area": outline.area,
         "edges": len(outline),
         "neighbours": len(outline.neighbours),
         "width": right - left,
@@ -124,7 +123,7 @@ def thumbnail_tiles(design: Design) -> list[dict[str, Any]]:
 
 def path_of(outline: Outline) -> str:
     """The rings of an outline as SVG path data in units, y up."""
-    return path_data(outline.paths.moved(1.0, 0j, conj=True))
+    return path_data(outline.paths, top=None)
 
 
 @lru_cache(maxsize=1024)

@@ -34,14 +34,15 @@ def decimal_text(value: float) -> str:
     return text.removesuffix(".0")
 
 
-def path_data(paths: Paths, *, top: float = 0.0, number: Callable[[float], str] = decimal_text) -> str:
+def path_data(paths: Paths, *, top: float | None = 0.0, number: Callable[[float], str] = decimal_text) -> str:
     """Write paths as one text: M, L, Q, C, A and Z.
 
-    y is turned about `top`, the ordinate that becomes SVG's 0. `number` writes a coordinate; by default it reads back
-    as the same float. A last straight segment of a closed path is drawn by Z.
+    y is turned about `top`, the ordinate that becomes SVG's 0; None, of paths without ARCs alone, leaves it running up.
+    `number` writes a coordinate; by default it reads back as the same float. A last straight segment of a closed path
+    is drawn by Z.
     """
     points = np.column_stack((paths.start, paths.control, paths.end))
-    x, y = points.real.tolist(), (top - points.imag).tolist()
+    x, y = points.real.tolist(), (points.imag if top is None else top - points.imag).tolist()
 
     def point(k: int, column: int) -> str:
         """The start, one of both controls or the end of a segment: columns 0 to 3."""

@@ -8,7 +8,6 @@
  * @typedef {object} Tile a tile as the server has computed it; lengths in the design's units, after its scale
  * @property {string} site
  * @property {string} path SVG path data of its rings, y up
- * @property {number} area
  * @property {number} edges
  * @property {number} neighbours
  * @property {number} width
