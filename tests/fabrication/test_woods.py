@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -12,12 +13,14 @@ from helpers.examples import tiling
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from voronoi_tiles import DesignError
+from voronoi_tiles import Design, DesignError
+from voronoi_tiles.designs.starters import starter
+from voronoi_tiles.fabrication import tile_colouring
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.product import make_colours
 from voronoi_tiles.fabrication.tile_colouring import colour_tiles
-from voronoi_tiles.groups.periodic_colouring import palette
+from voronoi_tiles.groups.periodic_colouring import colour_pairs, palette
 
 NAMES = [
     "p1-heron",
@@ -75,6 +78,19 @@ def test_colours_are_balanced_or_too_few(name: str, colours: int) -> None:
     # Where a site's tile meets all others of a site they cannot be equal: p4m's squares and octagons in three colours.
     uneven = 0.25 if (name, colours) == ("p4m-rosette", 3) else 1 / 16
     assert counts.max() - counts.min() <= uneven * counts.sum()
+
+
+def test_the_fewest_colours_are_found_once_for_the_same_neighbours(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A design that is changed a little has the colours that it had, without another search."""
+    monkeypatch.setattr(tile_colouring, "colour_pairs", calls := Mock(wraps=colour_pairs))
+    tile_colouring._fewest.cache_clear()
+    design = starter("p6").to_dict()
+    wide = {**design, "cell": {"a": 1.01 * design["cell"]["a"]}}
+    one, two = (
+        colour_tiles(Design.from_dict(table).tessellate().tessellation, "fewest").colour for table in (design, wide)
+    )
+    assert calls.call_count == 1
+    assert np.array_equal(one, two)
 
 
 def kinds(name: str, scheme: str, copy: Copy) -> Any:

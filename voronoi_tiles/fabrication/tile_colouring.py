@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final
 
 import numpy as np
@@ -56,7 +57,7 @@ def colour_tiles(tessellation: Tessellation, scheme: str | int, period: Period |
     match scheme:
         case "fewest" | int():
             pairs = neighbour_pairs(period)
-            fewest = _fewest(pairs, len(period.site))
+            fewest = _fewest(tuple(map(tuple, pairs.tolist())), len(period.site))
             return fewest if isinstance(scheme, str) else _so_many(pairs, fewest, scheme)
         case "site":
             kinds = period.site.tolist()
@@ -92,16 +93,23 @@ def _so_many(pairs: Ints, fewest: PeriodicColouring, colours: int) -> PeriodicCo
     return found
 
 
-def _fewest(pairs: Ints, tiles: int) -> PeriodicColouring:
-    """The colouring with the fewest colours that repeat within four by four cells."""
+@lru_cache(maxsize=8)
+def _fewest(pairs: tuple[tuple[int, ...], ...], tiles: int) -> PeriodicColouring:
+    """The colouring with the fewest colours that repeat within four by four cells.
+
+    The last ones are kept: neighbours mostly stay neighbours when a design is changed a little. Pairs are rows
+    (p, q, i, j).
+    """
     # Two tiles that share an edge with each other and with a third need three colours.
-    here = {(p, q, i, j) for p, q, i, j in pairs.tolist()} | {(q, p, -i, -j) for p, q, i, j in pairs.tolist()}
+    here = {(p, q, i, j) for p, q, i, j in pairs} | {(q, p, -i, -j) for p, q, i, j in pairs}
     beside: dict[int, list[tuple[int, int, int]]] = {}
     for p, q, i, j in here:
         beside.setdefault(p, []).append((q, i, j))
     triangle = any((q, r, k - i, m - j) in here for p in beside for q, i, j in beside[p] for r, k, m in beside[p])
     least = 3 if triangle else 2
-    return colour_pairs(pairs, tiles, least=least, enough=least)
+    found = colour_pairs(np.array(pairs, np.intp).reshape(-1, 4), tiles, least=least, enough=least)
+    found.colour.setflags(write=False)
+    return found
 
 
 def neighbour_pairs(period: Period) -> Ints:
