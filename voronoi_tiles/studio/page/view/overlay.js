@@ -4,6 +4,7 @@
 import { Kept } from "../model/kept.js";
 import { minus, plus } from "../model/plane.js";
 import { isSameNode, isSameStroke } from "../model/design.js";
+import { cartesian } from "../model/lattice.js";
 import { cellsIn, elementsIn, regionOf } from "../model/symmetry.js";
 import { nodeRef, shownNodes } from "../scene.js";
 import { colours, line, path, ring } from "./marks.js";
@@ -137,18 +138,18 @@ const keptCopies = new Kept();
  * @param {import("../model/plane.js").Box} box
  */
 function copiesOf(paths, motions, lattice, box) {
-    const [once, copies] = [new Path2D(), new Path2D()];
+    const [once, cell, copies] = [new Path2D(), new Path2D(), new Path2D()];
     const cells = cellsIn(lattice, box);
     if (cells.length * motions.length > COPIES_MAX) {
         return copies;
     }
     paths.forEach((path) => once.addPath(path));
-    for (const [i, j] of cells) {
-        for (const { a, b, conj } of motions) {
-            const sign = conj ? -1 : 1;
-            const [x, y] = [b[0] + i * lattice.a[0] + j * lattice.b[0], b[1] + i * lattice.a[1] + j * lattice.b[1]];
-            copies.addPath(once, new DOMMatrix([a[0], a[1], -sign * a[1], sign * a[0], x, y]));
-        }
+    for (const { a, b, conj } of motions) {
+        const sign = conj ? -1 : 1;
+        cell.addPath(once, new DOMMatrix([a[0], a[1], -sign * a[1], sign * a[0], ...b]));
+    }
+    for (const at of cells) {
+        copies.addPath(cell, new DOMMatrix([1, 0, 0, 1, ...cartesian(lattice, at)]));
     }
     return copies;
 }
