@@ -104,7 +104,7 @@ def test_filled_shapes_have_their_holes(name: str) -> None:
     for path in paths:
         assert (path.values["fill"], path.values["stroke"]) == ("#000000", "none")
         parts = [
-            shapely.LinearRing([tuple(piece.point(k / 16)) for piece in list(part)[1:] for k in range(16)])
+            shapely.LinearRing([tuple(piece.point(k / 64)) for piece in list(part)[1:] for k in range(64)])
             for part in path.as_subpaths()
         ]
         assert [ring.is_ccw for ring in parts] == [parts[0].is_ccw, *[not parts[0].is_ccw] * (len(parts) - 1)]

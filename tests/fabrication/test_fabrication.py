@@ -134,7 +134,14 @@ def exact_boundary(name: str, size: tuple[float, float]) -> Any:
     return shapely.union_all([copy.shape.boundary for copy in whole(plane(name, *size, 2e-4), *size)])
 
 
-KINDS = {"exact": {LINE, QUAD}, "arc": {LINE, ARC}, "polyline": {LINE}, "spline": {LINE, CUBIC}}
+KINDS = {
+    "exact": {LINE, QUAD},
+    "arc": {LINE, ARC},
+    "cubic": {LINE, CUBIC},
+    "polyline": {LINE},
+    "spline": {LINE, CUBIC},
+}
+FITTED = {"arc", "cubic", "polyline"}
 
 
 @pytest.mark.parametrize("curves", sorted(KINDS))
@@ -150,15 +157,15 @@ def test_curves_are_within_the_accuracy(name: str, edges: str, curves: str) -> N
     for accuracy in (0.02, 0.2):
         paths = cuts(made(name, sheet=size, edges=edges, curves=curves, accuracy=accuracy))
         assert set(paths.kind.tolist()) <= KINDS[curves]
-        bound = (accuracy if curves in {"arc", "polyline"} else 1e-5) + 4e-4
+        bound = (accuracy if curves in FITTED else 1e-5) + 4e-4
         lines = shapely.multilinestrings(lines_of(paths))
         assert farthest(dense(lines, 0.5), exact) <= bound
         assert farthest(dense(exact, 0.5), lines) <= bound
         counts.append(len(paths.start))
-    assert counts[1] < counts[0] if curves in {"arc", "polyline"} else counts[1] == counts[0]
+    assert counts[1] < counts[0] if curves in FITTED else counts[1] == counts[0]
 
 
-@pytest.mark.parametrize("curves", ["arc", "polyline"])
+@pytest.mark.parametrize("curves", ["arc", "cubic", "polyline"])
 def test_a_drawn_border_is_within_the_accuracy(tmp_path: Path, curves: str) -> None:
     """Of the waves that bound a sheet, as they were drawn: the errors of all that is done to them add up to no more."""
     corners = 10 + 10j + 60 * np.array([0, 1, 1 + 1j, 1j])
@@ -206,6 +213,7 @@ def dxf_lines(data: bytes) -> list[Any]:
     [
         ("svg", "exact", svg_lines),
         ("svg", "arc", svg_lines),
+        ("svg", "cubic", svg_lines),
         ("svg", "polyline", svg_lines),
         ("dxf", "arc", dxf_lines),
         ("dxf", "spline", dxf_lines),

@@ -16,10 +16,10 @@ from scipy.spatial import cKDTree
 
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.paths.biarc_bounds import fit
-from voronoi_tiles.paths.biarc_segmentation import longest_stretches
 from voronoi_tiles.paths.biarcs import to_arcs
 from voronoi_tiles.paths.conversion import COUNT_MAX, to_cubics, to_lines
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
+from voronoi_tiles.paths.segmentation import longest_stretches
 from voronoi_tiles.paths.smooth_runs import SmoothRuns
 from voronoi_tiles.paths.stretch_parts import cut
 
@@ -224,7 +224,8 @@ def test_the_count_is_the_least(curve: Points, accuracy: float) -> None:
             stretch = slice(begin * fine, end * fine + 1)
             if least[begin] + 1 < least[end] and feasible(points[stretch], tangents[stretch], accuracy):
                 least[end] = least[begin] + 1
-    greedy = len(longest_stretches(runs_of(chain(curve)), accuracy).run)
+    runs = runs_of(chain(curve))
+    greedy = len(longest_stretches(runs, accuracy, lambda *stretch: fit(runs, *stretch).best, 3).run)
     assert least[-1] - 1 <= greedy <= least[-1]
     assert greedy > 1
 

@@ -18,6 +18,10 @@ _CHORDS: Final = 0.7
 """What chords may take, a part of the whole. They get most: their number grows with the root of it, that of arcs only
 with the third root."""
 
+_CUBICS: Final = 0.6
+"""What cubic curves may take where they replace arcs, a part of the whole. Their number grows with the sixth root of
+it, and that of the arcs is not seen."""
+
 _MEASURED: Final = 0.125
 """How far chords are from contours where the distance between these is measured, a part of the whole."""
 
@@ -28,9 +32,10 @@ class AccuracyBudget:
 
     Curves become arcs within `arcs`: those of tiles where the job has kerf or fillets or the file holds arcs, those of
     sheets and of art where they are clipped. Kerf and fillets spend nothing: an offset of arcs is exact, and what lies
-    within e of a curve lies at any distance from both within e again. Then short segments are left out, within `short`,
-    and where the file holds polylines, chords within `chords` take the place of curves. Errors add up: the three come
-    to the whole, or less. For G-code, whose numbers are coarse, the whole is what rounding leaves of the accuracy asked
+    within e of a curve lies at any distance from both within e again. Then short segments are left out, within `short`.
+    Where the file holds polylines, chords within `chords` take the place of curves, and where it holds the fewest cubic
+    curves, these, within `cubics`: of the exact curves, or of the arcs. Errors add up: the four come to the whole, or
+    less. For G-code, whose numbers are coarse, the whole is what rounding leaves of the accuracy asked
     for. Nothing else is approximated, but that the cubic curves of SVG and PDF are a nanometre off circular arcs, which
     is the last digit of these files.
     """
@@ -39,13 +44,16 @@ class AccuracyBudget:
     arcs: float
     short: float
     chords: float
+    cubics: float
 
     def __post_init__(self) -> None:
-        assert self.arcs + self.short + self.chords <= self.whole * (1 + 1e-12), "more is spent than there is"
+        assert self.arcs + self.short + self.chords + self.cubics <= self.whole * (1 + 1e-12), (
+            "more is spent than there is"
+        )
 
     @classmethod
     def of(cls, job: Job, curves: str, form: Format = "svg") -> Self:
-        """The budget of a job whose file has a format and holds these `curves`: exact, arc, spline or polyline.
+        """The budget of a job whose file has a format and holds these `curves`: exact, arc, cubic, spline or polyline.
 
         Raises JobError where the file's rounding leaves nothing of the accuracy.
         """
@@ -56,9 +64,10 @@ class AccuracyBudget:
                 remedy=f"Give {2 * ROUNDING_MM:g} mm or more.",
             )
         chords = _CHORDS * whole if curves == "polyline" else 0.0
-        left = whole - chords
+        cubics = 0.0 if curves != "cubic" else _CUBICS * whole
+        left = whole - chords - cubics
         short = _SHORT * left if job.moves_contours else 0.0
-        return cls(whole=whole, arcs=left - short, short=short, chords=chords)
+        return cls(whole=whole, arcs=left - short, short=short, chords=chords, cubics=cubics)
 
     @property
     def measured(self) -> float:

@@ -37,7 +37,7 @@ __all__ = ["ACCURACY_MM", "LABEL_MIN", "SHEET_MAX", "SHEET_MIN", "Job", "JobErro
 
 Fit = Literal["whole", "clip", "frame"]
 Edges = Literal["once", "pieces"]
-Curves = Literal["exact", "arc", "spline", "polyline"]
+Curves = Literal["exact", "arc", "cubic", "spline", "polyline"]
 ArtUse = Literal["whole", "clip", "none"]
 Labels = Literal["none", "number", "site"]
 Into = Literal["layers", "files"]
@@ -137,7 +137,9 @@ class Job:
         most=1.0,
     )
     curves: Choice[Curves | None] = choice(
-        None, Curves, "Exact curves, circular arcs, cubic splines or chords [default: as the preset says]."
+        None,
+        Curves,
+        "Exact curves, the fewest circular arcs or cubic curves, splines, or chords [default: as the preset says].",
     )
     dxf_version: Choice[DxfVersion] = choice(
         "R2000",

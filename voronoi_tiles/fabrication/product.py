@@ -18,7 +18,7 @@ from voronoi_tiles.base.files import refuse_overwriting, writing
 from voronoi_tiles.base.text import counted
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
-from voronoi_tiles.fabrication.arc_fitting import curve_fit
+from voronoi_tiles.fabrication.arc_fitting import curve_fit, edge_cubics
 from voronoi_tiles.fabrication.artwork import Works
 from voronoi_tiles.fabrication.cutting import Cut, cut_once, cut_pieces, cut_shapes, toured
 from voronoi_tiles.fabrication.demands import as_demanded, refuse_misread
@@ -254,7 +254,7 @@ class _Plan:
         shown = _shown(colouring, layout, job)
         fills = preset.fill_engraving and self.form != "gcode"  # whose lasers go along lines
         engraving = engrave(layout, contours, layout.sheet, shown, fills=fills)
-        layers = _layers(preset, self.form, job, cuts, engraving, _converter(self.curves, layout.budget))
+        layers = _layers(preset, self.form, job, cuts, engraving, _converter(self.curves, job, layout.budget))
         drawing = _page(layers, layout.sheet, job, layout.design)
         said = (*self.said, *layout.sheet.notes, *layout.tiles.compensation.losses, *engraving.notes)
         twice = doubled(layout, job) if preset.contours == "shared" else []  # the others do not cut
@@ -319,24 +319,31 @@ def _curves(job: Job, preset: Preset, form: Format) -> str:
     wanted = job.curves
     if wanted is None:
         by_preset = {"svg": preset.svg_curves, "dxf": preset.dxf_curves, "gcode": "polyline"}.get(form, "exact")
-        wanted = "spline" if by_preset == "cubic" else by_preset
+        wanted = by_preset
     if form == "dxf" and wanted == "exact":
         wanted = "spline"
     if form == "gcode" and wanted not in {"arc", "polyline"}:
         raise JobError(
             f"G-code has lines and circular arcs, and no `curves='{wanted}'`", remedy="Use polyline, or arc."
         )
+    if form == "dxf" and wanted == "cubic":
+        raise JobError(
+            "DXF has no Bezier curves, and no `curves='cubic'`",
+            remedy="Use arc, the fewest arcs, or spline, the exact curves; or write SVG, PDF or lbrn2.",
+        )
     refuse_misread(job, preset, form, wanted)
     return wanted
 
 
-def _converter(curves: str, budget: AccuracyBudget) -> Callable[[Paths], Paths]:
+def _converter(curves: str, job: Job, budget: AccuracyBudget) -> Callable[[Paths], Paths]:
     """What is still to be done to paths so that they hold only what the file takes."""
     match curves:
         case "polyline":
             return lambda paths: to_lines(paths, accuracy=budget.chords)
         case "arc":
             return lambda paths: to_arcs(paths, accuracy=budget.arcs)
+        case "cubic":
+            return lambda paths: edge_cubics(paths, budget, exact=not job.moves_contours)
         case "spline":
             return lambda paths: to_cubics(paths, accuracy=CUBIC_ACCURACY_MM)
         case _:

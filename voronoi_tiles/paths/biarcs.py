@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Final, NamedTuple
+from functools import partial
+from typing import Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
+from voronoi_tiles.base.arrays import Floats, Ints
 from voronoi_tiles.paths.biarc_bounds import fit
-from voronoi_tiles.paths.biarc_segmentation import Stretches, even_stretches, longest_stretches
 from voronoi_tiles.paths.conversion import usable
-from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
-from voronoi_tiles.paths.smooth_runs import SmoothRuns, tangents
-
-CORNER: Final = 1e-6
-"""Tangents that differ by more than this make a corner; radians. Rounding leaves some 1e-10 of a smooth joint between
-segments of a millionth of the drawing's size; a corner that is meant is far above."""
+from voronoi_tiles.paths.curved_runs import CORNER, Drawn, RunCurves, replace_runs, stretch_ends
+from voronoi_tiles.paths.paths import ARC, LINE, Paths
+from voronoi_tiles.paths.segmentation import even_stretches, longest_stretches
+from voronoi_tiles.paths.smooth_runs import SmoothRuns
 
 FLAT: Final = 1e-9
 """An arc whose sagitta is below this is a line; relative to the accuracy."""
@@ -49,169 +46,24 @@ def to_arcs(paths: Paths, *, accuracy: float, corner: float = CORNER, absorbed: 
     Source: Meek, Walton, Approximating smooth planar curves by arc splines, J. Comput. Appl. Math. 59 (1995).
     """
     bound = usable(paths, accuracy)
-    short = np.flatnonzero((paths.kind == LINE) & (np.abs(paths.end - paths.start) < absorbed))
-    if len(short):
-        kind, control = paths.kind.copy(), paths.control.copy()
-        kind[short], control[short, 0] = QUAD, (paths.start[short] + paths.end[short]) / 2
-        paths = replace(paths, kind=kind, control=control)
-    paths, begins = _arranged(paths, corner)
-    bent = _bent(paths)
-    segments = np.flatnonzero(bent)
-    if not len(segments):
-        return paths
-    first = np.flatnonzero(begins & bent)
-    counts = np.diff(np.append(np.searchsorted(segments, first), len(segments)))
-    turned, drawn = _fewer(paths, first, counts, bound, FLAT * accuracy)
-    return _assembled(paths, ~bent, first, turned, drawn)
+    return replace_runs(paths, corner, absorbed, partial(_draw, bound=bound, flat=FLAT * accuracy))
 
 
-def _bent(paths: Paths) -> Bools:
-    """Which segments are to be replaced."""
-    return np.asarray((paths.kind == QUAD) | (paths.kind == CUBIC))
+def _draw(runs: SmoothRuns, curves: RunCurves, bound: float, flat: float) -> Drawn:
+    """Draw a line, an arc or a biarc for each stretch of runs, whichever is the simplest within the bound."""
 
+    def error_of(run: Ints, low: Floats, high: Floats) -> Floats:
+        """The bounds of the best fits."""
+        return fit(runs, run, low, high).best
 
-class _Curves(NamedTuple):
-    """Bezier curves, one row each; `cubic` says which have two control points."""
-
-    start: Complexes
-    first: Complexes
-    second: Complexes
-    end: Complexes
-    cubic: Bools
-
-    @classmethod
-    def of_segments(cls, paths: Paths, segments: Ints) -> _Curves:
-        """Some segments of paths."""
-        control = paths.control[segments]
-        cubic = paths.kind[segments] == CUBIC
-        return cls(paths.start[segments], control[:, 0], control[:, 1], paths.end[segments], cubic)
-
-    def coefficients(self) -> tuple[Floats, Floats]:
-        """Those of `SmoothRuns`, x and y, each float64 (4, n)."""
-        x, y = (
-            np.where(
-                self.cubic,
-                np.stack((p0, p1 - p0, p0 - 2 * p1 + p2, (p3 - p0) + 3 * (p1 - p2))),
-                np.stack((p0, (p1 - p0) * (2 / 3), (p0 - 2 * p1 + p3) / 3, np.zeros(len(p0)))),
-            )
-            for p0, p1, p2, p3 in (
-                (self.start.real, self.first.real, self.second.real, self.end.real),
-                (self.start.imag, self.first.imag, self.second.imag, self.end.imag),
-            )
-        )
-        return x, y
-
-
-def _arranged(paths: Paths, corner: float) -> tuple[Paths, Bools]:
-    """The paths without curves of length 0, closed ones begun where no run is cut; and where runs begin."""
-    paths = _without_points(paths)
-    smooth = _smooth(paths, corner)
-    owner, begin, counts = paths.owner, paths.offsets[:-1], paths.counts
-    number = np.arange(len(owner)) - begin[owner]
-    full = np.flatnonzero(counts)
-    shift = np.zeros(len(paths), np.intp)
-    if len(full):
-        place = np.where(smooth, counts[owner], number)
-        shift[full] = np.minimum.reduceat(place, begin[full]) % counts[full]
-    order = begin[owner] + (number + shift[owner]) % counts[owner]
-    begins = ~smooth[order]
-    begins[begin[full]] = True
-    start, end, control, kind = paths.start[order], paths.end[order], paths.control[order], paths.kind[order]
-    return replace(paths, start=start, end=end, control=control, kind=kind), begins
-
-
-def _without_points(paths: Paths) -> Paths:
-    """The paths without curved segments of length 0; a path of nothing else becomes one line of length 0."""
-    still = _bent(paths) & (paths.start == paths.end) & (paths.control[:, 0] == paths.start)
-    still &= (paths.kind == QUAD) | (paths.control[:, 1] == paths.start)
-    if not np.any(still):
-        return paths
-    kept = ~still
-    left = np.bincount(paths.owner[kept], minlength=len(paths))
-    kept[paths.offsets[:-1][(left == 0) & (paths.counts > 0)]] = True
-    return Paths(
-        start=paths.start[kept],
-        end=paths.end[kept],
-        control=np.where(still[:, None], 0, paths.control)[kept],
-        kind=np.where(still, np.uint8(LINE), paths.kind)[kept],
-        offsets=np.append(0, np.cumsum(np.bincount(paths.owner[kept], minlength=len(paths)))).astype(np.intp),
-        closed=paths.closed,
-    )
-
-
-def _smooth(paths: Paths, corner: float) -> Bools:
-    """Which segments are curves that go on smoothly from a curve before them; in closed paths the last is before."""
-    bent = _bent(paths)
-    curved = np.flatnonzero(bent)
-    x, y = _Curves.of_segments(paths, curved).coefficients()
-    leaving, arriving = np.zeros((2, len(bent))), np.zeros((2, len(bent)))
-    leaving[:, curved] = tangents(x, y, 0.0, ahead=True)
-    arriving[:, curved] = tangents(x, y, 1.0, ahead=False)
-    before = np.arange(-1, len(bent) - 1)
-    full = np.flatnonzero(paths.counts)
-    begin = paths.offsets[:-1][full]
-    before[begin] = np.where(paths.closed[full], paths.offsets[full + 1] - 1, begin)
-    (ax, ay), (bx, by) = arriving[:, before], leaving
-    angle = np.abs(np.arctan2(ax * by - ay * bx, ax * bx + ay * by))
-    smooth: Bools = bent & bent[before] & (angle <= corner)
-    smooth[begin[~paths.closed[full]]] = False
-    return smooth
-
-
-def _turned(paths: Paths, first: Ints, last: Ints) -> Bools:
-    """Which runs are fitted backwards, so that a run and its reverse are fitted alike: by their points' order."""
-    near = paths.control[first, 0]
-    far = np.where(paths.kind[last] == CUBIC, paths.control[last, 1], paths.control[last, 0])
-    turned = np.zeros(len(first), np.bool_)
-    equal = ~turned
-    for a, b in ((paths.start[first], paths.end[last]), (near, far), (paths.end[first], paths.start[last])):
-        for u, v in ((a.real, b.real), (a.imag, b.imag)):
-            turned |= equal & (u > v)
-            equal &= u == v
-    return turned
-
-
-def _oriented(paths: Paths, first: Ints, counts: Ints, turned: Bools) -> tuple[_Curves, SmoothRuns]:
-    """The segments of all runs, in the sense in which they are fitted."""
-    run = np.repeat(np.arange(len(first)), counts)
-    segment = ranges(first, counts)
-    back = turned[run]
-    segments = _Curves.of_segments(paths, np.where(back, (2 * first + counts - 1)[run] - segment, segment))
-    swap = back & segments.cubic
-    curves = _Curves(
-        np.where(back, segments.end, segments.start),
-        np.where(swap, segments.second, segments.first),
-        np.where(swap, segments.first, segments.second),
-        np.where(back, segments.start, segments.end),
-        segments.cubic,
-    )
-    return curves, SmoothRuns.of_segments(*curves.coefficients(), np.append(0, np.cumsum(counts)))
-
-
-class _Drawn(NamedTuple):
-    """What replaces runs, in order along each: the run, the ends, and the middles of those that are arcs."""
-
-    run: Ints
-    start: Complexes
-    end: Complexes
-    middle: Complexes
-    round_: Bools
-
-
-def _draw(runs: SmoothRuns, curves: _Curves, stretches: Stretches, bound: float, flat: float) -> _Drawn:
-    """Draw a line, an arc or a biarc for each stretch, whichever is the simplest within the bound."""
-    run, low, high = stretches
-    shape = fit(runs, run, low, high)
+    longest = longest_stretches(runs, bound, error_of, 3)
+    stretches = even_stretches(runs, longest, bound, error_of, 3)
+    run = stretches.run
+    shape = fit(runs, *stretches)
     assert np.all(shape.best <= bound)
     straight = shape.line <= bound
     double = ~straight & (shape.arc > bound)
-    begin = np.append(True, run[1:] != run[:-1])
-    final = np.append(begin[1:], True)
-    start = np.empty(len(run), np.complex128)
-    start.real, start.imag = runs.points(*runs.locate(run, low, before=False))
-    start[begin] = curves.start[runs.first[:-1]]
-    end = np.append(start[1:], 0)
-    end[final] = curves.end[runs.first[1:] - 1]
+    start, end = stretch_ends(runs, curves, stretches)
     joint = start + shape.joint_x + 1j * shape.joint_y
     row = np.repeat(np.arange(len(run)), 1 + double)
     second = np.append(False, row[1:] == row[:-1])
@@ -222,43 +74,7 @@ def _draw(runs: SmoothRuns, curves: _Curves, stretches: Stretches, bound: float,
     middle = np.empty(len(row), np.complex128)
     middle.real = (p.real + q.real) / 2 + bulge * (q.imag - p.imag)
     middle.imag = (p.imag + q.imag) / 2 - bulge * (q.real - p.real)
-    return _Drawn(run[row], p, q, middle, np.abs(bulge) * np.abs(q - p) > flat)
-
-
-def _fewer(paths: Paths, first: Ints, counts: Ints, bound: float, flat: float) -> tuple[Bools, _Drawn]:
-    """Draw runs from either end, and keep what takes fewer segments: whether from the far end, and the segments.
-
-    Where both take as many, the order of the points decides, so that a run and its reverse are fitted alike.
-    """
-    count = len(first)
-    turned = _turned(paths, first, first + counts - 1)
-    curves, runs = _oriented(paths, np.tile(first, 2), np.tile(counts, 2), np.concatenate((turned, ~turned)))
-    drawn = _draw(runs, curves, even_stretches(runs, longest_stretches(runs, bound), bound), bound, flat)
-    taken = np.bincount(drawn.run, minlength=2 * count)
-    other = taken[count:] < taken[:count]
-    run = drawn.run % count
-    kept = np.flatnonzero((drawn.run >= count) == other[run])
-    order = kept[np.argsort(run[kept], kind="stable")]
-    return turned ^ other, _Drawn(
-        run[order], drawn.start[order], drawn.end[order], drawn.middle[order], drawn.round_[order]
-    )
-
-
-def _assembled(paths: Paths, kept: Bools, first: Ints, turned: Bools, drawn: _Drawn) -> Paths:
-    """Put what replaces the runs in the place of their first segments, beside the segments that are kept."""
-    old = np.flatnonzero(kept)
-    back = turned[drawn.run]
-    number = np.arange(len(drawn.run))
-    rank = np.concatenate((old, first[drawn.run]))
-    order = np.lexsort((np.concatenate((np.zeros(len(old), np.intp), np.where(back, -number, number))), rank))
-    control = np.zeros((len(drawn.run), 2), np.complex128)
-    control[:, 0] = np.where(drawn.round_, drawn.middle, 0)
-    counts = np.bincount(paths.owner[rank], minlength=len(paths))
-    return Paths(
-        start=np.concatenate((paths.start[old], np.where(back, drawn.end, drawn.start)))[order],
-        end=np.concatenate((paths.end[old], np.where(back, drawn.start, drawn.end)))[order],
-        control=np.concatenate((paths.control[old], control))[order],
-        kind=np.concatenate((paths.kind[old], np.where(drawn.round_, np.uint8(ARC), np.uint8(LINE))))[order],
-        offsets=np.append(0, np.cumsum(counts)).astype(np.intp),
-        closed=paths.closed,
-    )
+    round_ = np.abs(bulge) * np.abs(q - p) > flat
+    control = np.zeros((len(row), 2), np.complex128)
+    control[:, 0] = np.where(round_, middle, 0)
+    return Drawn(run[row], p, q, control, np.where(round_, np.uint8(ARC), np.uint8(LINE)))

@@ -1,14 +1,20 @@
-"""Smooth runs of curves covered by the fewest stretches that one biarc each follows, with the error spread evenly."""
+"""Smooth runs of curves covered by the fewest stretches that something follows, with the error spread evenly."""
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Literal, NamedTuple, TypeAlias
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Floats, Ints
-from voronoi_tiles.paths.biarc_bounds import fit
 from voronoi_tiles.paths.smooth_runs import SmoothRuns, last_up_to
+
+Error: TypeAlias = Callable[[Ints, Floats, Floats], Floats]
+"""How far what follows them is from stretches: of runs, from places to places."""
+
+Order: TypeAlias = Literal[3, 6]
+"""The power of a stretch's length with which the error grows: of biarcs, of cubic curves with the tangents given."""
 
 _FULL = 0.99
 """A stretch is the longest when its error is above this part of the bound; errors grow with the third power or faster,
@@ -71,13 +77,16 @@ class _Search(NamedTuple):
             halve=np.isfinite(self.high) & (high - low > 0.5 * (self.high - self.low)),
         )
 
-    def aimed(self) -> _Search:
-        """With the next trial: where the error would be just below 1 if it grew with a power of the length."""
+    def aimed(self, order: Order) -> _Search:
+        """With the next trial: where the error would be just below 1 if it grew with a power of the length.
+
+        The power is `order` until two errors tell.
+        """
         length, known, bounded = self.low - self.begin, self.low > self.begin, np.isfinite(self.high)
         with np.errstate(divide="ignore", invalid="ignore"):
             power = np.log(self.high_error / self.low_error) / np.log((self.high - self.begin) / length)
-            up = length * (_AIM / self.low_error) ** (1 / np.where(bounded & np.isfinite(power), power, 3.0))
-            down = (self.high - self.begin) * np.cbrt(_AIM / self.high_error)
+            up = length * (_AIM / self.low_error) ** (1 / np.where(bounded & np.isfinite(power), power, order))
+            down = (self.high - self.begin) * _root(_AIM / self.high_error, order)
         room = np.where(bounded, self.high - self.low, 0.0)
         between = np.clip(
             np.where(known, up, np.maximum(down, 0.2 * room)),
@@ -89,12 +98,21 @@ class _Search(NamedTuple):
         return self._replace(trial=self.begin + np.where(bounded, between, beyond))
 
 
-def longest_stretches(runs: SmoothRuns, bound: float) -> Stretches:
-    """Cover runs by stretches whose best fit is within the bound, each as long as can be; all runs side by side."""
+def _root(values: Floats, order: Order) -> Floats:
+    """The `order`-th roots."""
+    cube = np.cbrt(values)
+    return cube if order == 3 else np.sqrt(cube)
+
+
+def longest_stretches(runs: SmoothRuns, bound: float, error_of: Error, order: Order) -> Stretches:
+    """Cover runs by stretches whose error is within the bound, each as long as can be; all runs side by side.
+
+    Errors grow with about the power `order` of the length.
+    """
     search = _Search.beginning(np.arange(len(runs)), np.zeros(len(runs)), runs.total)
     found: list[tuple[Ints, Floats, Floats]] = []
     while len(search.run):
-        search = search.tried(fit(runs, search.run, search.begin, search.trial).best / bound)
+        search = search.tried(error_of(search.run, search.begin, search.trial) / bound)
         length = search.low - search.begin
         full = (search.low == search.trial) & (search.low_error >= _FULL)
         done = full | (search.low >= runs.total[search.run]) | (search.high - search.low <= _NARROW * length)
@@ -102,7 +120,7 @@ def longest_stretches(runs: SmoothRuns, bound: float) -> Stretches:
         found.append((ready.run, ready.begin, ready.low))
         # The next stretch begins where this one ends, and is tried at the same length.
         after = _Search.beginning(ready.run, ready.low, ready.low + length[done])
-        going = search.where(~done).aimed()
+        going = search.where(~done).aimed(order)
         search = _Search(*(np.concatenate(pair) for pair in zip(going, after, strict=True)))
         end = runs.total[search.run]
         search = search._replace(trial=np.minimum(search.trial, end)).where(search.begin < end)
@@ -112,16 +130,16 @@ def longest_stretches(runs: SmoothRuns, bound: float) -> Stretches:
     return Stretches(run[order], begin[order], low[order])
 
 
-def even_stretches(runs: SmoothRuns, stretches: Stretches, bound: float) -> Stretches:
+def even_stretches(runs: SmoothRuns, stretches: Stretches, bound: float, error_of: Error, order: Order) -> Stretches:
     """Move the breaks between stretches so that their errors become alike, where all stay within the bound."""
     first = np.searchsorted(stretches.run, np.arange(len(runs)))
     best = stretches
-    error = fit(runs, *best).best
+    error = error_of(*best)
     worst = np.maximum.reduceat(error, first)
     trial, trial_error = best, error
     for _ in range(_ROUNDS):
-        trial = _moved(runs, trial, trial_error / bound, first)
-        trial_error = fit(runs, *trial).best
+        trial = _moved(runs, trial, trial_error / bound, first, order)
+        trial_error = error_of(*trial)
         trial_worst = np.maximum.reduceat(trial_error, first)
         better = (trial_worst < worst)[stretches.run]
         best = Stretches(best.run, np.where(better, trial.low, best.low), np.where(better, trial.high, best.high))
@@ -129,12 +147,12 @@ def even_stretches(runs: SmoothRuns, stretches: Stretches, bound: float) -> Stre
     return best
 
 
-def _moved(runs: SmoothRuns, stretches: Stretches, error: Floats, first: Ints) -> Stretches:
-    """Cut each run into as many stretches again, of equal shares of the cube root of the error."""
+def _moved(runs: SmoothRuns, stretches: Stretches, error: Floats, first: Ints, order: Order) -> Stretches:
+    """Cut each run into as many stretches again, of equal shares of the root of the error."""
     run = stretches.run
     offsets = np.append(first, len(run))
     count = np.diff(offsets)[run]
-    root = np.cbrt(np.clip(error, 1e-6, 1e3))
+    root = _root(np.clip(error, 1e-6, 1e3), order)
     weight = np.ceil(root * 2.0**30).astype(np.int64)  # whole numbers add up without rounding
     sums = np.append(0, np.cumsum(weight))
     total = (sums[offsets[1:]] - sums[first])[run]

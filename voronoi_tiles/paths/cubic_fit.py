@@ -1,0 +1,147 @@
+"""Cubic Bezier curves that follow stretches of smooth runs, with the tangents at both ends given."""
+
+from __future__ import annotations
+
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Floats, Ints
+from voronoi_tiles.paths.cubic_bounds import FittedCubics, bounds, derivatives, nearer_foot
+from voronoi_tiles.paths.smooth_runs import SmoothRuns, tangents
+from voronoi_tiles.paths.stretch_parts import StretchParts, cut
+
+_STEPS: Final = 5
+"""Steps of Gauss and Newton in which handles are found; a count."""
+
+_TIE: Final = 1e-8
+"""The weight that ties handles to a third of the length, relative to that of the distances: where the curve is straight
+these say nothing of handles."""
+
+_SHORTEST, _LONGEST = 0.02, 2.0
+"""What handles may be; relative to the stretch's length. Positive handles keep the tangents' sense."""
+
+_FARTHEST: Final = 0.3
+"""What a handle may change by in a step; relative to the stretch's length."""
+
+
+_UNITS: Final = 2.0**30
+"""Shares of a stretch's length are whole numbers of parts as small as this."""
+
+
+class CubicFit(NamedTuple):
+    """Cubic curves in the place of stretches, and bounds on their Hausdorff distances from these."""
+
+    curves: FittedCubics
+    bound: Floats
+
+
+class _Hermite(NamedTuple):
+    """What is given of curves that begin at 0: the end, the unit tangents a and b at both ends, the length of each."""
+
+    x: Floats
+    y: Floats
+    ax: Floats
+    ay: Floats
+    bx: Floats
+    by: Floats
+    length: Floats
+
+    def curves(self, near: Floats, far: Floats) -> FittedCubics:
+        """The curves whose handles have these lengths."""
+        zero = np.zeros(len(self.x))
+        return FittedCubics(
+            np.stack((zero, near * self.ax, self.x - far * self.bx, self.x)),
+            np.stack((zero, near * self.ay, self.y - far * self.by, self.y)),
+        )
+
+
+def fit_cubics(runs: SmoothRuns, run: Ints, low: Floats, high: Floats) -> CubicFit:
+    """Replace the stretches of runs between two places each by one cubic curve.
+
+    It has the ends of the stretch and the tangents of `tangents_at` there, so that curves of neighbouring stretches
+    go on smoothly. The lengths of the two handles are such that the squares of the distances from the stretch, along
+    the curve's normals, come to the least: steps of Gauss and Newton, with the feet of the points found along the way.
+    """
+    parts, ends = cut(runs, run, low, high)
+    stretch, first = parts.stretch, parts.first[:-1]
+    lengths = _lengths(parts)
+    total = np.add.reduceat(lengths, first)
+    given = _Hermite(ends.x, ends.y, *tangents_at(runs, run, low), *tangents_at(runs, run, high), total)
+    share = np.ceil(lengths / total[stretch] * _UNITS).astype(np.int64)  # they add up without rounding
+    sums = np.cumsum(share) - share
+    before = (sums - sums[first][stretch]) / _UNITS
+    # The samples are where parts begin and their middles.
+    x, y = (np.stack((c[0], (c[0] + 3.0 * (c[1] + c[2]) + c[3]) / 8.0)) for c in (parts.x, parts.y))
+    t = np.stack((before, before + share / (2 * _UNITS)))
+    weight = share / _UNITS
+    near = far = total / 3.0
+    for step in range(_STEPS):
+        here = given.curves(near, far).of(stretch)
+        for _ in range(2 if step == 0 else 1):
+            t = nearer_foot(here, x, y, t)
+        near, far = _better_handles(given, stretch, first, weight, (x, y), t, here, near, far)
+    curves = given.curves(near, far)
+    return CubicFit(curves, bounds(parts, curves, t[0]))
+
+
+def tangents_at(runs: SmoothRuns, run: Ints, place: Floats) -> tuple[Floats, Floats]:
+    """The unit tangents at places of runs, x and y; at a small joint, halfway between those beside it."""
+    before, after = (runs.locate(run, place, before=flag) for flag in (True, False))
+    (px, py), (qx, qy) = (
+        tangents(runs.x[:, segment], runs.y[:, segment], t, ahead=ahead)
+        for (segment, t), ahead in ((before, False), (after, True))
+    )
+    # Where a run begins or ends there is but one.
+    x = np.where(place <= 0.0, qx, np.where(place >= runs.total[run], px, px + qx))
+    y = np.where(place <= 0.0, qy, np.where(place >= runs.total[run], py, py + qy))
+    size = np.sqrt(x * x + y * y)
+    return x / size, y / size
+
+
+def _lengths(parts: StretchParts) -> Floats:
+    """The lengths of parts' control polygons."""
+    dx, dy = np.diff(parts.x, axis=0), np.diff(parts.y, axis=0)
+    a, b, c = np.sqrt(dx * dx + dy * dy)
+    return np.asarray(a + b + c)
+
+
+def _better_handles(
+    given: _Hermite,
+    stretch: Ints,
+    first: Ints,
+    weight: Floats,
+    points: tuple[Floats, Floats],
+    t: Floats,
+    curve: FittedCubics,
+    near: Floats,
+    far: Floats,
+) -> tuple[Floats, Floats]:
+    """Handles after one step of Gauss and Newton: `curve` is that of each part, `t` the feet of `points` on it."""
+    (px, ux, _), (py, uy, _) = derivatives(curve.x, t), derivatives(curve.y, t)
+    speed = np.sqrt(ux * ux + uy * uy)
+    speed = np.where(speed > 0.0, speed, 1.0)
+    nx, ny = -uy / speed, ux / speed
+    off = (points[0] - px) * nx + (points[1] - py) * ny
+    s = 1.0 - t
+    by_near = 3.0 * s * s * t * (given.ax[stretch] * nx + given.ay[stretch] * ny)
+    by_far = -3.0 * s * t * t * (given.bx[stretch] * nx + given.by[stretch] * ny)
+
+    def over_all(values: Floats) -> Floats:
+        """The weighted sums over the samples of stretches."""
+        return np.add.reduceat(weight * (values[0] + values[1]), first)
+
+    third = given.length / 3.0
+    a, b = over_all(by_near * by_near) + _TIE, over_all(by_far * by_far) + _TIE
+    mixed = over_all(by_near * by_far)
+    u, v = over_all(by_near * off) + _TIE * (third - near), over_all(by_far * off) + _TIE * (third - far)
+    det = a * b - mixed * mixed  # positive, by the ties
+    most = _FARTHEST * given.length
+    return (
+        np.clip(
+            near + np.clip((b * u - mixed * v) / det, -most, most), _SHORTEST * given.length, _LONGEST * given.length
+        ),
+        np.clip(
+            far + np.clip((a * v - mixed * u) / det, -most, most), _SHORTEST * given.length, _LONGEST * given.length
+        ),
+    )
