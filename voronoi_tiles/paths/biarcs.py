@@ -56,8 +56,8 @@ def _draw(runs: SmoothRuns, curves: RunCurves, bound: float, flat: float) -> Dra
         """The bounds of the best fits."""
         return fit(runs, run, low, high).best
 
-    longest = longest_stretches(runs, bound, error_of, 3)
-    stretches = even_stretches(runs, longest, bound, error_of, 3)
+    longest = longest_stretches(runs.total, bound, error_of, 3)
+    stretches = even_stretches(runs.total, longest, bound, error_of, 3)
     run = stretches.run
     shape = fit(runs, *stretches)
     assert np.all(shape.best <= bound)

@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Floats, Ints
+from voronoi_tiles.base.arrays import Bools, Floats, Ints
 from voronoi_tiles.paths.cubic_bounds import FittedCubics, bounds, derivatives, nearer_foot
 from voronoi_tiles.paths.smooth_runs import SmoothRuns, tangents
 from voronoi_tiles.paths.stretch_parts import StretchParts, cut
@@ -56,12 +56,13 @@ class _Hermite(NamedTuple):
         )
 
 
-def fit_cubics(runs: SmoothRuns, run: Ints, low: Floats, high: Floats) -> CubicFit:
+def fit_cubics(runs: SmoothRuns, run: Ints, low: Floats, high: Floats, even: Bools | None = None) -> CubicFit:
     """Replace the stretches of runs between two places each by one cubic curve.
 
     It has the ends of the stretch and the tangents of `tangents_at` there, so that curves of neighbouring stretches
     go on smoothly. The lengths of the two handles are such that the squares of the distances from the stretch, along
-    the curve's normals, come to the least: steps of Gauss and Newton, with the feet of the points found along the way.
+    the curve's normals, come to the least: steps of Gauss and Newton, with the feet of points found along the way.
+    Stretches that are `even`, which are their own images backwards, get two handles of one length.
     """
     parts, ends = cut(runs, run, low, high)
     stretch, first = parts.stretch, parts.first[:-1]
@@ -81,6 +82,9 @@ def fit_cubics(runs: SmoothRuns, run: Ints, low: Floats, high: Floats) -> CubicF
         for _ in range(2 if step == 0 else 1):
             t = nearer_foot(here, x, y, t)
         near, far = _better_handles(given, stretch, first, weight, (x, y), t, here, near, far)
+    if even is not None:
+        both = (near + far) / 2
+        near, far = np.where(even, both, near), np.where(even, both, far)
     curves = given.curves(near, far)
     return CubicFit(curves, bounds(parts, curves, t[0]))
 

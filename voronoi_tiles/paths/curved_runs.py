@@ -77,14 +77,21 @@ def stretch_ends(runs: SmoothRuns, curves: RunCurves, stretches: Stretches) -> t
     return start, end
 
 
-def replace_runs(paths: Paths, corner: float, absorbed: float, draw: Callable[[SmoothRuns, RunCurves], Drawn]) -> Paths:
-    """Put what `draw` makes of them in the place of smooth runs of curves; all else stays as it is.
+class CutPaths(NamedTuple):
+    """Paths cut into smooth runs of curves: which segments are `bent`, each run's first one, how many it has."""
 
-    A path is cut at its corners, where tangents differ by more than `corner` (radians), and into runs of curved
-    segments that join smoothly, whose end points stay; LINEs shorter than `absorbed` count as curved. `draw` gets the
-    runs in both senses, and what takes fewer segments is kept. A closed path that began within a run begins at the end
-    of that run instead; one that is all one run is cut where it began. Curved segments of length 0 vanish, unless a
-    path has nothing else: then one line of length 0 stays.
+    paths: Paths
+    bent: Bools
+    first: Ints
+    counts: Ints
+
+
+def cut_runs(paths: Paths, corner: float, absorbed: float) -> CutPaths:
+    """Cut paths at their corners, and into runs of curved segments that join smoothly.
+
+    Corners are where tangents differ by more than `corner` (radians); LINEs shorter than `absorbed` count as curved. A
+    closed path that began within a run begins at the end of that run instead; one that is all one run is cut where it
+    began. Curved segments of length 0 vanish, unless a path has nothing else: then one line of length 0 stays.
     """
     short = np.flatnonzero((paths.kind == LINE) & (np.abs(paths.end - paths.start) < absorbed))
     if len(short):
@@ -94,12 +101,35 @@ def replace_runs(paths: Paths, corner: float, absorbed: float, draw: Callable[[S
     paths, begins = _arranged(paths, corner)
     bent = _bent(paths)
     segments = np.flatnonzero(bent)
-    if not len(segments):
-        return paths
     first = np.flatnonzero(begins & bent)
     counts = np.diff(np.append(np.searchsorted(segments, first), len(segments)))
-    turned, drawn = _fewer(paths, first, counts, draw)
-    return _assembled(paths, ~bent, first, turned, drawn)
+    return CutPaths(paths, bent, first, counts)
+
+
+def canonical_senses(cut: CutPaths) -> Bools:
+    """Which runs are looked at backwards, so that a run and its reverse look alike: by their points' order."""
+    return _turned(cut.paths, cut.first, cut.first + cut.counts - 1)
+
+
+def oriented_runs(cut: CutPaths, chosen: Ints, turned: Bools) -> tuple[RunCurves, Ints]:
+    """The segments of some runs, those of `turned` ones backwards, and where each run's begin; one number more."""
+    return _oriented(cut.paths, cut.first[chosen], cut.counts[chosen], turned)
+
+
+def replaced(cut: CutPaths, turned: Bools, drawn: Drawn) -> Paths:
+    """Put what was drawn in the place of the runs, backwards for those that are `turned`; all else stays as it is."""
+    return _assembled(cut.paths, ~cut.bent, cut.first, turned, drawn)
+
+
+def replace_runs(paths: Paths, corner: float, absorbed: float, draw: Callable[[SmoothRuns, RunCurves], Drawn]) -> Paths:
+    """Put what `draw` makes of them in the place of the runs of `cut_runs`; all else stays as it is.
+
+    `draw` gets the runs in both senses, and what takes fewer segments is kept.
+    """
+    cut = cut_runs(paths, corner, absorbed)
+    if not len(cut.first):
+        return cut.paths
+    return replaced(cut, *_fewer(cut, draw))
 
 
 def _bent(paths: Paths) -> Bools:
@@ -176,8 +206,8 @@ def _turned(paths: Paths, first: Ints, last: Ints) -> Bools:
     return turned
 
 
-def _oriented(paths: Paths, first: Ints, counts: Ints, turned: Bools) -> tuple[RunCurves, SmoothRuns]:
-    """The segments of all runs, in the sense in which they are fitted."""
+def _oriented(paths: Paths, first: Ints, counts: Ints, turned: Bools) -> tuple[RunCurves, Ints]:
+    """The segments of all runs, in the sense in which they are fitted, and where those of each begin."""
     run = np.repeat(np.arange(len(first)), counts)
     segment = ranges(first, counts)
     back = turned[run]
@@ -190,20 +220,19 @@ def _oriented(paths: Paths, first: Ints, counts: Ints, turned: Bools) -> tuple[R
         np.where(back, segments.start, segments.end),
         segments.cubic,
     )
-    return curves, SmoothRuns.of_segments(*curves.coefficients(), np.append(0, np.cumsum(counts)))
+    return curves, np.append(0, np.cumsum(counts))
 
 
-def _fewer(
-    paths: Paths, first: Ints, counts: Ints, draw: Callable[[SmoothRuns, RunCurves], Drawn]
-) -> tuple[Bools, Drawn]:
+def _fewer(cut: CutPaths, draw: Callable[[SmoothRuns, RunCurves], Drawn]) -> tuple[Bools, Drawn]:
     """Draw runs from either end, and keep what takes fewer segments: whether from the far end, and the segments.
 
     Where both take as many, the order of the points decides, so that a run and its reverse are fitted alike.
     """
-    count = len(first)
-    turned = _turned(paths, first, first + counts - 1)
-    curves, runs = _oriented(paths, np.tile(first, 2), np.tile(counts, 2), np.concatenate((turned, ~turned)))
-    drawn = draw(runs, curves)
+    count = len(cut.first)
+    turned = canonical_senses(cut)
+    twice = np.tile(np.arange(count), 2)
+    curves, first = oriented_runs(cut, twice, np.concatenate((turned, ~turned)))
+    drawn = draw(SmoothRuns.of_segments(*curves.coefficients(), first), curves)
     taken = np.bincount(drawn.run, minlength=2 * count)
     other = taken[count:] < taken[:count]
     run = drawn.run % count

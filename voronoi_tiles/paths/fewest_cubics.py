@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
-from functools import partial
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Floats, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.maps import Isometry
+from voronoi_tiles.paths.congruent_runs import RunImages, control_points, reversal, shapes
 from voronoi_tiles.paths.conversion import to_cubics, usable
 from voronoi_tiles.paths.cubic_fit import fit_cubics
-from voronoi_tiles.paths.curved_runs import CORNER, Drawn, RunCurves, replace_runs, stretch_ends
+from voronoi_tiles.paths.curved_runs import (
+    CORNER,
+    CutPaths,
+    Drawn,
+    canonical_senses,
+    cut_runs,
+    oriented_runs,
+    replaced,
+)
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, Paths
 from voronoi_tiles.paths.segmentation import even_stretches, longest_stretches
 from voronoi_tiles.paths.smooth_runs import SmoothRuns
@@ -23,15 +32,24 @@ _FLAT: Final = 1e-9
 accuracy."""
 
 
+_ALIKE: Final = 1e-5
+"""Runs whose points are so near to each other's images have one shape; relative to the accuracy. It is part of what is
+left to rounding."""
+
+
 def to_fewest_cubics(paths: Paths, *, accuracy: float, corner: float = CORNER, absorbed: float = 0.0) -> Paths:
     """Replace every QUAD, CUBIC and ARC by CUBICs within `accuracy`, by the fewest; all else stays as it is.
 
     The Hausdorff distance between old and new curves is at most `accuracy` (in the paths' unit) both ways; it is
-    bounded, not sampled. Paths are cut and runs replaced as in `to_arcs`, which has the words: corners are where
-    tangents differ by more than `corner` (radians), and stay; LINEs shorter than `absorbed` count as curved. Along a
-    run, one curve after the other takes the longest stretch that it follows within the accuracy, with the run's
-    tangents at both ends: so all curves of a run join with continuous tangents. Then the breaks are moved, at the same
-    count, to spread the error evenly. What is straight is a LINE.
+    bounded, not sampled. Paths are cut into runs as by `cut_runs`: corners are where tangents differ by more than
+    `corner` (radians), and stay; LINEs shorter than `absorbed` count as curved. Along a run, one curve after the other
+    takes the longest stretch that it follows within the accuracy, with the run's tangents at both ends: so the curves
+    of a run join with continuous tangents. Then the breaks are moved, at the same count, to spread the error evenly.
+    What is straight is a LINE.
+
+    Runs of one shape, wherever they lie, however turned, mirrored or run through, get the images of one fit: two that
+    differ in their sense alone the same bits. A run that is its own image backwards is fitted from its middle on, and
+    stays its own image.
 
     Raises ValueError where the accuracy is not positive and finite, or finer than the coordinates' resolution.
     """
@@ -39,27 +57,146 @@ def to_fewest_cubics(paths: Paths, *, accuracy: float, corner: float = CORNER, a
     if (paths.kind == ARC).any():
         paths = to_cubics(paths, accuracy=_ROUND * accuracy)
         bound -= _ROUND * accuracy
-    return replace_runs(paths, corner, absorbed, partial(_draw, bound=bound, flat=_FLAT * accuracy))
+    cut = cut_runs(paths, corner, absorbed)
+    if not len(cut.first):
+        return cut.paths
+    turned = canonical_senses(cut)
+    curves, first = oriented_runs(cut, np.arange(len(cut.first)), turned)
+    points, offsets = control_points(curves, first)
+    found = list(shapes(points, offsets, _ALIKE * accuracy))
+    models = np.array([images[0].runs[0] for images in found])
+    reversals = [reversal(points[offsets[k] : offsets[k + 1]], _ALIKE * accuracy) for k in models.tolist()]
+    splines = _splines(cut, models, turned[models], reversals, bound)
+    drawn = [
+        _image(images, spline, points[offsets[:-1]], points[offsets[1:] - 1], _FLAT * accuracy)
+        for of_shape, spline in zip(found, splines, strict=True)
+        for images in of_shape
+    ]
+    every = Drawn(*(np.concatenate(columns) for columns in zip(*drawn, strict=True)))
+    order = np.argsort(every.run, kind="stable")
+    return replaced(cut, turned, Drawn(*(column[order] for column in every)))
 
 
-def _draw(runs: SmoothRuns, curves: RunCurves, bound: float, flat: float) -> Drawn:
-    """Draw a cubic curve for each stretch of runs."""
+class _Spline(NamedTuple):
+    """Cubic curves one after the other: their ends, complex128 (n + 1,), and their control points, (n, 2)."""
 
-    def error_of(run: Ints, low: Floats, high: Floats) -> Floats:
+    nodes: Complexes
+    control: Complexes
+
+    def reversed(self) -> _Spline:
+        """The same, run through backwards."""
+        return _Spline(self.nodes[::-1], self.control[::-1, ::-1])
+
+    def moved(self, image: Isometry) -> _Spline:
+        """The image under an isometry."""
+        return _Spline(image(self.nodes), image(self.control))
+
+    def doubled(self, image: Isometry, *, odd: bool) -> _Spline:
+        """The whole of which this is the second half; `image` maps it onto itself backwards.
+
+        Where the number of curves is `odd`, the first of the half is the one in the middle.
+        """
+        before = self.moved(image).reversed()
+        if not odd:
+            middle = (self.nodes[:1] + before.nodes[-1:]) / 2
+            nodes = np.concatenate((before.nodes[:-1], middle, self.nodes[1:]))
+            return _Spline(nodes, np.concatenate((before.control, self.control)))
+        control = self.control.copy()
+        control[0, 0] = before.control[-1, 0]
+        nodes = np.concatenate((before.nodes[:-1], self.nodes[1:]))
+        return _Spline(nodes, np.concatenate((before.control[:-1], control)))
+
+
+class _Coverings(NamedTuple):
+    """What is covered by stretches, of which places are counted from 0 on: of each the run, and where in it 0 lies.
+
+    From the `middle` of a run on, its second half is covered; where `odd`, the first stretch reaches as far to the
+    other side. For a whole run it is 0.
+    """
+
+    runs: SmoothRuns
+    run: Ints
+    middle: Floats
+    odd: Bools
+
+    @property
+    def total(self) -> Floats:
+        """The last places."""
+        return self.runs.total[self.run] - self.middle
+
+    def places(self, which: Ints, low: Floats, high: Floats) -> tuple[Ints, Floats, Floats, Bools]:
+        """The stretches of runs that are meant: the run, places in it, and whether its middle is that of the run."""
+        run, middle = self.run[which], self.middle[which]
+        begin, end = middle + low, middle + high
+        across = self.odd[which] & (low == 0.0)
+        return run, np.where(across, _opposite(self.runs, run, end), begin), end, across
+
+    def errors(self, which: Ints, low: Floats, high: Floats) -> Floats:
         """The bounds of the fits."""
-        return fit_cubics(runs, run, low, high).bound
+        return fit_cubics(self.runs, *self.places(which, low, high)).bound
 
-    longest = longest_stretches(runs, bound, error_of, 6)
-    stretches = even_stretches(runs, longest, bound, error_of, 6)
-    fit = fit_cubics(runs, *stretches)
+
+def _opposite(runs: SmoothRuns, run: Ints, place: Floats) -> Floats:
+    """The places that are the images of others in runs that are their own images backwards."""
+    segment, t = runs.locate(run, place, before=True)
+    other = runs.first[run] + runs.first[run + 1] - 1 - segment
+    return np.asarray(runs.begin[other] + (1.0 - t) * runs.size[other])
+
+
+def _splines(
+    cut: CutPaths, chosen: Ints, turned: Bools, reversals: list[Isometry | None], bound: float
+) -> list[_Spline]:
+    """What replaces some runs, each by the fewest curves; `reversals` maps those that have one onto themselves."""
+    count = len(chosen)
+    curves, first = oriented_runs(cut, np.tile(chosen, 2), np.concatenate((turned, ~turned)))
+    runs = SmoothRuns.of_segments(*curves.coefficients(), first)
+    # A run is covered from either end; one with a reversal from its middle on, with a break there or none.
+    symmetric = np.tile([image is not None for image in reversals], 2)
+    second = np.arange(2 * count) >= count
+    run = np.where(symmetric & second, np.arange(2 * count) - count, np.arange(2 * count))
+    segment, rest = np.divmod(first[run] + first[run + 1], 2)
+    middle = runs.begin[np.minimum(segment, len(runs.begin) - 1)] + 0.5 * rest * runs.size[segment - 1 + rest]
+    covered = _Coverings(runs, run, np.where(symmetric, middle, 0.0), symmetric & second)
+    longest = longest_stretches(covered.total, bound, covered.errors, 6)
+    stretches = even_stretches(covered.total, longest, bound, covered.errors, 6)
+    places = covered.places(*stretches)
+    fit = fit_cubics(runs, *places)
     assert np.all(fit.bound <= bound)
-    start, end = stretch_ends(runs, curves, stretches)
     x, y = fit.curves
-    control = np.empty((len(start), 2), np.complex128)
-    control.real = start.real[:, None] + x[1:3].T
-    control.imag = start.imag[:, None] + y[1:3].T
-    chord = np.hypot(x[3], y[3])
-    across = np.max(np.abs(x[1:3] * y[3] - y[1:3] * x[3]), axis=0)
-    straight = across <= flat * chord
+    begin = np.empty(len(places[0]), np.complex128)
+    begin.real, begin.imag = runs.points(*runs.locate(places[0], places[1], before=False))
+    control, end = begin[:, None] + (x[1:3] + 1j * y[1:3]).T, begin + (x[3] + 1j * y[3])
+    offsets = np.searchsorted(stretches.run, np.arange(2 * count + 1))
+    splines = []
+    for k, image in enumerate(reversals):
+        one, other = (slice(offsets[j], offsets[j + 1]) for j in (k, k + count))
+        fewer = offsets[k + count + 1] - offsets[k + count] - (image is not None) * 0.5 < offsets[k + 1] - offsets[k]
+        taken = other if fewer else one
+        spline = _Spline(np.append(begin[taken][:1], end[taken]), control[taken])
+        if image is not None:
+            spline = spline.doubled(image, odd=bool(fewer))
+        elif fewer:
+            spline = spline.reversed()
+        splines.append(spline)
+    return splines
+
+
+def _image(images: RunImages, spline: _Spline, starts: Complexes, ends: Complexes, flat: float) -> Drawn:
+    """The images of a spline in the place of runs, between the `starts` and `ends` of these."""
+    if images.back:
+        spline = spline.reversed()
+    pieces = len(spline.control)
+    points = np.concatenate((spline.nodes[1:-1], spline.control.ravel()))
+    if images.conj:
+        points = points.conj()
+    moved = images.a[:, None] * points + images.b[:, None]
+    inner, control = moved[:, : pieces - 1], moved[:, pieces - 1 :].reshape(-1, 2)
+    start = np.column_stack((starts[images.runs], inner)).ravel()
+    end = np.column_stack((inner, ends[images.runs])).ravel()
+    chord = end - start
+    across = np.abs(((control - start[:, None]) * chord.conj()[:, None]).imag).max(axis=1)
+    straight = across <= flat * np.abs(chord)
     control[straight] = 0
-    return Drawn(stretches.run, start, end, control, np.where(straight, np.uint8(LINE), np.uint8(CUBIC)))
+    return Drawn(
+        np.repeat(images.runs, pieces), start, end, control, np.where(straight, np.uint8(LINE), np.uint8(CUBIC))
+    )

@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple, TypeAlias
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Floats, Ints
-from voronoi_tiles.paths.smooth_runs import SmoothRuns, last_up_to
+from voronoi_tiles.paths.smooth_runs import last_up_to
 
 Error: TypeAlias = Callable[[Ints, Floats, Floats], Floats]
 """How far what follows them is from stretches: of runs, from places to places."""
@@ -104,25 +104,26 @@ def _root(values: Floats, order: Order) -> Floats:
     return cube if order == 3 else np.sqrt(cube)
 
 
-def longest_stretches(runs: SmoothRuns, bound: float, error_of: Error, order: Order) -> Stretches:
+def longest_stretches(total: Floats, bound: float, error_of: Error, order: Order) -> Stretches:
     """Cover runs by stretches whose error is within the bound, each as long as can be; all runs side by side.
 
+    `total` is the place where each run ends; the first is 0.
     Errors grow with about the power `order` of the length.
     """
-    search = _Search.beginning(np.arange(len(runs)), np.zeros(len(runs)), runs.total)
+    search = _Search.beginning(np.arange(len(total)), np.zeros(len(total)), total)
     found: list[tuple[Ints, Floats, Floats]] = []
     while len(search.run):
         search = search.tried(error_of(search.run, search.begin, search.trial) / bound)
         length = search.low - search.begin
         full = (search.low == search.trial) & (search.low_error >= _FULL)
-        done = full | (search.low >= runs.total[search.run]) | (search.high - search.low <= _NARROW * length)
+        done = full | (search.low >= total[search.run]) | (search.high - search.low <= _NARROW * length)
         ready = search.where(done)
         found.append((ready.run, ready.begin, ready.low))
         # The next stretch begins where this one ends, and is tried at the same length.
         after = _Search.beginning(ready.run, ready.low, ready.low + length[done])
         going = search.where(~done).aimed(order)
         search = _Search(*(np.concatenate(pair) for pair in zip(going, after, strict=True)))
-        end = runs.total[search.run]
+        end = total[search.run]
         search = search._replace(trial=np.minimum(search.trial, end)).where(search.begin < end)
         assert np.all((search.trial > search.low) & (search.trial < search.high)), "the accuracy is too fine"
     run, begin, low = (np.concatenate(parts) for parts in zip(*found, strict=True))
@@ -130,15 +131,15 @@ def longest_stretches(runs: SmoothRuns, bound: float, error_of: Error, order: Or
     return Stretches(run[order], begin[order], low[order])
 
 
-def even_stretches(runs: SmoothRuns, stretches: Stretches, bound: float, error_of: Error, order: Order) -> Stretches:
+def even_stretches(total: Floats, stretches: Stretches, bound: float, error_of: Error, order: Order) -> Stretches:
     """Move the breaks between stretches so that their errors become alike, where all stay within the bound."""
-    first = np.searchsorted(stretches.run, np.arange(len(runs)))
+    first = np.searchsorted(stretches.run, np.arange(len(total)))
     best = stretches
     error = error_of(*best)
     worst = np.maximum.reduceat(error, first)
     trial, trial_error = best, error
     for _ in range(_ROUNDS):
-        trial = _moved(runs, trial, trial_error / bound, first, order)
+        trial = _moved(total, trial, trial_error / bound, first, order)
         trial_error = error_of(*trial)
         trial_worst = np.maximum.reduceat(trial_error, first)
         better = (trial_worst < worst)[stretches.run]
@@ -147,7 +148,7 @@ def even_stretches(runs: SmoothRuns, stretches: Stretches, bound: float, error_o
     return best
 
 
-def _moved(runs: SmoothRuns, stretches: Stretches, error: Floats, first: Ints, order: Order) -> Stretches:
+def _moved(total: Floats, stretches: Stretches, error: Floats, first: Ints, order: Order) -> Stretches:
     """Cut each run into as many stretches again, of equal shares of the root of the error."""
     run = stretches.run
     offsets = np.append(first, len(run))
@@ -155,12 +156,12 @@ def _moved(runs: SmoothRuns, stretches: Stretches, error: Floats, first: Ints, o
     root = _root(np.clip(error, 1e-6, 1e3), order)
     weight = np.ceil(root * 2.0**30).astype(np.int64)  # whole numbers add up without rounding
     sums = np.append(0, np.cumsum(weight))
-    total = (sums[offsets[1:]] - sums[first])[run]
+    whole = (sums[offsets[1:]] - sums[first])[run]
     before = (sums[:-1] - sums[first][run]).astype(np.float64)
     number = np.arange(len(run)) - first[run]
-    target = total * (number / count)
+    target = whole * (number / count)
     at = last_up_to(before, offsets, run, target)
     share = (target - before[at]) / weight[at]
     low = np.where(number == 0, 0.0, stretches.low[at] + share * (stretches.high[at] - stretches.low[at]))
     last = number == count - 1
-    return Stretches(run, low, np.where(last, runs.total[run], np.append(low[1:], 0.0)))
+    return Stretches(run, low, np.where(last, total[run], np.append(low[1:], 0.0)))

@@ -1,0 +1,283 @@
+"""Curves replaced by the fewest cubic ones: bounded, smooth, the same wherever a run lies, symmetric where it is."""
+
+from __future__ import annotations
+
+import cmath
+from dataclasses import replace
+from itertools import pairwise
+
+import kurbopy
+import numpy as np
+import pytest
+from helpers.curves import arc, assert_joined, chain, distance, same, smooth_side
+from helpers.examples import EXAMPLES, tiling
+from hypothesis import example, given, settings
+from hypothesis import strategies as st
+
+from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.paths.cubic_bounds import FittedCubics, bounds
+from voronoi_tiles.paths.fewest_cubics import to_fewest_cubics
+from voronoi_tiles.paths.paths import CUBIC, LINE, QUAD, Paths
+from voronoi_tiles.paths.smooth_runs import SmoothRuns
+from voronoi_tiles.paths.stretch_parts import cut
+
+ACCURACY = 0.005
+CORNER = 0.1
+
+FEW = ("p1-leaf", "p31m-gem", "p4-hook")
+"""Examples of the quick tests: smooth, flattened, with corners and long lines."""
+
+
+def exact_edges(name: str) -> Paths:
+    """The exact edges of an example's tiles, one of each orbit; millimetres."""
+    made = tiling(name)
+    return made.tessellation.quotient.paths().moved(made.design.unit_mm, 0j)
+
+
+def fitted(paths: Paths, accuracy: float = ACCURACY) -> Paths:
+    """The fewest cubic curves, with the corners and the short lines of fabrication."""
+    return to_fewest_cubics(paths, accuracy=accuracy, corner=CORNER, absorbed=400 * accuracy)
+
+
+def directions(paths: Paths) -> tuple[Complexes, Complexes]:
+    """The unit directions in which segments leave their starts, and arrive at their ends."""
+    points = np.column_stack((paths.start, paths.control, paths.end))
+    rows = {LINE: [0, 3], QUAD: [0, 1, 3], CUBIC: [0, 1, 2, 3]}
+    legs = [np.diff(points[k, rows[int(kind)]]) for k, kind in enumerate(paths.kind)]
+    legs = [leg[np.abs(leg) > 1e-9] for leg in legs]
+    first, last = np.array([leg[0] for leg in legs]), np.array([leg[-1] for leg in legs])
+    return first / np.abs(first), last / np.abs(last)
+
+
+def corners(paths: Paths, angle: float) -> Complexes:
+    """The joints of the first path, with its ends, at which the direction changes by more than an angle."""
+    leaving, arriving = directions(paths)
+    turn = np.abs(np.angle(leaving[1:] / arriving[:-1]))
+    return np.concatenate((paths.start[:1], paths.start[1:][turn > angle], paths.end[-1:]))
+
+
+def assert_smooth(paths: Paths, at: Complexes) -> None:
+    """Directions go on continuously but at some points."""
+    leaving, arriving = directions(paths)
+    turn = np.abs(np.angle(leaving[1:] / arriving[:-1]))
+    assert np.all((turn <= 1e-9) | np.isin(paths.start[1:], at))
+
+
+few_examples = pytest.mark.parametrize(
+    "name",
+    [name if name in FEW else pytest.param(name, marks=pytest.mark.slow) for name in EXAMPLES],
+)
+
+
+@few_examples
+def test_the_edges_of_tiles_are_followed(name: str) -> None:
+    """Within the accuracy both ways, by dense samples; smooth but for the corners, which stay bit for bit."""
+    old = exact_edges(name)
+    counts = [0, 0]
+    for k in range(len(old)):
+        edge = old.take(np.array([k]))
+        new = fitted(edge)
+        assert_joined(new)
+        assert distance(edge, new, 0.02) <= ACCURACY * 1.001
+        there = corners(edge, CORNER)
+        lines = edge.kind == LINE
+        assert set(there.tolist()) <= {*new.start.tolist(), *new.end.tolist()}
+        assert_smooth(new, np.concatenate((there, edge.start[lines], edge.end[lines])))
+        counts[0] += len(edge.start)
+        counts[1] += len(new.start)
+    assert counts[1] <= max(12, counts[0] / 2)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize(("size", "accuracy"), [(2.0, 0.005), (0.05, 0.01), (10.0, 0.05)])
+def test_smooth_sides_are_followed(seed: int, size: float, accuracy: float) -> None:
+    """Runs of many pieces, with curvature that jumps, from tiny to long; with fewer curves than pieces."""
+    old = smooth_side(seed, 12, size)
+    new = to_fewest_cubics(old, accuracy=accuracy)
+    assert_joined(new)
+    assert distance(old, new, accuracy / 2) <= accuracy * 1.001
+    assert (new.start[0], new.end[-1]) == (old.start[0], old.end[-1])
+    assert_smooth(new, np.zeros(0))
+    assert len(new.kind) < 12
+
+
+@given(
+    seed=st.integers(0, 10**6),
+    near=st.floats(0.05, 2.0),
+    far=st.floats(0.05, 2.0),
+    low=st.floats(0.0, 0.6),
+    length=st.floats(0.05, 0.4),
+)
+@settings(max_examples=40, deadline=None)
+def test_a_bound_is_a_bound(seed: int, near: float, far: float, low: float, length: float) -> None:
+    """However bad a curve is: no farther from its stretch than the bound says, by dense samples, both ways."""
+    side = smooth_side(seed, 6, 1.0)
+    p0, p1, p2 = side.start, side.control[:, 0], side.end
+    c = np.stack((p0, (p1 - p0) * (2 / 3), (p0 - 2 * p1 + p2) / 3, 0 * p0))
+    runs = SmoothRuns.of_segments(c.real.copy(), c.imag.copy(), np.array([0, len(p0)]))
+    total = float(runs.total[0])
+    parts, ends = cut(runs, np.zeros(1, np.intp), np.array([low * total]), np.array([(low + length) * total]))
+    third = length * total / 3
+    control = (
+        complex(ends.ax[0], ends.ay[0]) * near * third,
+        complex(ends.x[0], ends.y[0]) - far * third * complex(ends.bx[0], ends.by[0]),
+    )
+    points = np.array([0j, *control, complex(ends.x[0], ends.y[0])])[:, None]
+    curve = FittedCubics(points.real.copy(), points.imag.copy())
+    share = np.arange(len(parts.stretch)) / len(parts.stretch)
+    bound = float(bounds(parts, curve, share)[0])
+    stretch = chain(*map(tuple, (parts.x + 1j * parts.y).T.tolist()))
+    real = distance(stretch, chain(tuple(points[:, 0].tolist())), total / 2000)
+    assert real <= bound + total * 1e-6
+
+
+def test_a_bound_sees_a_curve_that_does_not_follow() -> None:
+    """A control point that is moved aside, and a stretch whose second half is missing."""
+    side = chain((0j, 3 + 4j, 6 + 0j))
+    runs = SmoothRuns.of_segments(
+        *(
+            np.stack((p, (q - p) * (2 / 3), (p - 2 * q + r) / 3, 0 * p))
+            for p, q, r in (
+                (side.start.real, side.control[:, 0].real, side.end.real),
+                (side.start.imag, side.control[:, 0].imag, side.end.imag),
+            )
+        ),
+        np.array([0, 1]),
+    )
+    parts, _ = cut(runs, np.zeros(1, np.intp), np.zeros(1), runs.total)
+    share = np.arange(len(parts.stretch)) / len(parts.stretch)
+    points = np.array([0j, 2 + 8j / 3, 4 + 8j / 3, 6 + 0j])
+    for moved, least in ((0j, 0.0), (0.1j, 0.02), (-1.0 - 1.0j, 0.2)):
+        bent = (points + np.array([0, moved, 0, 0]))[:, None]
+        bound = float(bounds(parts, FittedCubics(bent.real.copy(), bent.imag.copy()), share)[0])
+        assert least <= bound <= abs(moved) / 2 + 1e-12
+
+
+@settings(max_examples=10, deadline=None)
+@example(seed=3, count=5, angle=2.0, accuracy=0.005)
+@given(
+    seed=st.integers(0, 10**6),
+    count=st.integers(1, 8),
+    angle=st.floats(0, 6.3),
+    accuracy=st.sampled_from([0.05, 0.005, 0.0005]),
+)
+def test_images_have_the_images_of_one_fit(seed: int, count: int, angle: float, accuracy: float) -> None:
+    """Backwards the same bits; turned, mirrored and shifted beside it the same curve, to rounding."""
+    side = smooth_side(seed, count, 2.0)
+    turn = cmath.rect(1.0, angle)
+    image = side.moved(turn, 30 - 20j, conj=True)
+    together = to_fewest_cubics(Paths.concatenate([side, side.reversed(), image, image.reversed()]), accuracy=accuracy)
+    first, back, there, and_back = (together.take(np.array([k])) for k in range(4))
+    assert same(first, back.reversed())
+    assert same(there, and_back.reversed())
+    moved = first.moved(turn, 30 - 20j, conj=True)
+    assert there.kind.tolist() == moved.kind.tolist()
+    for name in ("start", "end", "control"):
+        assert np.abs(getattr(there, name) - getattr(moved, name)).max() <= 1e-12 * 60
+    assert same(
+        to_fewest_cubics(side.reversed(), accuracy=accuracy), to_fewest_cubics(side, accuracy=accuracy).reversed()
+    )
+
+
+@settings(max_examples=15, deadline=None)
+@given(seed=st.integers(0, 10**6), count=st.integers(1, 5), mirror=st.booleans(), split=st.booleans())
+def test_what_is_its_own_image_stays_so(seed: int, count: int, mirror: bool, split: bool) -> None:
+    """A run that a half turn or a mirror maps onto itself backwards is replaced by one that it maps so too."""
+    half = smooth_side(seed, count, 2.0)
+    end, along = half.end[-1], directions(half)[1][-1]
+    # About the end; the mirror stands across the run there.
+    factor = -along * along if mirror else -1 + 0j
+    shift = end - factor * (end.conjugate() if mirror else end)
+    other = half.moved(factor, shift, conj=mirror).reversed()
+    other.start[0] = end
+    whole = Paths.concatenate([half, other])
+    whole = replace(whole, offsets=np.array([0, len(whole.start)]), closed=np.zeros(1, np.bool_))
+    accuracy = 0.0005 if split else 0.01
+    new = to_fewest_cubics(whole, accuracy=accuracy)
+    assert distance(whole, new, 0.005) <= accuracy * 1.001 + 1e-6
+    image = new.moved(factor, shift, conj=mirror).reversed()
+    for name in ("start", "end", "control"):
+        assert np.abs(getattr(image, name) - getattr(new, name)).max() <= 1e-12 * 60
+    assert_smooth(new, np.zeros(0))
+
+
+def test_arcs_are_followed() -> None:
+    """Half a circle of 10 mm, for which cubic curves over equal angles would do in as many."""
+    middle = arc(5 + 0j, 5j, -5 + 0j)
+    for accuracy, most in ((0.01, 2), (0.0005, 3), (1e-5, 5)):
+        new = to_fewest_cubics(middle, accuracy=accuracy)
+        assert set(new.kind.tolist()) == {CUBIC}
+        assert len(new.kind) <= most
+        assert distance(middle, new, 0.001) <= accuracy * 1.001 + 1e-7
+
+
+def test_what_is_straight_is_a_line() -> None:
+    """Short lines beside curves may become parts of them; alone they are lines."""
+    lines = chain((0j, 0.5 + 0j), (0.5 + 0j, 0.5 + 0.7j))
+    assert same(fitted(lines), lines)
+    bent = chain((0j, 1 + 0j), (1 + 0j, 2 + 0j, 3 + 1j), (3 + 1j, 4 + 2j))
+    assert fitted(bent).kind.tolist() == [CUBIC, CUBIC]
+    assert to_fewest_cubics(bent, accuracy=ACCURACY).kind.tolist() == [LINE, CUBIC, LINE]
+
+
+class _Run:
+    """A run of smooth segments as kurbopy wants it: points and derivatives at parameters from 0 to 1."""
+
+    def __init__(self, run: Paths) -> None:
+        self.run = run
+        self.places = np.append(0.0, np.cumsum(run.lengths)) / run.lengths.sum()
+
+    def _at(self, t: float, sign: float) -> tuple[complex, complex]:
+        """The point and the derivative at a parameter, as it is reached from one side."""
+        side = "right" if sign >= 0 else "left"
+        k = int(np.clip(np.searchsorted(self.places, t, side) - 1, 0, len(self.run.start) - 1))
+        width = self.places[k + 1] - self.places[k]
+        u = (t - self.places[k]) / width
+        a, c = self.run.start[k], self.run.end[k]
+        b = self.run.control[k, 0] if self.run.kind[k] == QUAD else (a + c) / 2
+        return a * (1 - u) ** 2 + 2 * b * u * (1 - u) + c * u * u, 2 * ((b - a) * (1 - u) + (c - b) * u) / width
+
+    def sample_pt_tangent(self, t: float, sign: float) -> tuple[kurbopy.Point, kurbopy.Vec2]:
+        """A point and the tangent there."""
+        point, along = self._at(t, sign)
+        return kurbopy.Point(point.real, point.imag), kurbopy.Vec2(along.real, along.imag)
+
+    def sample_pt_deriv(self, t: float) -> tuple[kurbopy.Point, kurbopy.Vec2]:
+        """A point and the derivative there."""
+        return self.sample_pt_tangent(t, 1.0)
+
+    def break_cusp(self, start: float, end: float) -> None:
+        """Where a corner is: nowhere."""
+
+
+def smooth_parts(path: Paths) -> list[Paths]:
+    """A path cut at its corners and beside its long lines, these left out."""
+    leaving, arriving = directions(path)
+    turn = np.abs(np.angle(leaving[1:] / arriving[:-1]))
+    long = (path.kind == LINE) & (path.lengths >= 400 * ACCURACY)
+    breaks = [0, *(np.flatnonzero((turn > CORNER) | long[1:] | long[:-1]) + 1).tolist(), len(path.start)]
+    found = []
+    for a, b in pairwise(breaks):
+        part = Paths(
+            start=path.start[a:b],
+            end=path.end[a:b],
+            control=path.control[a:b],
+            kind=path.kind[a:b],
+            offsets=np.array([0, b - a]),
+            closed=np.zeros(1, np.bool_),
+        )
+        if not long[a]:
+            found.append(part)
+    return found
+
+
+@few_examples
+def test_there_are_no_more_than_a_tenth_above_those_of_kurbo(name: str) -> None:
+    """At the same accuracy, run by run: fit_to_bezpath, which looks at samples."""
+    ours, theirs = 0, 0
+    edges = exact_edges(name)
+    for k in range(len(edges)):
+        for run in smooth_parts(edges.take(np.array([k]))):
+            ours += len(fitted(run).kind)
+            theirs += len(list(kurbopy.fit_to_bezpath(_Run(run), ACCURACY).elements())) - 1
+    assert 0 < ours <= 1.1 * theirs
