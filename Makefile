@@ -122,6 +122,7 @@ bench: $(INSTALLED_DEV)
 	$(VENV)/bin/python bench/sheets.py --write
 	$(VENV)/bin/python bench/against.py --write
 	$(VENV)/bin/python bench/preflight.py --write
+	$(VENV)/bin/python bench/cubics.py --write
 
 fuzz: $(INSTALLED_DEV)
 	cd tests && $(abspath $(VENV))/bin/python -m helpers.fuzz $(N)

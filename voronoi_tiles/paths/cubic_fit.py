@@ -25,6 +25,15 @@ _FARTHEST: Final = 0.3
 """What a handle may change by in a step; relative to the stretch's length."""
 
 
+_SIDE: Final = 8
+"""Points on either side of a place by which a tangent is found; a count."""
+
+_AROUND: Final = np.linspace(-1.0, 1.0, 2 * _SIDE + 1)
+"""These points and the place; relative to the window."""
+
+_LEAST: Final = 0.02
+"""The weight of the outermost points; that of the place is 1."""
+
 _UNITS: Final = 2.0**30
 """Shares of a stretch's length are whole numbers of parts as small as this."""
 
@@ -56,19 +65,36 @@ class _Hermite(NamedTuple):
         )
 
 
-def fit_cubics(runs: SmoothRuns, run: Ints, low: Floats, high: Floats, even: Bools | None = None) -> CubicFit:
-    """Replace the stretches of runs between two places each by one cubic curve.
+class PlacedStretches(NamedTuple):
+    """Stretches of runs from one place to another, and the windows by which tangents are found at these two.
+
+    Those that are `even` are their own images backwards.
+    """
+
+    run: Ints
+    low: Floats
+    high: Floats
+    low_window: Floats
+    high_window: Floats
+    even: Bools
+
+
+def fit_cubics(runs: SmoothRuns, stretches: PlacedStretches) -> CubicFit:
+    """Replace each stretch by one cubic curve.
 
     It has the ends of the stretch and the tangents of `tangents_at` there, so that curves of neighbouring stretches
     go on smoothly. The lengths of the two handles are such that the squares of the distances from the stretch, along
     the curve's normals, come to the least: steps of Gauss and Newton, with the feet of points found along the way.
-    Stretches that are `even`, which are their own images backwards, get two handles of one length.
+    Stretches that are even get a curve that is.
     """
+    run, low, high, low_window, high_window, even = stretches
     parts, ends = cut(runs, run, low, high)
     stretch, first = parts.stretch, parts.first[:-1]
     lengths = _lengths(parts)
     total = np.add.reduceat(lengths, first)
-    given = _Hermite(ends.x, ends.y, *tangents_at(runs, run, low), *tangents_at(runs, run, high), total)
+    bx, by = tangents_at(runs, run, high, high_window)
+    ax, ay = _evened(ends.x, ends.y, *tangents_at(runs, run, low, low_window), bx, by, even)
+    given = _Hermite(ends.x, ends.y, ax, ay, bx, by, total)
     share = np.ceil(lengths / total[stretch] * _UNITS).astype(np.int64)  # they add up without rounding
     sums = np.cumsum(share) - share
     before = (sums - sums[first][stretch]) / _UNITS
@@ -82,15 +108,64 @@ def fit_cubics(runs: SmoothRuns, run: Ints, low: Floats, high: Floats, even: Boo
         for _ in range(2 if step == 0 else 1):
             t = nearer_foot(here, x, y, t)
         near, far = _better_handles(given, stretch, first, weight, (x, y), t, here, near, far)
-    if even is not None:
-        both = (near + far) / 2
-        near, far = np.where(even, both, near), np.where(even, both, far)
+    both = (near + far) / 2
+    near, far = np.where(even, both, near), np.where(even, both, far)
     curves = given.curves(near, far)
     return CubicFit(curves, bounds(parts, curves, t[0]))
 
 
-def tangents_at(runs: SmoothRuns, run: Ints, place: Floats) -> tuple[Floats, Floats]:
-    """The unit tangents at places of runs, x and y; at a small joint, halfway between those beside it."""
+def tangents_at(runs: SmoothRuns, run: Ints, place: Floats, window: Floats) -> tuple[Floats, Floats]:
+    """The unit tangents at places of runs, x and y; at a small joint, halfway between those beside it.
+
+    Where the `window` is not 0, they are those of a cubic polynomial of the length that comes nearest to the run as far
+    as the window reaches to both sides: flattened strokes leave small joints and waves along a run, whose own tangents
+    lead astray.
+    """
+    x, y = _own_tangents(runs, run, place)
+    wide = np.flatnonzero(window > 0.0)
+    if len(wide):
+        x[wide], y[wide] = _mean_tangents(runs, run[wide], place[wide], window[wide])
+    return x, y
+
+
+def _mean_tangents(runs: SmoothRuns, run: Ints, place: Floats, window: Floats) -> tuple[Floats, Floats]:
+    """The unit tangents of the polynomials of `tangents_at`."""
+    around = np.clip(place + window * _AROUND[:, None], 0.0, runs.total[run])
+    segment, t = runs.locate(np.tile(run, len(_AROUND)), around.ravel(), before=False)
+    x, y = (values.reshape(around.shape) for values in runs.points(segment, t))
+    x, y = x - x[_SIDE], y - y[_SIDE]
+    dx, dy = np.diff(x, axis=0), np.diff(y, axis=0)
+    length = np.concatenate((np.zeros((1, len(run))), np.cumsum(np.sqrt(dx * dx + dy * dy), axis=0)))
+    length -= length[_SIDE]
+    length /= np.maximum(length[-1], -length[0])
+    powers = [np.ones(length.shape), length, length * length, length**3]
+    weight = np.maximum(1.0 - powers[2], 0.0) + _LEAST
+    system = np.empty((len(run), 4, 4))
+    values = np.empty((len(run), 4, 2))
+    for i, one in enumerate(powers):
+        for j, other in enumerate(powers):
+            system[:, i, j] = np.sum(weight * one * other, axis=0)
+        values[:, i, 0], values[:, i, 1] = np.sum(weight * one * x, axis=0), np.sum(weight * one * y, axis=0)
+    tx, ty = np.linalg.solve(system, values)[:, 1].T
+    size = np.sqrt(tx * tx + ty * ty)
+    return tx / size, ty / size
+
+
+def _evened(x: Floats, y: Floats, ax: Floats, ay: Floats, bx: Floats, by: Floats, even: Bools) -> tuple[Floats, Floats]:
+    """The tangents a, of stretches that are even to the bit as the tangents b at the end (x, y) ask for it."""
+    # A mirror stands across the chord: b is reflected in the chord's direction. A half turn leaves b as it is.
+    size = np.where((x == 0.0) & (y == 0.0), 1.0, x * x + y * y)
+    along = 2.0 * (bx * x + by * y) / size
+    mx, my = along * x - bx, along * y - by
+    mirrored = (mx - ax) ** 2 + (my - ay) ** 2 < (bx - ax) ** 2 + (by - ay) ** 2
+    return (
+        np.where(even, np.where(mirrored, mx, bx), ax),
+        np.where(even, np.where(mirrored, my, by), ay),
+    )
+
+
+def _own_tangents(runs: SmoothRuns, run: Ints, place: Floats) -> tuple[Floats, Floats]:
+    """The tangents of the runs themselves."""
     before, after = (runs.locate(run, place, before=flag) for flag in (True, False))
     (px, py), (qx, qy) = (
         tangents(runs.x[:, segment], runs.y[:, segment], t, ahead=ahead)

@@ -6,11 +6,11 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
 from voronoi_tiles.base.maps import Isometry
 from voronoi_tiles.paths.congruent_runs import RunImages, control_points, reversal, shapes
 from voronoi_tiles.paths.conversion import to_cubics, usable
-from voronoi_tiles.paths.cubic_fit import fit_cubics
+from voronoi_tiles.paths.cubic_fit import PlacedStretches, fit_cubics
 from voronoi_tiles.paths.curved_runs import (
     CORNER,
     CutPaths,
@@ -21,7 +21,7 @@ from voronoi_tiles.paths.curved_runs import (
     replaced,
 )
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, Paths
-from voronoi_tiles.paths.segmentation import even_stretches, longest_stretches
+from voronoi_tiles.paths.segmentation import Stretches, even_stretches, longest_stretches
 from voronoi_tiles.paths.smooth_runs import SmoothRuns
 
 _ROUND: Final = 0.01
@@ -31,6 +31,12 @@ _FLAT: Final = 1e-9
 """A curve whose control points are nearer than this to the line between its ends is a line; relative to the
 accuracy."""
 
+
+_MANY: Final = 4
+"""Where so many curves take the place of a run, other tangents are tried; a count."""
+
+_WINDOWS: Final = np.array([1 / 40, 1 / 20, 1 / 10])
+"""By how much of a run on either side tangents are found; relative to its length."""
 
 _ALIKE: Final = 1e-5
 """Runs whose points are so near to each other's images have one shape; relative to the accuracy. It is part of what is
@@ -67,12 +73,12 @@ def to_fewest_cubics(paths: Paths, *, accuracy: float, corner: float = CORNER, a
     models = np.array([images[0].runs[0] for images in found])
     reversals = [reversal(points[offsets[k] : offsets[k + 1]], _ALIKE * accuracy) for k in models.tolist()]
     splines = _splines(cut, models, turned[models], reversals, bound)
-    drawn = [
-        _image(images, spline, points[offsets[:-1]], points[offsets[1:] - 1], _FLAT * accuracy)
+    images = [
+        _image(one, spline, points[offsets[:-1]], points[offsets[1:] - 1], _FLAT * accuracy)
         for of_shape, spline in zip(found, splines, strict=True)
-        for images in of_shape
+        for one in of_shape
     ]
-    every = Drawn(*(np.concatenate(columns) for columns in zip(*drawn, strict=True)))
+    every = Drawn(*(np.concatenate(columns) for columns in zip(*images, strict=True)))
     order = np.argsort(every.run, kind="stable")
     return replaced(cut, turned, Drawn(*(column[order] for column in every)))
 
@@ -111,29 +117,63 @@ class _Coverings(NamedTuple):
     """What is covered by stretches, of which places are counted from 0 on: of each the run, and where in it 0 lies.
 
     From the `middle` of a run on, its second half is covered; where `odd`, the first stretch reaches as far to the
-    other side. For a whole run it is 0.
+    other side. For a whole run it is 0. Tangents are found by as much of a run as `window` says.
     """
 
     runs: SmoothRuns
     run: Ints
     middle: Floats
     odd: Bools
+    window: Floats
+
+    @classmethod
+    def of_runs(cls, runs: SmoothRuns, chosen: Ints, symmetric: Bools, window: Floats) -> _Coverings:
+        """Two for each of some runs, first one of all, then the other; the second half of `runs` are these backwards.
+
+        A run is covered from either end; a symmetric one from its middle on, with a break there or none.
+        """
+        run = np.concatenate((chosen, np.where(symmetric, chosen, chosen + len(runs) // 2)))
+        symmetric = np.tile(symmetric, 2)
+        segment, rest = np.divmod(runs.first[run] + runs.first[run + 1], 2)
+        middle = runs.begin[np.minimum(segment, len(runs.begin) - 1)] + 0.5 * rest * runs.size[segment - 1 + rest]
+        odd = symmetric & (np.arange(len(run)) >= len(chosen))
+        return cls(runs, run, np.where(symmetric, middle, 0.0), odd, np.tile(window, 2))
+
+    def followed_by(self, other: _Coverings) -> _Coverings:
+        """These and others of the same runs."""
+        return _Coverings(self.runs, *(np.concatenate(pair) for pair in zip(self[1:], other[1:], strict=True)))
+
+    def of(self, rows: Ints) -> _Coverings:
+        """Some of them."""
+        return _Coverings(self.runs, *(column[rows] for column in self[1:]))
+
+    def numbers(self, stretches: Stretches) -> Ints:
+        """How many curves each run has: a stretch one, and two where it is of a half, but for one in the middle."""
+        count = np.bincount(stretches.run, minlength=len(self.run))
+        return np.where(self.middle > 0.0, 2 * count - self.odd, count)
 
     @property
     def total(self) -> Floats:
         """The last places."""
         return self.runs.total[self.run] - self.middle
 
-    def places(self, which: Ints, low: Floats, high: Floats) -> tuple[Ints, Floats, Floats, Bools]:
-        """The stretches of runs that are meant: the run, places in it, and whether its middle is that of the run."""
+    def placed(self, which: Ints, low: Floats, high: Floats) -> PlacedStretches:
+        """The stretches of runs that are meant.
+
+        Towards the ends of what is covered windows become narrow: there the run's own tangents stay.
+        """
         run, middle = self.run[which], self.middle[which]
         begin, end = middle + low, middle + high
-        across = self.odd[which] & (low == 0.0)
-        return run, np.where(across, _opposite(self.runs, run, end), begin), end, across
+        even = self.odd[which] & (low == 0.0)
+        begin = np.where(even, _opposite(self.runs, run, end), begin)
+        windows = (
+            np.minimum(self.window[which], np.minimum(place, self.total[which] - place)) for place in (low, high)
+        )
+        return PlacedStretches(run, begin, end, *windows, even)
 
     def errors(self, which: Ints, low: Floats, high: Floats) -> Floats:
         """The bounds of the fits."""
-        return fit_cubics(self.runs, *self.places(which, low, high)).bound
+        return fit_cubics(self.runs, self.placed(which, low, high)).bound
 
 
 def _opposite(runs: SmoothRuns, run: Ints, place: Floats) -> Floats:
@@ -150,32 +190,55 @@ def _splines(
     count = len(chosen)
     curves, first = oriented_runs(cut, np.tile(chosen, 2), np.concatenate((turned, ~turned)))
     runs = SmoothRuns.of_segments(*curves.coefficients(), first)
-    # A run is covered from either end; one with a reversal from its middle on, with a break there or none.
-    symmetric = np.tile([image is not None for image in reversals], 2)
-    second = np.arange(2 * count) >= count
-    run = np.where(symmetric & second, np.arange(2 * count) - count, np.arange(2 * count))
-    segment, rest = np.divmod(first[run] + first[run + 1], 2)
-    middle = runs.begin[np.minimum(segment, len(runs.begin) - 1)] + 0.5 * rest * runs.size[segment - 1 + rest]
-    covered = _Coverings(runs, run, np.where(symmetric, middle, 0.0), symmetric & second)
-    longest = longest_stretches(covered.total, bound, covered.errors, 6)
+    symmetric = np.array([image is not None for image in reversals])
+    tried = _Coverings.of_runs(runs, np.arange(count), symmetric, np.zeros(count))
+    longest = longest_stretches(tried.total, bound, tried.errors, 6)
+    number = tried.numbers(longest)
+    many = np.flatnonzero(np.minimum(number[:count], number[count:]) >= _MANY)
+    if len(many):
+        windows = (_WINDOWS[:, None] * runs.total[many]).ravel()
+        others = np.tile(many, len(_WINDOWS))
+        more = _Coverings.of_runs(runs, others, symmetric[others], windows)
+        stretches = longest_stretches(more.total, bound, more.errors, 6)
+        longest = Stretches(
+            np.append(longest.run, stretches.run + len(tried.run)),
+            np.append(longest.low, stretches.low),
+            np.append(longest.high, stretches.high),
+        )
+        tried = tried.followed_by(more)
+        number = tried.numbers(longest)
+    order = np.lexsort((np.arange(len(number)), number, tried.run % count))
+    best = order[np.searchsorted((tried.run % count)[order], np.arange(count))]
+    return _drawn(tried.of(best), _of_rows(longest, best), reversals, bound)
+
+
+def _of_rows(stretches: Stretches, rows: Ints) -> Stretches:
+    """The stretches of some rows, which get numbers from 0 on."""
+    offsets = np.searchsorted(stretches.run, np.arange(stretches.run[-1] + 2))
+    counts = np.diff(offsets)[rows]
+    chosen = ranges(offsets[rows], counts)
+    return Stretches(np.repeat(np.arange(len(rows)), counts), stretches.low[chosen], stretches.high[chosen])
+
+
+def _drawn(covered: _Coverings, longest: Stretches, reversals: list[Isometry | None], bound: float) -> list[_Spline]:
+    """What stretches are replaced by, after their errors have been spread: a spline for each covering."""
+    runs = covered.runs
     stretches = even_stretches(covered.total, longest, bound, covered.errors, 6)
-    places = covered.places(*stretches)
-    fit = fit_cubics(runs, *places)
+    placed = covered.placed(*stretches)
+    fit = fit_cubics(runs, placed)
     assert np.all(fit.bound <= bound)
     x, y = fit.curves
-    begin = np.empty(len(places[0]), np.complex128)
-    begin.real, begin.imag = runs.points(*runs.locate(places[0], places[1], before=False))
+    begin = np.empty(len(placed.run), np.complex128)
+    begin.real, begin.imag = runs.points(*runs.locate(placed.run, placed.low, before=False))
     control, end = begin[:, None] + (x[1:3] + 1j * y[1:3]).T, begin + (x[3] + 1j * y[3])
-    offsets = np.searchsorted(stretches.run, np.arange(2 * count + 1))
+    offsets = np.searchsorted(stretches.run, np.arange(len(reversals) + 1))
     splines = []
     for k, image in enumerate(reversals):
-        one, other = (slice(offsets[j], offsets[j + 1]) for j in (k, k + count))
-        fewer = offsets[k + count + 1] - offsets[k + count] - (image is not None) * 0.5 < offsets[k + 1] - offsets[k]
-        taken = other if fewer else one
-        spline = _Spline(np.append(begin[taken][:1], end[taken]), control[taken])
+        own = slice(offsets[k], offsets[k + 1])
+        spline = _Spline(np.append(begin[own][:1], end[own]), control[own])
         if image is not None:
-            spline = spline.doubled(image, odd=bool(fewer))
-        elif fewer:
+            spline = spline.doubled(image, odd=bool(covered.odd[k]))
+        elif covered.run[k] >= len(reversals):
             spline = spline.reversed()
         splines.append(spline)
     return splines
