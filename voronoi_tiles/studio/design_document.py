@@ -5,7 +5,6 @@ What is answered goes to the page as it is: tables in the types of JSON.
 
 from __future__ import annotations
 
-import json
 import os
 import re
 from collections.abc import Iterator, Mapping
@@ -22,6 +21,7 @@ from voronoi_tiles.base.values import shown
 from voronoi_tiles.designs.load import STARTER, parse, refuse_drawing
 from voronoi_tiles.designs.starters import GROUP_NAMES, starter_text, with_group_comments
 from voronoi_tiles.studio.design_parts import require_parts
+from voronoi_tiles.studio.design_text import form_of, json_text
 from voronoi_tiles.studio.matching import json_form, merged, same
 from voronoi_tiles.studio.recovery import Recovery, RecoveryCopy
 from voronoi_tiles.studio.toml_edit import edited, written
@@ -236,7 +236,7 @@ class Document:
     @property
     def _is_toml(self) -> bool:
         """Whether the file is, or is to be, TOML."""
-        return _form(self.path, self._text) == "toml"
+        return form_of(self.path, self._text) == "toml"
 
     def _state(self) -> tuple[int, ...]:
         """What changes when the file does; empty where there is none."""
@@ -267,12 +267,12 @@ class Document:
         if data is None:
             text = starter_text(_GROUP, self._shown)
             design = parse(text, "toml", self._shown)
-            return design, text if _form(self.path, "") == "toml" else _json_text(design)
+            return design, text if form_of(self.path, "") == "toml" else json_text(design)
         try:
             text = document_text(data, "design", remedy=STARTER)
         except DesignError as error:
             raise error.with_file(self._shown) from None
-        form = _form(self.path, text)
+        form = form_of(self.path, text)
         if not text.strip():
             raise DesignError("is empty", file=self._shown, remedy=STARTER)
         try:
@@ -323,7 +323,7 @@ class Document:
                     return text, ()
         if self._is_toml:
             return self._edited(design)
-        return self._text if same(self._design, design) else _json_text(merged(self._design, design), self._text), ()
+        return self._text if same(self._design, design) else json_text(merged(self._design, design), self._text), ()
 
     def _edited(self, design: Mapping[str, Any]) -> tuple[str, tuple[str, ...]]:
         """The text of the TOML file that says a design, as `_written`; a starter's comments on its group stay true."""
@@ -380,26 +380,8 @@ def _without_waiting(path: str, flags: int) -> int:
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
 
 
-def _form(path: str, text: str) -> str:
-    """Whether a file is "toml" or "json": by its suffix, else by its content."""
-    suffix = Path(path).suffix.lower()
-    return suffix[1:] if suffix in (".toml", ".json") else "json" if text.lstrip()[:1] == "{" else "toml"
-
-
 def _numbered(path: str) -> Iterator[str]:
     """A name and those with a number: design.toml, design-2.toml, ..."""
     yield path
     for number in count(2):
         yield str(Path(path).with_stem(f"{Path(path).stem}-{number}"))
-
-
-def _json_text(design: Mapping[str, Any], like: str = "{\n ") -> str:
-    """A design as JSON, indented as another text is, with the same line ends."""
-    indent = re.match(r"\s*\{\r?\n([ \t]+)", like)
-    newline = "\r\n" if "\r\n" in like else "\n"
-    text = json.dumps(design, indent=indent[1] if indent else None, ensure_ascii=like.isascii())
-    try:
-        text.encode()
-    except UnicodeEncodeError:  # what only an escape can say
-        text = json.dumps(design, indent=indent[1] if indent else None)
-    return text.replace("\n", newline) + newline
