@@ -11,7 +11,7 @@ import pytest
 import shapely
 from helpers.cutting import SQUARES, contour_shapes, cuts, squares
 from helpers.examples import tiling
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from voronoi_tiles import Design
@@ -71,6 +71,7 @@ def test_a_sheet_is_filled_at_the_scale_that_is_found(name: str, job: dict[str, 
 
 
 @given(st.integers(1, 40), st.floats(60.0, 400.0), st.floats(60.0, 400.0), st.sampled_from([0.0, 1.0]))
+@example(17, 107.25, 115.75, 0.0)  # the last digit is tried, too
 @settings(max_examples=6)
 def test_squares_have_the_scale_of_arithmetic(pieces: int, width: float, height: float, gap: float) -> None:
     """The largest square of which m by n fit, with m n as asked or more; four digits of it, or what a step missed."""

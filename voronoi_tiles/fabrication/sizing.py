@@ -103,7 +103,9 @@ def _scaled(
     low, high = scale, min(scale / _STEP, largest)
     for _ in range(_HALVINGS):
         middle = _rounded((low + high) / 2)
-        low, high = (middle, high) if middle > low and fits(middle) else (low, middle)
+        if middle == low:
+            middle = _rounded(low + _unit(low))  # what lies between is rounded down to what was tried
+        low, high = (middle, high) if middle < high and fits(middle) else (low, middle)
     scale = low
     for _ in range(_LOWER):
         made = design.scaled(scale)
@@ -217,8 +219,13 @@ def _tile_size(layout: Layout) -> str:
 
 def _rounded(scale: float) -> float:
     """A scale rounded down to some digits."""
-    unit = 10.0 ** (math.floor(math.log10(scale)) + 1 - _DIGITS)
+    unit = _unit(scale)
     return float(f"{math.floor(scale / unit * (1 + 1e-12)) * unit:.{_DIGITS}g}")
+
+
+def _unit(scale: float) -> float:
+    """One of a scale's last digit."""
+    return 10.0 ** (math.floor(math.log10(scale)) + 1 - _DIGITS)
 
 
 def _whole_mm(length: float) -> float:
