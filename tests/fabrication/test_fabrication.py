@@ -242,6 +242,24 @@ def test_files_hold_the_drawing(
     assert farthest(dense(contour.boundary, 0.2), wrong.boundary) > 0.01
 
 
+def test_dxf_has_no_cubic_curves() -> None:
+    """The message says what to take instead."""
+    with pytest.raises(JobError, match=r"no `curves='cubic'`\. Use arc, the fewest arcs, or spline"):
+        squares().make(Job(curves="cubic"), "dxf")
+
+
+def test_both_sides_of_an_edge_are_one_cubic_curve() -> None:
+    """Pieces side by side: every segment within the sheet is there twice, bit for bit, in both senses."""
+    paths = cuts(made("p1-leaf", sheet=(260.0, 260.0), edges="pieces", curves="cubic"))
+    assert (paths.kind == CUBIC).any()
+    forward = list(zip(paths.start, *paths.control.T, paths.end, strict=True))
+    back = [(b, d, c, a) if c or d else (b, c, d, a) for a, c, d, b in forward]
+    shared = len(set(forward) & set(back))
+    assert shared > len(forward) / 2
+    ends = {frozenset((a, b)) for a, _, _, b in forward}
+    assert len(ends) == len(forward) - shared / 2
+
+
 @pytest.mark.parametrize("form", ["svg", "dxf", "pdf", "lbrn2", "gcode"])
 def test_files_are_written_in_all_formats(form: str) -> None:
     """The same bytes again, and others for another job."""

@@ -340,7 +340,7 @@ def test_nothing_is_written_without_feed_and_power() -> None:
         tiling.make(Job(feed=300, power={"cut": 800}, labels="number"), "gcode")
     with pytest.raises(ValueError, match="`power` of 1001 for cut is more than the machine's 1000"):
         tiling.make(Job(feed=300, power=1001), "gcode")
-    for curves in ("exact", "spline"):
+    for curves in ("exact", "cubic", "spline"):
         with pytest.raises(JobError, match=f"no `curves='{curves}'`"):
             tiling.make(Job(feed=300, power=800, curves=curves), "gcode")
     with pytest.raises(JobError, match=r"Give 0\.0006 mm or more"):

@@ -18,7 +18,7 @@ _CHORDS: Final = 0.7
 """What chords may take, a part of the whole. They get most: their number grows with the root of it, that of arcs only
 with the third root."""
 
-_CUBICS: Final = 0.6
+_CUBICS: Final = 0.8
 """What cubic curves may take where they replace arcs, a part of the whole. Their number grows with the sixth root of
 it, and that of the arcs is not seen."""
 

@@ -31,6 +31,10 @@ class Drawn(NamedTuple):
     control: Complexes
     kind: Kinds
 
+    def of(self, rows: Ints) -> Drawn:
+        """Some of the segments, in this order."""
+        return Drawn._make(column[rows] for column in self)
+
 
 class RunCurves(NamedTuple):
     """Bezier curves, one row each; `cubic` says which have two control points."""
@@ -86,19 +90,20 @@ class CutPaths(NamedTuple):
     counts: Ints
 
 
-def cut_runs(paths: Paths, corner: float, absorbed: float) -> CutPaths:
+def cut_runs(paths: Paths, corner: float, absorbed: float, breaks: Complexes | None = None) -> CutPaths:
     """Cut paths at their corners, and into runs of curved segments that join smoothly.
 
-    Corners are where tangents differ by more than `corner` (radians); LINEs shorter than `absorbed` count as curved. A
-    closed path that began within a run begins at the end of that run instead; one that is all one run is cut where it
-    began. Curved segments of length 0 vanish, unless a path has nothing else: then one line of length 0 stays.
+    Corners are where tangents differ by more than `corner` (radians), and the points `breaks`; LINEs shorter than
+    `absorbed` count as curved. A closed path that began within a run begins at the end of that run instead; one that is
+    all one run is cut where it began. Curved segments of length 0 vanish, unless a path has nothing else: then one line
+    of length 0 stays.
     """
     short = np.flatnonzero((paths.kind == LINE) & (np.abs(paths.end - paths.start) < absorbed))
     if len(short):
         kind, control = paths.kind.copy(), paths.control.copy()
         kind[short], control[short, 0] = QUAD, (paths.start[short] + paths.end[short]) / 2
         paths = replace(paths, kind=kind, control=control)
-    paths, begins = _arranged(paths, corner)
+    paths, begins = _arranged(paths, corner, breaks)
     bent = _bent(paths)
     segments = np.flatnonzero(bent)
     first = np.flatnonzero(begins & bent)
@@ -137,10 +142,12 @@ def _bent(paths: Paths) -> Bools:
     return np.asarray((paths.kind == QUAD) | (paths.kind == CUBIC))
 
 
-def _arranged(paths: Paths, corner: float) -> tuple[Paths, Bools]:
+def _arranged(paths: Paths, corner: float, breaks: Complexes | None) -> tuple[Paths, Bools]:
     """The paths without curves of length 0, closed ones begun where no run is cut; and where runs begin."""
     paths = _without_points(paths)
     smooth = _smooth(paths, corner)
+    if breaks is not None:
+        smooth &= ~np.isin(paths.start, breaks)
     owner, begin, counts = paths.owner, paths.offsets[:-1], paths.counts
     number = np.arange(len(owner)) - begin[owner]
     full = np.flatnonzero(counts)
@@ -238,7 +245,7 @@ def _fewer(cut: CutPaths, draw: Callable[[SmoothRuns, RunCurves], Drawn]) -> tup
     run = drawn.run % count
     kept = np.flatnonzero((drawn.run >= count) == other[run])
     order = kept[np.argsort(run[kept], kind="stable")]
-    return turned ^ other, Drawn(run[order], *(values[order] for values in drawn[1:]))
+    return turned ^ other, drawn._replace(run=run).of(order)
 
 
 def _assembled(paths: Paths, kept: Bools, first: Ints, turned: Bools, drawn: Drawn) -> Paths:

@@ -24,6 +24,9 @@ from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, Paths
 from voronoi_tiles.paths.segmentation import Stretches, even_stretches, longest_stretches
 from voronoi_tiles.paths.smooth_runs import SmoothRuns
 
+_ROUNDED: Final = 0.5
+"""An arc that turns by more than this is a rounded corner, as kerf and fillets make them, whose ends stay; radians."""
+
 _ROUND: Final = 0.01
 """How far the cubic curves that circular arcs are seen as may be from these; relative to the accuracy."""
 
@@ -48,10 +51,11 @@ def to_fewest_cubics(paths: Paths, *, accuracy: float, corner: float = CORNER, a
 
     The Hausdorff distance between old and new curves is at most `accuracy` (in the paths' unit) both ways; it is
     bounded, not sampled. Paths are cut into runs as by `cut_runs`: corners are where tangents differ by more than
-    `corner` (radians), and stay; LINEs shorter than `absorbed` count as curved. Along a run, one curve after the other
-    takes the longest stretch that it follows within the accuracy, with the run's tangents at both ends: so the curves
-    of a run join with continuous tangents. Then the breaks are moved, at the same count, to spread the error evenly.
-    What is straight is a LINE.
+    `corner` (radians), and stay, as the ends of rounded corners do; LINEs shorter than `absorbed` count as curved.
+    Along a run, one curve after the other takes the longest stretch that it follows within the accuracy, with the run's
+    tangents at both ends: so the curves of a run join with continuous tangents. Where many are needed, tangents are
+    tried too that are found by more of the run. Then the breaks are moved, at the same count, to spread the error
+    evenly. What is straight is a LINE.
 
     Runs of one shape, wherever they lie, however turned, mirrored or run through, get the images of one fit: two that
     differ in their sense alone the same bits. A run that is its own image backwards is fitted from its middle on, and
@@ -60,10 +64,13 @@ def to_fewest_cubics(paths: Paths, *, accuracy: float, corner: float = CORNER, a
     Raises ValueError where the accuracy is not positive and finite, or finer than the coordinates' resolution.
     """
     bound = usable(paths, accuracy)
-    if (paths.kind == ARC).any():
+    arcs = np.flatnonzero(paths.kind == ARC)
+    round_ = arcs[np.abs(paths.arc_radius_and_turn(arcs)[1]) > _ROUNDED]
+    breaks = np.append(paths.start[round_], paths.end[round_])
+    if len(arcs):
         paths = to_cubics(paths, accuracy=_ROUND * accuracy)
         bound -= _ROUND * accuracy
-    cut = cut_runs(paths, corner, absorbed)
+    cut = cut_runs(paths, corner, absorbed, breaks)
     if not len(cut.first):
         return cut.paths
     turned = canonical_senses(cut)
@@ -78,9 +85,8 @@ def to_fewest_cubics(paths: Paths, *, accuracy: float, corner: float = CORNER, a
         for of_shape, spline in zip(found, splines, strict=True)
         for one in of_shape
     ]
-    every = Drawn(*(np.concatenate(columns) for columns in zip(*images, strict=True)))
-    order = np.argsort(every.run, kind="stable")
-    return replaced(cut, turned, Drawn(*(column[order] for column in every)))
+    every = Drawn._make(np.concatenate(columns) for columns in zip(*images, strict=True))
+    return replaced(cut, turned, every.of(np.argsort(every.run, kind="stable")))
 
 
 class _Spline(NamedTuple):
@@ -141,11 +147,17 @@ class _Coverings(NamedTuple):
 
     def followed_by(self, other: _Coverings) -> _Coverings:
         """These and others of the same runs."""
-        return _Coverings(self.runs, *(np.concatenate(pair) for pair in zip(self[1:], other[1:], strict=True)))
+        return _Coverings(
+            self.runs,
+            np.append(self.run, other.run),
+            np.append(self.middle, other.middle),
+            np.append(self.odd, other.odd),
+            np.append(self.window, other.window),
+        )
 
     def of(self, rows: Ints) -> _Coverings:
         """Some of them."""
-        return _Coverings(self.runs, *(column[rows] for column in self[1:]))
+        return _Coverings(self.runs, self.run[rows], self.middle[rows], self.odd[rows], self.window[rows])
 
     def numbers(self, stretches: Stretches) -> Ints:
         """How many curves each run has: a stretch one, and two where it is of a half, but for one in the middle."""

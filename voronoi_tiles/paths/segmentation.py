@@ -127,8 +127,8 @@ def longest_stretches(total: Floats, bound: float, error_of: Error, order: Order
         search = search._replace(trial=np.minimum(search.trial, end)).where(search.begin < end)
         assert np.all((search.trial > search.low) & (search.trial < search.high)), "the accuracy is too fine"
     run, begin, low = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    order = np.lexsort((begin, run))
-    return Stretches(run[order], begin[order], low[order])
+    along = np.lexsort((begin, run))
+    return Stretches(run[along], begin[along], low[along])
 
 
 def even_stretches(total: Floats, stretches: Stretches, bound: float, error_of: Error, order: Order) -> Stretches:
