@@ -178,10 +178,9 @@ class _Coverings(NamedTuple):
         begin, end = middle + low, middle + high
         even = self.odd[which] & (low == 0.0)
         begin = np.where(even, _opposite(self.runs, run, end), begin)
-        windows = (
-            np.minimum(self.window[which], np.minimum(place, self.total[which] - place)) for place in (low, high)
-        )
-        return PlacedStretches(run, begin, end, *windows, even)
+        window, total = self.window[which], self.total[which]
+        near, far = (np.minimum(window, np.minimum(place, total - place)) for place in (low, high))
+        return PlacedStretches(run, begin, end, near, far, even)
 
     def errors(self, which: Ints, low: Floats, high: Floats) -> Floats:
         """The bounds of the fits."""
