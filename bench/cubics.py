@@ -39,8 +39,8 @@ class Run:
 
     def _at(self, t: float, sign: float) -> tuple[complex, complex]:
         """The point and the derivative at a parameter, as it is reached from one side."""
-        side = "right" if sign >= 0 else "left"
-        k = int(np.clip(np.searchsorted(self.places, t, side) - 1, 0, len(self.run.start) - 1))
+        after = np.searchsorted(self.places, t, "right") if sign >= 0 else np.searchsorted(self.places, t, "left")
+        k = int(np.clip(after - 1, 0, len(self.run.start) - 1))
         width = self.places[k + 1] - self.places[k]
         u = (t - self.places[k]) / width
         a, c = self.run.start[k], self.run.end[k]

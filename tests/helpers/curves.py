@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from helpers.sheets import xy
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
+from voronoi_tiles.paths.smooth_runs import SmoothRuns
 
 Points = tuple[complex, ...]
 
@@ -110,3 +111,10 @@ def assert_joined(paths: Paths) -> None:
         assert np.array_equal(start[1:], end[:-1])
         if paths.closed[k] and len(start):
             assert start[0] == end[-1]
+
+
+def runs_of(paths: Paths) -> SmoothRuns:
+    """The one run that the quadratic curves of a path are."""
+    p0, p1, p2 = paths.start, paths.control[:, 0], paths.end
+    c = np.stack((p0, (p1 - p0) * (2 / 3), (p0 - 2 * p1 + p2) / 3, 0 * p0))
+    return SmoothRuns.of_segments(c.real.copy(), c.imag.copy(), np.array([0, len(p0)]))

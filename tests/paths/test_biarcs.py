@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from helpers.curves import Points, arc, assert_joined, chain, distance, same, smooth_side
+from helpers.curves import Points, arc, assert_joined, chain, distance, runs_of, same, smooth_side
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
@@ -17,7 +17,6 @@ from voronoi_tiles.paths.biarcs import to_arcs
 from voronoi_tiles.paths.conversion import COUNT_MAX, to_cubics, to_lines
 from voronoi_tiles.paths.paths import CUBIC, LINE, Paths
 from voronoi_tiles.paths.segmentation import longest_stretches
-from voronoi_tiles.paths.smooth_runs import SmoothRuns
 from voronoi_tiles.paths.stretch_parts import cut
 
 Conversion = Callable[..., Paths]
@@ -31,13 +30,6 @@ def assert_within(old: Paths, new: Paths, accuracy: float) -> None:
     assert_joined(new)
     assert distance(old, new, accuracy / 2) <= accuracy * 1.01
     assert np.all(np.abs(new.bulges()) <= 1 + 1e-9)
-
-
-def runs_of(paths: Paths) -> SmoothRuns:
-    """The one run that the quadratic curves of a path are."""
-    p0, p1, p2 = paths.start, paths.control[:, 0], paths.end
-    c = np.stack((p0, (p1 - p0) * (2 / 3), (p0 - 2 * p1 + p2) / 3, 0 * p0))
-    return SmoothRuns.of_segments(c.real.copy(), c.imag.copy(), np.array([0, len(p0)]))
 
 
 @pytest.mark.parametrize("accuracy", [0.05, 0.01, 0.005, 0.0005])

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from helpers.curves import arc, assert_joined, chain, distance, same, smooth_side
+from helpers.curves import arc, assert_joined, chain, distance, runs_of, same, smooth_side
 from helpers.examples import EXAMPLES, tiling
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 # At the end: tests/ has modules of these names too.
@@ -23,7 +23,6 @@ from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.paths.cubic_bounds import FittedCubics, bounds
 from voronoi_tiles.paths.fewest_cubics import to_fewest_cubics
 from voronoi_tiles.paths.paths import CUBIC, LINE, QUAD, Paths
-from voronoi_tiles.paths.smooth_runs import SmoothRuns
 from voronoi_tiles.paths.stretch_parts import cut
 
 ACCURACY = 0.005
@@ -101,7 +100,7 @@ def test_smooth_sides_are_followed(seed: int, size: float, accuracy: float) -> N
     assert_joined(new)
     assert distance(old, new, accuracy / 2) <= accuracy * 1.001
     assert (new.start[0], new.end[-1]) == (old.start[0], old.end[-1])
-    assert_smooth(new, np.zeros(0))
+    assert_smooth(new, np.zeros(0, np.complex128))
     assert len(new.kind) < 12
 
 
@@ -116,9 +115,7 @@ def test_smooth_sides_are_followed(seed: int, size: float, accuracy: float) -> N
 def test_a_bound_is_a_bound(seed: int, near: float, far: float, low: float, length: float) -> None:
     """However bad a curve is: no farther from its stretch than the bound says, by dense samples, both ways."""
     side = smooth_side(seed, 6, 1.0)
-    p0, p1, p2 = side.start, side.control[:, 0], side.end
-    c = np.stack((p0, (p1 - p0) * (2 / 3), (p0 - 2 * p1 + p2) / 3, 0 * p0))
-    runs = SmoothRuns.of_segments(c.real.copy(), c.imag.copy(), np.array([0, len(p0)]))
+    runs = runs_of(side)
     total = float(runs.total[0])
     parts, ends = cut(runs, np.zeros(1, np.intp), np.array([low * total]), np.array([(low + length) * total]))
     third = length * total / 3
@@ -137,17 +134,7 @@ def test_a_bound_is_a_bound(seed: int, near: float, far: float, low: float, leng
 
 def test_a_bound_sees_a_curve_that_does_not_follow() -> None:
     """A control point that is moved aside, and a stretch whose second half is missing."""
-    side = chain((0j, 3 + 4j, 6 + 0j))
-    runs = SmoothRuns.of_segments(
-        *(
-            np.stack((p, (q - p) * (2 / 3), (p - 2 * q + r) / 3, 0 * p))
-            for p, q, r in (
-                (side.start.real, side.control[:, 0].real, side.end.real),
-                (side.start.imag, side.control[:, 0].imag, side.end.imag),
-            )
-        ),
-        np.array([0, 1]),
-    )
+    runs = runs_of(chain((0j, 3 + 4j, 6 + 0j)))
     parts, _ = cut(runs, np.zeros(1, np.intp), np.zeros(1), runs.total)
     share = np.arange(len(parts.stretch)) / len(parts.stretch)
     points = np.array([0j, 2 + 8j / 3, 4 + 8j / 3, 6 + 0j])
@@ -183,8 +170,14 @@ def test_images_have_the_images_of_one_fit(seed: int, count: int, angle: float, 
 
 
 @settings(max_examples=8, deadline=None)
-@given(seed=st.integers(0, 10**6), count=st.integers(1, 3), mirror=st.booleans(), split=st.booleans())
-def test_what_is_its_own_image_stays_so(seed: int, count: int, mirror: bool, split: bool) -> None:
+@example(seed=510509, count=4, mirror=True, accuracy=0.0005)  # the curve in the middle is even
+@given(
+    seed=st.integers(0, 10**6),
+    count=st.integers(1, 3),
+    mirror=st.booleans(),
+    accuracy=st.sampled_from([0.01, 0.002]),
+)
+def test_what_is_its_own_image_stays_so(seed: int, count: int, mirror: bool, accuracy: float) -> None:
     """A run that a half turn or a mirror maps onto itself backwards is replaced by one that it maps so too."""
     half = smooth_side(seed, count, 2.0)
     end, along = half.end[-1], directions(half)[1][-1]
@@ -195,13 +188,12 @@ def test_what_is_its_own_image_stays_so(seed: int, count: int, mirror: bool, spl
     other.start[0] = end
     whole = Paths.concatenate([half, other])
     whole = replace(whole, offsets=np.array([0, len(whole.start)]), closed=np.zeros(1, np.bool_))
-    accuracy = 0.002 if split else 0.01
     new = to_fewest_cubics(whole, accuracy=accuracy)
     assert distance(whole, new, 0.005) <= accuracy * 1.001 + 1e-6
     image = new.moved(factor, shift, conj=mirror).reversed()
     for name in ("start", "end", "control"):
         assert np.abs(getattr(image, name) - getattr(new, name)).max() <= 1e-12 * 60
-    assert_smooth(new, np.zeros(0))
+    assert_smooth(new, np.zeros(0, np.complex128))
 
 
 def test_arcs_are_followed() -> None:

@@ -92,6 +92,6 @@ def _compared(one: Complexes, others: Complexes, *, back: bool, conj: bool) -> t
     here, there = one - one[0], others - others[:, :1]
     turn = np.sum(there * here.conj(), axis=1)
     size = np.abs(turn)
-    a = np.where(size > 0.0, turn, 1.0) / np.where(size > 0.0, size, 1.0)
+    a = np.where(size > 0.0, turn / np.where(size > 0.0, size, 1.0), 1.0 + 0j)
     error = np.max(np.abs(there - a[:, None] * here), axis=1)
-    return a, others[:, 0] - a * one[0], error
+    return a, others[:, 0] - a * one[0], np.asarray(error, np.float64)
