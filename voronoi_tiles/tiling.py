@@ -335,13 +335,15 @@ class Tiling:
         job: Job | None = None,
         check: CheckReport | None = None,
         file_format: FileFormat | None = None,
+        progress: Callable[[float, float], None] | None = None,
     ) -> tuple[Exported, ...]:
         """Write a file whole or not at all, and say what was written.
 
         `job` says what is to be made of the tiles (sheet, kerf, ...), `edges` is a short way to a job that says only
         this; with neither, SVG and JSON hold the exact tiles where they lie in the plane. The format is that of the
         suffix (.svg, .dxf, .pdf, .lbrn2, .gcode or .nc, .json), or `file_format`. With `colours="files"` there is a
-        file for each colour: name-1.svg, name-2.svg, ... A cross-check's report goes into the file.
+        file for each colour: name-1.svg, name-2.svg, ... A cross-check's report goes into the file. `progress`
+        is called with how many seconds of how many a search for places has taken.
 
         Raises OutputError where the suffix is another, the file cannot be written, or is one that the job reads;
         JobError for a job that cannot be done, or that comes with JSON; and CheckError, before anything is written,
@@ -371,7 +373,7 @@ class Tiling:
                 remedy="Write svg, dxf, pdf, lbrn2 or gcode, or leave the other options out.",
             )
         evidence = None if check is None else self.evidence(check)
-        return write_products(self.design, self.tessellation, name, form, job or Job(), evidence)
+        return write_products(self.design, self.tessellation, name, form, job or Job(), evidence, progress)
 
 
 def require(check: CheckReport) -> None:

@@ -222,6 +222,7 @@ def test_one_of_each_has_a_page_and_no_sheet() -> None:
         ({"nothing": 1}, None),
         ({"sheet": "10x10mm"}, None),
         ({"sheet": "missing.svg"}, None),
+        ({"sheet": "99x99mm", "layout": "nested"}, "layout"),
     ],
 )
 def test_jobs_that_cannot_be_are_refused(job: dict[str, Any], key: str | None) -> None:

@@ -135,7 +135,7 @@ def test_files_stay_in_the_folder(tmp_path: Path) -> None:
             assert caught.value.key == key
             check_files(table, {}, str(home), {name})
             assert named_files(table) == {name}
-    for job in ({"sheet": "../x.svg"}, {"sheet": "/x.DXF"}, {"preset": "../x.toml"}):
+    for job in ({"sheet": "../x.svg"}, {"sheet": "/x.DXF"}, {"layout": "../x.pdf"}, {"preset": "../x.toml"}):
         with pytest.raises(DesignError, match="outside"):
             check_files({}, job, str(home), ())
     check_files({}, {"sheet": "300x200mm", "preset": "plain"}, str(home), ())

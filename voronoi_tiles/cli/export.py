@@ -12,6 +12,7 @@ import click
 
 from voronoi_tiles.cli.common import PATH, as_options, report_error, say, say_written, tessellate
 from voronoi_tiles.cli.options import with_job, with_renderer, with_scale
+from voronoi_tiles.cli.progress_bar import progress_bar
 
 if TYPE_CHECKING:
     from voronoi_tiles.fabrication.job import Job
@@ -65,7 +66,8 @@ def export(
             report = tiling.check(renderer=renderer, device=device, notice=say) if check else None
             if report is None or report.passed:  # else nothing is to be left, and export says so
                 _make_folder(target, output)
-            written = tiling.export(target, job=job, check=report, file_format=target_format)
+            with progress_bar("nesting", quiet=quiet) as progress:
+                written = tiling.export(target, job=job, check=report, file_format=target_format, progress=progress)
         except Exception as error:  # noqa: BLE001 - whatever one design does, the others are still to be written
             worst = max(worst, report_error(design, error))
         else:

@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-import sys
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
 from voronoi_tiles.cli.common import EXIT_FAILED, PATH, load, refuse_output, report_error, reporting, say, say_written
 from voronoi_tiles.cli.options import Command, with_method, with_renderer, with_scale
+from voronoi_tiles.cli.progress_bar import progress_bar
 from voronoi_tiles.fabrication.job import Job
 
 if TYPE_CHECKING:
     from voronoi_tiles.raster.renderer import Choice, Method
-
-_PATIENCE = 1.0
-"""After how long a progress bar appears; seconds."""
 
 
 def _read_size(_context: click.Context, _parameter: click.Parameter, text: str | None) -> int | tuple[int, int] | None:
@@ -114,7 +108,7 @@ def render(
     from voronoi_tiles.pictures.rendering import render as render_picture
 
     refuse_output(design, output, (".png",))
-    with reporting(design), _progress(quiet) as progress:
+    with reporting(design), progress_bar("rendering", quiet=quiet) as progress:
         provenance = render_picture(
             load(design, quiet=quiet),
             output,
@@ -133,28 +127,3 @@ def render(
     if provenance.touching is not None:
         report_error(design, provenance.touching)
         raise click.exceptions.Exit(EXIT_FAILED)
-
-
-@contextmanager
-def _progress(quiet: bool) -> Iterator[Callable[[int, int], None]]:
-    """Show a bar on a terminal for what takes longer than a second."""
-    begun = time.monotonic()
-    bar: Any = None
-
-    def step(done: int, total: int) -> None:
-        nonlocal bar
-        if bar is None and not quiet and done < total and time.monotonic() - begun > _PATIENCE and sys.stderr.isatty():
-            from rich.console import Console
-            from rich.progress import Progress
-
-            bar = Progress(console=Console(stderr=True), transient=True)
-            bar.add_task("rendering", total=total)
-            bar.start()
-        if bar is not None:
-            bar.update(bar.task_ids[0], completed=done)
-
-    try:
-        yield step
-    finally:
-        if bar is not None:
-            bar.stop()

@@ -56,10 +56,10 @@ class Works:
         """The image under z -> factor z + shift, or factor conj(z) + shift."""
         return self._changed(lambda part: part.moved(factor, shift, conj=conj), self.items)
 
-    def stamped(self, places: Complexes) -> Works:
-        """The same at many places, one after the other."""
+    def stamped(self, places: Complexes, units: Complexes | None = None) -> Works:
+        """The same at many places, one after the other, turned about 0 before by `units`, where there are any."""
         counts = np.tile(np.diff(self.items), len(places))
-        return self._changed(lambda part: _stamped(part, places), offsets_of(counts))
+        return self._changed(lambda part: _stamped(part, places, units), offsets_of(counts))
 
     def clipped(self, region: Region, accuracy: float) -> Works:
         """What lies in a region; curves but lines and quadratic ones become arcs within an accuracy."""
@@ -214,7 +214,7 @@ def _copies_of(drawn: Works, layout: Layout, site: int, shown: Bools) -> list[Wo
         here = np.flatnonzero((copies.tile == tile) & shown)
         place = layout.copy_shifts[here]
         whole = copies.whole[here]
-        result.append(image.stamped(place[whole]))
+        result.append(image.stamped(place[whole], None if copies.unit is None else copies.unit[here][whole]))
         if layout.region is not None:
             # On a tile that the sheet's edge cuts, art ends there too.
             at_edge = (image.moved(1.0, shift) for shift in place[~whole].tolist())
@@ -222,7 +222,8 @@ def _copies_of(drawn: Works, layout: Layout, site: int, shown: Bools) -> list[Wo
     return result
 
 
-def _stamped(paths: Paths, places: Complexes) -> Paths:
-    """The same paths at many places, one after the other."""
+def _stamped(paths: Paths, places: Complexes, units: Complexes | None) -> Paths:
+    """The same paths at many places, one after the other, turned about 0 before by `units`, where there are any."""
     copies = paths.take(np.tile(np.arange(len(paths)), len(places)))
-    return copies.shifted(np.repeat(places, len(paths.start)))
+    shift = np.repeat(places, len(paths.start))
+    return copies.shifted(shift) if units is None else copies.turned(np.repeat(units, len(paths.start)), shift)

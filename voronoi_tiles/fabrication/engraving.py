@@ -105,8 +105,12 @@ def _label_places(layout: Layout, contours: Contours) -> tuple[Complexes, Floats
     for tile, one in zip(tiles.tolist(), np.flatnonzero(whole)[first].tolist(), strict=True):
         here = np.flatnonzero(whole)[copies.tile[contours.copy[whole]] == tile]
         point, radius = _pole(contours, one, layout.job)
-        shift = layout.copy_shifts[contours.copy[here]]
-        place[here] = point + (shift - shift[here.tolist().index(one)])
+        copy = contours.copy[here]
+        shift, k = layout.copy_shifts[copy], here.tolist().index(one)
+        place[here] = point + (shift - shift[k])
+        if copies.unit is not None:
+            unit = copies.unit[copy]
+            place[here] = unit * ((point - shift[k]) * unit[k].conjugate()) + shift
         room[here] = radius
     for k in np.flatnonzero(known & ~whole).tolist():
         place[k], room[k] = _pole(contours, k, layout.job)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -48,12 +48,13 @@ def write_products(
     file_format: str,
     job: Job,
     evidence: Mapping[str, Any] | None,
+    progress: Callable[[float, float], None] | None = None,
 ) -> tuple[Exported, ...]:
     """Write the files of a job: one, or one for each colour, with its number before the suffix.
 
-    What was proved and checked, `evidence`, goes into each. A job that cannot be done leaves nothing, and no file takes
-    its place before all are written. Raises JobError, and OutputError where a file cannot be written, or the job reads
-    it.
+    What was proved and checked, `evidence`, goes into each; `progress` is told of a search for places. A job that
+    cannot be done leaves nothing, and no file takes its place before all are written. Raises JobError, and OutputError
+    where a file cannot be written, or the job reads it.
     """
     from voronoi_tiles.fabrication.product import make, make_colours
 
@@ -63,7 +64,7 @@ def write_products(
             remedy="Write the design at the scale that is found, and check that.",
         )
     if job.split != "files":
-        products = {path: make(design, tessellation, job, file_format)}
+        products = {path: make(design, tessellation, job, file_format, progress)}
     elif path == STDOUT or is_special(path):
         raise JobError(
             "`into='files'`: several files need a name that they can begin with",

@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 from typing import Any, Final, Literal, cast, get_args
 
 from voronoi_tiles.fabrication.job_options import (
+    EFFORT_S,
     SHEET_MAX,
     SHEET_MIN,
     Choice,
@@ -26,7 +27,10 @@ from voronoi_tiles.fabrication.job_options import (
     read_colour,
     read_colours,
     read_count,
+    read_effort,
+    read_layout,
     read_offset,
+    read_seed,
     read_sheet,
     read_size,
     read_text,
@@ -125,6 +129,19 @@ class Job:
         "pieces].",
     )
     gap: Option[float | str | None, float | None] = length(None, "Pull pieces apart until they keep this distance.")
+    layout: Option[str | os.PathLike[str], str] = Option(
+        "tessellated",
+        read_layout,
+        "Where pieces lie: as in the tessellation, nested anew on the sheet, nested without a search where that holds "
+        "more, or as in a file of ours [default: tessellated].",
+        kind="text",
+        shown="tessellated|nested|auto|FILE",
+    )
+    grain: Flag = flag("Turn nested pieces against the picture by half a turn or not at all: the wood's grain stays.")
+    effort: Option[float | str, float] = Option(
+        EFFORT_S, read_effort, "How long a search for places takes [default: 30].", kind="number", shown="SECONDS"
+    )
+    seed: Option[int | str, int] = Option(0, read_seed, "Where that search begins.", kind="number", shown="N")
     kerf: Length = length(
         0.0, "The width of the cut: contours keep half of it from the pieces, which then have their true size."
     )
@@ -208,6 +225,9 @@ class Job:
         self._check_edges()
         self._check_colours()
         self._check_packing()
+        if self.nests and self.not_nestable is not None:
+            message, remedy = self.not_nestable
+            raise JobError(f"`layout='{self.layout}'` {message}", remedy=remedy)
 
     def __repr__(self) -> str:
         return f"Job({', '.join(f'{name}={value!r}' for name, value in self._said())})"
@@ -242,9 +262,14 @@ class Job:
         return 0.0 if self.fit != "frame" else FRAME_MM if self.frame is None else self.frame
 
     @property
+    def nests(self) -> bool:
+        """Whether pieces lie elsewhere than the tessellation has them, on one sheet."""
+        return self.layout not in ("tessellated", "auto")
+
+    @property
     def apart(self) -> float | None:
         """How far contours are kept apart on the sheet; None where they may stay where they are."""
-        if self.pack:
+        if self.pack or self.nests:
             return None
         if self.gap is None:
             return self._enough if self.kerf > 0.0 else None
@@ -252,7 +277,7 @@ class Job:
 
     @property
     def side_by_side(self) -> float:
-        """How far contours that are packed are kept apart; millimetres."""
+        """How far contours that are packed, or nested, are kept apart; millimetres."""
         return self._enough if self.gap is None else self.gap
 
     @property
@@ -290,7 +315,9 @@ class Job:
         for name in ("kerf", "gap", "fillet"):
             if (getattr(self, name) or 0.0) > 0.0:
                 return name
-        return "colours" if self.colours != "none" or self.only_colour is not None else None
+        if self.colours != "none" or self.only_colour is not None:
+            return "colours"
+        return "layout" if self.nests else None
 
     def _check_edges(self) -> None:
         name = self.needs_pieces()
@@ -299,7 +326,8 @@ class Job:
                 f"`{name}` needs `edges='pieces'`: an edge that is cut once belongs to two of them",
                 remedy=f"Use that, or leave `{name}` out.",
             )
-        if self.tabs > 0.0 and self.sheet is not None and self.cuts_pieces and self.apart is None and not self.pack:
+        touching = self.apart is None and not self.pack and not self.nests
+        if self.tabs > 0.0 and self.sheet is not None and self.cuts_pieces and touching:
             raise JobError(
                 "`tabs` hold nothing where the contours of two pieces lie on each other",
                 remedy="Pull the pieces apart, `gap='1mm'`, or use `edges='once'`.",
@@ -342,6 +370,22 @@ class Job:
         ):
             if wrong:
                 raise JobError(message, remedy=remedy)
+
+    @property
+    def not_nestable(self) -> tuple[str, str] | None:
+        """Why pieces cannot be nested, and what to do; None where they can."""
+        for wrong, message, remedy in (
+            (not isinstance(self.sheet, tuple), "needs a rectangular sheet", "Give its size, `sheet='600x300mm'`."),
+            (self.fit != "whole", f"nests whole tiles, and `fit='{self.fit}'` is more", "Use `fit='whole'`."),
+            (self.gap == 0.0, "with a `gap` of 0 would cut where pieces touch twice", "Use `gap='1mm'`."),
+            (self.pieces is not None, "lays as many `pieces` as fit", "Leave `pieces` out."),
+            (self.offset is not None, "moves every piece anew, and none by an `offset`", "Leave it out."),
+            (self.pack, "nests all pieces, and `pack` packs each colour", "Use one of the two."),
+            (self.split is not None, "parts neighbours, by which tiles get `colours`", "Leave these out."),
+        ):
+            if wrong:
+                return message, remedy
+        return None
 
     def _check_sheet(self) -> None:
         if self.frame is not None and self.fit == "clip":

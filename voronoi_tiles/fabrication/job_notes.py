@@ -35,7 +35,7 @@ def without_effect(form: Format, job: Job) -> list[str]:
 
 def doubled(layout: Layout, job: Job) -> list[str]:
     """Say that neighbours' contours lie on each other, or touch, where they do."""
-    if not job.cuts_pieces or (job.apart or 0.0) > 0.0 or len(layout.copies.tile) < 2 or job.sheet is None:
+    if not job.cuts_pieces or job.nests or (job.apart or 0.0) > 0.0 or len(layout.copies.tile) < 2 or job.sheet is None:
         return []
     if job.pack or (job.split == "files" and (job.scheme == "fewest" or isinstance(job.scheme, int))):
         return []  # neighbours are in different files

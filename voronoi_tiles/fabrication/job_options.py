@@ -33,6 +33,18 @@ COLOURS_MAX: Final = 32
 SCHEMES: Final = ("none", "fewest", "site", "handedness", "orientation", "layers", "files")
 """What colours of tiles can be called, beside their number."""
 
+LAYOUTS: Final = ("tessellated", "nested", "auto")
+"""How pieces can be laid, beside where a file has them."""
+
+EFFORT_S: Final = 30.0
+"""How long places are looked for where the caller does not say; seconds."""
+
+EFFORT_MAX: Final = 86_400.0
+"""Longest search for places; seconds."""
+
+LAID: Final = (".svg", ".svgz", ".dxf", ".pdf", ".lbrn2", ".gcode", ".nc")
+"""The suffixes of files that have places."""
+
 Given = TypeVar("Given")
 Kept = TypeVar("Kept")
 Kind = Literal["length", "angle", "word", "flag", "text", "number"]
@@ -200,6 +212,40 @@ def read_size(name: str, value: Any) -> tuple[float, float] | None:
     if isinstance(size, str):
         raise JobError(f"`{name}` {shown(size)} is no size", remedy="Give a size such as 600x300mm.")
     return size
+
+
+def read_layout(name: str, value: object) -> str:
+    """Read how pieces are laid: a word, or the name of a file that has their places. Raises JobError."""
+    if isinstance(value, os.PathLike):
+        value = os.fspath(value)
+    if isinstance(value, str) and (value in LAYOUTS or value.lower().endswith(LAID)):
+        return value
+    raise JobError(
+        f"`{name}` {shown(value)} is unknown", remedy=f"Use one of {', '.join(LAYOUTS)}, or name a file of pieces."
+    )
+
+
+def read_effort(name: str, value: Any) -> float:
+    """Read how long places are looked for; seconds. Raises JobError."""
+    try:
+        seconds = float(value) if isinstance(value, str) or is_number(value) else math.nan
+    except (ValueError, OverflowError):
+        seconds = math.nan
+    if not 1.0 <= seconds <= EFFORT_MAX:
+        raise JobError(
+            f"`{name}` {shown(value)} cannot be: no places are found in no time",
+            remedy=f"Give seconds, from 1 to {EFFORT_MAX:,.0f}.",
+        )
+    return seconds
+
+
+def read_seed(name: str, value: Any) -> int:
+    """Read the seed of a search. Raises JobError."""
+    if isinstance(value, str) and value.isascii() and value.isdigit() and len(value) < 10:
+        value = int(value)
+    if not isinstance(value, bool) and isinstance(value, Integral) and 0 <= int(value) < 2**31:
+        return int(value)
+    raise JobError(f"`{name}` {shown(value)} cannot be", remedy="Give a whole number, 0 or more.")
 
 
 def read_rates(name: str, value: Any) -> str | None:

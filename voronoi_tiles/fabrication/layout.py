@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 
@@ -59,13 +59,27 @@ class Sheet:
 class PlacedTiles:
     """The tiles on the page, n of them: tile of the period, lattice vector, whether it is there as a whole.
 
-    `moved_by` is how far each was pulled from its place, millimetres.
+    `moved_by` is how far each was pulled from its place, millimetres; before that it was turned about 0 by `unit`, None
+    where none was.
     """
 
     tile: Ints
     step: Ints
     whole: Bools
     moved_by: Complexes
+    unit: Complexes | None = None
+
+
+class Piece(NamedTuple):
+    """A place of a piece: the index of its site, whether its tile is turned over, its turn in degrees, and its shift.
+
+    It is the site's tile as it is drawn, or its image in the x axis, turned about the origin and moved; millimetres.
+    """
+
+    site: int
+    over: bool
+    turn: float
+    shift: complex
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,7 +102,8 @@ class Layout:
 
     `tiles` are those of one period where it is laid, `spaced` is the period where it is cut: pulled apart, where pieces
     are, by `stretch`. `placement` says which tiles lie on the page, `copies` how far each was pulled; `numbers` are
-    what these are labelled by, None where they are numbered as they lie.
+    what these are labelled by, None where they are numbered as they lie. `pieces` are their places where they are
+    nested, and do not lie as the tessellation does.
     """
 
     design: Design
@@ -102,6 +117,7 @@ class Layout:
     copies: PlacedTiles
     stretch: Stretch = UNSTRETCHED
     numbers: Ints | None = None
+    pieces: tuple[Piece, ...] = ()
 
     @property
     def region(self) -> Region | None:
@@ -192,7 +208,10 @@ class Layout:
         counts = np.diff(starts)[tile]
         stamped = rings.take(ranges(starts[:-1][tile], counts))
         items = np.append(0, np.cumsum(counts)).astype(np.intp)
-        return stamped.shifted(np.repeat(self.copy_shifts[copies], counts)[stamped.owner]), items
+        shift = np.repeat(self.copy_shifts[copies], counts)[stamped.owner]
+        if self.copies.unit is None:
+            return stamped.shifted(shift), items
+        return stamped.turned(np.repeat(self.copies.unit[copies], counts)[stamped.owner], shift), items
 
 
 def lay_out(

@@ -6,6 +6,7 @@ import json
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import partial
 from io import BytesIO, RawIOBase
 from math import fsum
 from typing import Any, BinaryIO, Final
@@ -28,7 +29,10 @@ from voronoi_tiles.fabrication.gap_hint import smaller_gap
 from voronoi_tiles.fabrication.inventory import Inventory, cut_free, inventory
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.job_notes import doubled, untabbed, without_effect
-from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, Sheet, lay_out
+from voronoi_tiles.fabrication.job_options import LAYOUTS
+from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, lay_out
+from voronoi_tiles.fabrication.nest_search import Progress
+from voronoi_tiles.fabrication.nesting import arranged, places_text
 from voronoi_tiles.fabrication.packed_sheets import pack_colours
 from voronoi_tiles.fabrication.sheets import read_sheet
 from voronoi_tiles.fabrication.sizing import sized
@@ -130,8 +134,14 @@ class Product:
         write_drawing(self.drawing, file, self.form, curves=self.curves, accuracy=self.accuracy, dxf=style)
 
 
-def make(design: Design, tessellation: Tessellation, job: Job, file_format: str = "svg") -> Product:
-    """Make what a job asks for, in the curves that a format takes.
+def make(
+    design: Design,
+    tessellation: Tessellation,
+    job: Job,
+    file_format: str = "svg",
+    progress: Progress | None = None,
+) -> Product:
+    """Make what a job asks for, in the curves that a format takes; `progress` is told of a search for places.
 
     Raises JobError where the job cannot be done, DesignError where the preset or the sheet's drawing is broken.
     """
@@ -141,7 +151,7 @@ def make(design: Design, tessellation: Tessellation, job: Job, file_format: str 
             "a file for each colour is several drawings, and one is asked for",
             remedy="Export it to a file's name, or use `into='layers'`.",
         )
-    plan = _Plan.of(design, tessellation, job, form)
+    plan = _Plan.of(design, tessellation, job, form, progress)
     return plan.product(plan.layout.job)
 
 
@@ -193,9 +203,12 @@ class _Plan:
     colouring: TileColouring
     said: tuple[str, ...]
     hint: str
+    files: tuple[str, ...]
 
     @classmethod
-    def of(cls, design: Design, tessellation: Tessellation, job: Job, form: Format) -> _Plan:
+    def of(
+        cls, design: Design, tessellation: Tessellation, job: Job, form: Format, progress: Progress | None = None
+    ) -> _Plan:
         """Lay out the tiles, of a design or on a sheet that is found for a number of pieces."""
         preset = load_preset(job.preset)
         preset.require(form)
@@ -207,14 +220,16 @@ class _Plan:
         if job.pieces is None:
             budget = AccuracyBudget.of(job, curves, form)
             fit = curve_fit(job, curves, budget, design.unit_mm)
-            layout = lay_out(design, tessellation, job, read_sheet(job, budget), budget, fit)
+            lay = partial(lay_out, design, tessellation, budget=budget, fit=fit)
+            layout, said = arranged(lay, job, read_sheet(job, budget), progress)
         else:
             layout, found = sized(design, tessellation, job, curves, form)
             said = (found,)
         colours = colour_tiles(layout.tessellation, job.scheme, layout.period)
         if job.split is not None and colours.count == 1:
             said += (f"by {job.scheme} all tiles are alike: there is one colour",)
-        return cls(form, preset, curves, layout, TileColouring(colours, layout.copies), said, smaller_gap(layout))
+        colouring, files = TileColouring(colours, layout.copies), tuple(files_read(design, job))
+        return cls(form, preset, curves, layout, colouring, said, smaller_gap(layout), files)
 
     def colours(self) -> list[tuple[int, str]]:
         """The colours that the page has pieces of, each with a name for its file; FRAME for the frame."""
@@ -255,7 +270,7 @@ class _Plan:
         fills = preset.fill_engraving and self.form != "gcode"  # whose lasers go along lines
         engraving = engrave(layout, contours, layout.sheet, shown, fills=fills)
         layers = _layers(preset, self.form, job, cuts, engraving, _converter(self.curves, job, layout.budget))
-        drawing = _page(layers, layout.sheet, job, layout.design)
+        drawing = _page(layers, layout, job)
         said = (*self.said, *layout.sheet.notes, *layout.tiles.compensation.losses, *engraving.notes)
         twice = doubled(layout, job) if preset.contours == "shared" else []  # the others do not cut
         more = (*without_effect(self.form, job), *twice, *untabbed(cuts, job))
@@ -268,7 +283,7 @@ class _Plan:
             notes=tuple(dict.fromkeys((*said, *more))),
             curves=self.curves,
             accuracy=job.accuracy,
-            files=tuple(files_read(layout.design, job)),
+            files=self.files,
             dxf_version=job.dxf_version,
             spline_edges=preset.spline_edges,
             hint=self.hint,
@@ -281,8 +296,8 @@ class _Plan:
 
 
 def files_read(design: Design, job: Job | None) -> list[str]:
-    """The files that a job is made from: the design's own and its art, the sheet's drawing, the preset."""
-    asked = () if job is None else (job.sheet, job.preset)
+    """The files that a job is made from: the design's own and its art, the sheet's drawing, the preset, the places'."""
+    asked = () if job is None else (job.sheet, job.preset, job.layout if job.layout not in LAYOUTS else None)
     return [*design.files, *(name for name in asked if isinstance(name, str))]
 
 
@@ -384,8 +399,9 @@ def _layers(
     return layers
 
 
-def _page(layers: list[Layer], sheet: Sheet, job: Job, design: Design) -> Drawing:
+def _page(layers: list[Layer], layout: Layout, job: Job) -> Drawing:
     """Put the layers on the page; without a sheet, on one that fits them."""
+    sheet, design = layout.sheet, layout.design
     width, height = sheet.width, sheet.height
     if sheet.region is None:
         boxes = np.array([layer.paths.bounds for layer in layers if len(layer.paths)])
@@ -393,4 +409,6 @@ def _page(layers: list[Layer], sheet: Sheet, job: Job, design: Design) -> Drawin
         width, height, corner = fitting_page(*low.tolist(), *high.tolist())
         layers = [replace(layer, paths=layer.paths.moved(1.0, -corner)) for layer in layers]
     recipe = {**design_recipe(design), "job": json.dumps(job.recipe(), sort_keys=True)}
+    if layout.pieces:
+        recipe["places"] = places_text(layout.pieces)
     return Drawing(width, height, tuple(layers), f"{design.name} ({design.group.name})", recipe)

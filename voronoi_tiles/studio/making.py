@@ -132,7 +132,13 @@ def read_options(job: Mapping[str, Any]) -> tuple[Job, Form]:
     for name in given:
         if name not in known or name in HIDDEN:
             raise JobError(f"a job has no option {shown(name)}", remedy="Load the page again.")
-    return Job(**given), form
+    asked_for = Job(**given)
+    if asked_for.layout == "nested":
+        raise JobError(
+            "`layout='nested'` searches for longer than the studio waits",
+            remedy="Use `layout='auto'` here, and nest with voronoi-tiles export.",
+        )
+    return asked_for, form
 
 
 def tiling_of(design: Mapping[str, Any], name: str) -> Tiling:

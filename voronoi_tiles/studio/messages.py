@@ -18,6 +18,7 @@ from typing import Any, Final
 
 from voronoi_tiles.base.errors import ArgumentError, DesignError
 from voronoi_tiles.base.values import is_number, shown
+from voronoi_tiles.fabrication.job_options import LAID
 
 MESSAGE_MAX: Final = 1 << 20
 """Largest message and largest body of a request; bytes. A design of a thousand strokes has a tenth of it."""
@@ -346,8 +347,8 @@ def _named_files(design: Table) -> Iterator[tuple[str, str]]:
 
 
 def _files_of_job(job: Table) -> Iterator[tuple[str, str]]:
-    """The files that a job names: the drawing of a sheet, and a preset."""
-    for key, suffixes in (("sheet", (".svg", ".svgz", ".dxf")), ("preset", (".toml",))):
+    """The files that a job names: the drawing of a sheet, a preset, and one that has places of pieces."""
+    for key, suffixes in (("sheet", (".svg", ".svgz", ".dxf")), ("preset", (".toml",)), ("layout", LAID)):
         name = job.get(key)
         if isinstance(name, str) and name.lower().endswith(suffixes):
             yield key, name

@@ -1,0 +1,293 @@
+"""Nested pieces: all that belong, none changed, too near or off the sheet, and the same again from the file."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import replace
+from functools import cache
+from io import BytesIO
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+from helpers.cutting import contour_shapes, cuts, squares
+from helpers.examples import tiling
+
+from voronoi_tiles import Design, Tiling
+from voronoi_tiles.fabrication import nest_patterns, nesting
+from voronoi_tiles.fabrication.job import Job
+from voronoi_tiles.fabrication.job_options import JobError
+from voronoi_tiles.fabrication.layout import Layout, Piece
+from voronoi_tiles.fabrication.nest_patterns import no_fit, piece_patterns
+from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces, most_pieces
+from voronoi_tiles.fabrication.nesting import misplaced, nest, placed
+from voronoi_tiles.fabrication.product import _Plan
+from voronoi_tiles.formats.recipe import recipe_of
+
+HOOKS = """schema = 1
+group = "pg"
+cell = { a = 40, b = 50 }
+[[site]]
+strokes = [{ segment = [[5, 4], [16, 20]] }]
+"""
+"""Tiles of which a sheet holds more where they are nested: every other one is turned over."""
+
+JOB: dict[str, Any] = {"sheet": (160.0, 110.0), "margin": 5.0, "kerf": 0.2}
+NESTED: dict[str, Any] = {**JOB, "layout": "nested", "effort": 1}
+
+
+@pytest.fixture(autouse=True, scope="module")
+def _few_tries() -> Iterator[None]:
+    """Try few patterns: how many pieces they find is another test's, which takes longer."""
+    with pytest.MonkeyPatch.context() as patch:
+        for name, few in (("_PAIRS", 16), ("_BEST", 1), ("_ROWS", (50, 16)), ("_KEPT", 12)):
+            patch.setattr(nest_patterns, name, few)
+        yield
+
+
+@cache
+def hooks() -> Tiling:
+    """The tiling of HOOKS."""
+    return Design.loads(HOOKS).tessellate()
+
+
+@cache
+def nested() -> str:
+    """An SVG file of nested pieces, made once for all tests."""
+    file = BytesIO()
+    hooks().make(Job(**JOB, layout="auto")).write(file)
+    return file.getvalue().decode()
+
+
+def saved(folder: Path) -> Path:
+    """The same in a file."""
+    path = folder / "nested.svg"
+    path.write_text(nested(), encoding="utf-8")
+    return path
+
+
+def layout_of(tiles: Tiling, **job: Any) -> Layout:
+    """How a job lays pieces."""
+    return _Plan.of(tiles.design, tiles.tessellation, Job(**job), "svg").layout
+
+
+def test_a_nested_sheet_holds_more_pieces_all_apart_and_on_it(tmp_path: Path) -> None:
+    """More than the tessellation holds; by shapely all keep gap and margin, and have one area; some are turned over."""
+    made = hooks().make(Job(**JOB, layout=saved(tmp_path)))
+    shapes = contour_shapes(cuts(made))
+    assert len(shapes) > hooks().make(Job(**JOB)).pieces.count
+    assert shapely.total_bounds(shapes)[:2].min() >= 5 - 1e-6
+    assert (shapely.total_bounds(shapes)[2:] <= np.array([155.0, 105.0]) + 1e-6).all()
+    one, two = np.triu_indices(len(shapes), 1)
+    assert shapely.distance(np.array(shapes)[one], np.array(shapes)[two]).min() >= 1 - 1e-4
+    assert np.ptp(shapely.area(shapes)) < 1e-2
+    assert 0 < made.pieces.turned_over.sum() < made.pieces.count
+
+
+def test_a_file_lays_its_pieces_again_byte_for_byte(tmp_path: Path) -> None:
+    """Whatever the format: places are in the recipe, and a search that the clock ends is not made again."""
+    path = saved(tmp_path)
+    for form in ("svg", "dxf", "pdf", "lbrn2"):
+        first, again = tmp_path / f"first.{form}", tmp_path / f"again.{form}"
+        hooks().export(first, job=Job(**JOB, layout=path))
+        hooks().export(again, job=Job(**JOB, layout=first))
+        assert again.read_bytes() == first.read_bytes()
+    assert (tmp_path / "first.svg").read_bytes() == path.read_bytes()
+    recipe = recipe_of(path.read_bytes())
+    assert json.loads(recipe["job"])["layout"] == "nested"
+
+
+def test_with_a_grain_pieces_lie_as_in_the_picture_or_upside_down() -> None:
+    """Each piece is turned against one of the picture by 0 or 180 degrees, and is so of each orientation there is."""
+    tiles = tiling("p4-hook")
+    picture = layout_of(tiles, **JOB)
+    laid = nest(picture, Job(**NESTED, grain=True), search=False)
+    turns = Counter(round(piece.turn) % 180 for piece in laid.pieces)
+    own = {round(np.degrees(np.angle(picture.tiles.page.after(motion)[0]))) % 180 for motion in picture.period.motion}
+    assert set(turns) == own == {0, 90}
+    assert all(abs(piece.turn - round(piece.turn)) < 1e-6 for piece in laid.pieces)
+    assert min(turns.values()) > 0
+
+
+def moved(layout: Layout, k: int, by: complex) -> Layout:
+    """A layout of which one piece lies elsewhere."""
+    pieces = list(layout.pieces)
+    pieces[k] = pieces[k]._replace(shift=pieces[k].shift + by)
+    return placed(layout, pieces)
+
+
+def test_a_piece_that_is_too_near_or_off_the_sheet_is_seen(tmp_path: Path) -> None:
+    """The check that the search is not trusted without: by as little as a hundredth of a millimetre."""
+    laid = layout_of(hooks(), **JOB, layout=saved(tmp_path))
+    assert len(misplaced(laid)) == 0
+    wide = replace(laid, job=replace(laid.job, margin=0.0))
+    shapes = contour_shapes(laid.contours.paths)
+    least = min(shapes[0].distance(other) for other in shapes[1:])
+    nearest = min(range(1, len(shapes)), key=lambda k: shapes[0].distance(shapes[k]))
+    start, end = (complex(*point) for point in shapely.shortest_line(shapes[0], shapes[nearest]).coords)
+    way = (end - start) / abs(end - start)
+    assert misplaced(moved(wide, 0, way * (least - 1 + 0.01))).tolist() == [[0, nearest]]
+    assert len(misplaced(moved(wide, 0, way * (least - 1 - 0.001)))) == 0
+    here, there = shapes[0].centroid, shapes[nearest].centroid
+    assert [0, nearest] in misplaced(moved(wide, 0, complex(there.x - here.x, there.y - here.y))).tolist()
+    left = laid.contours.paths.bounds[0]
+    first = int(np.argmin([shape.bounds[0] for shape in shapes]))
+    assert [first, first] in misplaced(moved(laid, first, 5 - 0.01 - left)).tolist()
+
+
+def test_places_that_do_not_fit_a_job_are_refused(tmp_path: Path) -> None:
+    """Whoever lays a file's pieces with a wider kerf, or on a smaller sheet, hears of it; files without places too."""
+    path, tiles = saved(tmp_path), hooks()
+    for other in ({"kerf": 1.2}, {"sheet": (120.0, 110.0)}, {"gap": 4.0}):
+        with pytest.raises(JobError, match=r"pieces in .*nested.svg.* would leave this job's sheet, or be nearer"):
+            tiles.make(Job(**{**JOB, **other}, layout=path))
+    with pytest.raises(JobError, match="of another design"):
+        squares().make(Job(**JOB, layout=path))
+    plain = tmp_path / "plain.svg"
+    plain.write_text('<svg xmlns="http://www.w3.org/2000/svg"/>')
+    with pytest.raises(JobError, match="no file of tiles of ours"):
+        tiles.make(Job(**JOB, layout=plain))
+    with pytest.raises(JobError, match="cannot be read: No such file"):
+        tiles.make(Job(**JOB, layout=tmp_path / "none.svg"))
+    broken = tmp_path / "broken.svg"
+    broken.write_text(nested().replace('places="[[', 'places="[[nan, '))
+    with pytest.raises(JobError, match="damaged"):
+        tiles.make(Job(**JOB, layout=broken))
+    with pytest.raises(OSError, match=r"nested\.svg"):
+        tiles.export(path, job=Job(**JOB, layout=path))
+
+
+def test_a_file_as_the_tessellation_lies_is_laid_so_again(tmp_path: Path) -> None:
+    """`layout` takes any file of tiles of ours."""
+    for name, job in (("one.svg", Job(**JOB)), ("two.svg", Job(**JOB, layout=tmp_path / "one.svg"))):
+        tiling("p4-hook").export(tmp_path / name, job=job)
+    assert (tmp_path / "two.svg").read_bytes() == (tmp_path / "one.svg").read_bytes()
+
+
+def test_labels_and_art_turn_with_their_pieces(tmp_path: Path) -> None:
+    """A label lies within its piece, wherever that is nested."""
+    made = hooks().make(Job(**JOB, layout=saved(tmp_path), labels="number", label_height=2))
+    shapes = shapely.union_all(contour_shapes(cuts(made)))
+    (engraved,) = (layer.paths for layer in made.drawing.layers if layer.work != "cut")
+    points = shapely.points(engraved.start.real, engraved.start.imag)
+    assert len(points) > made.pieces.count
+    assert shapely.contains(shapes, points).all()
+
+
+@pytest.mark.parametrize(
+    ("job", "message"),
+    [
+        ({"sheet": None}, "needs a rectangular sheet"),
+        ({"sheet": "disc.svg"}, "needs a rectangular sheet"),
+        ({"fit": "clip"}, "nests whole tiles"),
+        ({"gap": 0.0}, "would cut where pieces touch twice"),
+        ({"pieces": 9}, "as many `pieces` as fit"),
+        ({"offset": 3j}, "by an `offset`"),
+        ({"colours": 3}, "parts neighbours"),
+        ({"edges": "once", "kerf": 0.0}, "`layout` needs `edges='pieces'`"),
+        ({"layout": "nestled"}, "is unknown"),
+        ({"effort": 0}, "no places are found in no time"),
+        ({"effort": "soon"}, "no places are found in no time"),
+        ({"seed": -1}, "whole number"),
+    ],
+)
+def test_jobs_that_cannot_be_nested_are_refused(job: dict[str, Any], message: str) -> None:
+    """In one message, with a remedy, before anything is computed."""
+    with pytest.raises(JobError, match=message):
+        Job(**{**NESTED, **job})
+
+
+def test_a_piece_larger_than_the_sheet_is_refused_with_its_size() -> None:
+    """The search itself would only give up."""
+    with pytest.raises(JobError, match=r"one piece takes 20.13 x 20.13 mm, and the sheet has room for 9 x 50 mm"):
+        squares().make(Job(sheet=(9, 50), layout="nested"))
+
+
+def test_without_spyrrow_pieces_are_nested_in_patterns_and_a_note_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is missing costs pieces, and not the sheet; what to install is said."""
+    monkeypatch.setattr(nesting, "has_search", lambda: False)
+    made = hooks().make(Job(**NESTED))
+    assert made.pieces.count > 1
+    assert any("pip install spyrrow" in note for note in made.notes)
+
+
+def test_auto_is_repeatable_and_leaves_pieces_that_nothing_pulls_apart() -> None:
+    """It takes no search, so the same job gives the same bytes."""
+    file = BytesIO()
+    hooks().make(Job(**JOB, layout="auto")).write(file)
+    assert file.getvalue().decode() == nested()
+    plain = {"sheet": (160.0, 110.0), "margin": 5.0}
+    for job in (plain, {**plain, "colours": 3, "gap": 1}, {**plain, "fit": "clip"}):
+        assert not layout_of(hooks(), **job, layout="auto").pieces
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("name", "least"), [("cmm-scroll", 51), ("pgg-crane", 30)])
+def test_tiles_that_hook_into_each_other_gain_much(name: str, least: int) -> None:
+    """Three times as many scrolls as the tessellation pulled apart, 1.3 times as many cranes, without a search."""
+    with pytest.MonkeyPatch.context() as patch:
+        for constant, value in (("_PAIRS", 72), ("_BEST", 5), ("_ROWS", (160, 44)), ("_KEPT", 40)):
+            patch.setattr(nest_patterns, constant, value)
+        made = tiling(name).make(Job(sheet=(300, 200), margin=5, kerf=0.15, layout="auto"))
+    assert made.pieces.count >= least
+
+
+def test_a_search_finds_places_for_more_than_are_known() -> None:
+    """A dozen bars, each turned as it may be, where no pattern is known; by shapely none overlaps another."""
+    bar = np.array([-10 - 5j, 10 - 5j, 10 + 5j, -10 + 5j])
+    none = NestPlaces(np.zeros(0, np.intp), np.zeros(0), np.zeros(0, np.complex128))
+    found = most_pieces([NestItem(bar, 1.0, (0.0, 90.0))], (80.0, 50.0), none, 1, 0)
+    assert len(found.item) >= 12
+    shapes = []
+    for turn, shift in zip(found.turn.tolist(), found.shift.tolist(), strict=True):
+        z = np.exp(1j * np.radians(turn)) * bar + shift
+        shapes.append(shapely.Polygon(np.column_stack((z.real, z.imag))))
+    assert shapely.total_bounds(shapes).min() > -1e-4
+    assert (shapely.total_bounds(shapes)[2:] < np.array([80.0, 50.0]) + 2e-3).all()
+    one, two = np.triu_indices(len(shapes), 1)
+    assert shapely.area(shapely.intersection(np.array(shapes)[one], np.array(shapes)[two])).max() < 1e-2
+
+
+@pytest.mark.parametrize(
+    "shape", [[0, 6, 6 + 2j, 2 + 2j, 2 + 6j, 6j], [0, 6, 3 + 5j], [0, 8, 8 + 4j, 5 + 1j, 3 + 1j, 4j]]
+)
+def test_pieces_of_a_pattern_overlap_nowhere(shape: list[complex]) -> None:
+    """By shapely, for all pieces near one: neither the pattern's neighbours nor its half turns."""
+    ring = np.array(shape) - np.mean(shape)
+    polygon = shapely.Polygon(np.column_stack((ring.real, ring.imag)))
+    patterns = piece_patterns(ring)
+    assert patterns[0].density > 0.6
+    for one in patterns[:10]:
+        cells = [i * one.u + j * one.v for i in range(-4, 5) for j in range(-4, 5)]
+        moved = [shapely.affinity.translate(polygon, z.real, z.imag) for z in cells if z]
+        if one.half is not None:
+            turned = shapely.affinity.rotate(polygon, 180, origin=(0, 0))
+            moved += [shapely.affinity.translate(turned, z.real, z.imag) for z in (c + one.half for c in cells)]
+        assert max(polygon.intersection(other).area for other in moved) < 1e-4
+
+
+def test_a_no_fit_polygon_is_where_pieces_overlap_bays_and_all() -> None:
+    """Places drawn at random overlap by shapely if they lie in it; one in a bay that is entered nowhere does not."""
+    bay = np.array([0, 10, 10 + 10j, 6 + 10j, 6 + 8j, 8 + 8j, 8 + 2j, 2 + 2j, 2 + 8j, 5 + 8j, 5 + 10j, 10j])
+    small = np.array([0, 3, 3 + 3j, 3j])
+    region = no_fit(bay, small)
+    stays, other = (shapely.Polygon(np.column_stack((ring.real, ring.imag))) for ring in (bay, small))
+    assert len(region.interiors) == 1
+    for x, y in np.random.default_rng(5).uniform(-5, 12, (200, 2)).tolist():
+        overlap = stays.intersection(shapely.affinity.translate(other, x, y)).area
+        assert region.contains(shapely.Point(x, y)) == (overlap > 0), (x, y)
+
+
+def test_a_place_is_that_of_the_tile_as_it_is_drawn() -> None:
+    """A piece that is not turned lies where the design has its tile, in millimetres, moved by its shift."""
+    tiles = tiling("p4-hook")
+    laid = placed(layout_of(tiles, **JOB), [Piece(0, False, 0.0, 50 + 60j), Piece(0, False, 90.0, 50 + 60j)])
+    drawn = tiles[0].outline.to_shapely(accuracy=1e-3)
+    upright = shapely.affinity.translate(drawn, 50, 60)
+    turned = shapely.affinity.translate(shapely.affinity.rotate(drawn, 90, origin=(0, 0)), 50, 60)
+    for shape, wanted in zip(contour_shapes(laid.contours.paths), (upright, turned), strict=True):
+        assert shape.buffer(-0.1).hausdorff_distance(wanted) < 0.03  # half the kerf of 0.2

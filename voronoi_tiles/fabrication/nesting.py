@@ -1,0 +1,296 @@
+"""Pieces nested on a sheet: as many as a search finds room for, turned as they may be, or where a file has them.
+
+The places go into the file's recipe, by which the same file is made again.
+"""
+
+from __future__ import annotations
+
+import cmath
+import json
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Complexes, Ints, plane
+from voronoi_tiles.base.documents import read_bytes
+from voronoi_tiles.base.errors import why_not_opened
+from voronoi_tiles.base.maps import unit_at
+from voronoi_tiles.base.text import counted
+from voronoi_tiles.base.values import shown
+from voronoi_tiles.fabrication.dressed_tiles import DressedTiles
+from voronoi_tiles.fabrication.job import Job
+from voronoi_tiles.fabrication.job_options import EFFORT_S, LAYOUTS, JobError
+from voronoi_tiles.fabrication.layout import Layout, Piece, PlacedTiles, Sheet
+from voronoi_tiles.fabrication.nest_patterns import lay_patterns
+from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces, Progress, has_search, most_pieces
+from voronoi_tiles.fabrication.tile_placement import TilePlacement
+from voronoi_tiles.formats.recipe import recipe_of
+from voronoi_tiles.formats.shapes import BYTES_MAX
+from voronoi_tiles.paths.conversion import to_lines
+from voronoi_tiles.paths.near_items import ROUNDING, near_items
+from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.paths.segments import item_boxes
+from voronoi_tiles.vector.motions import compose, inverse, reverses_orientation
+
+_COARSE: Final = 0.06
+"""By how much the polygon that stands for a piece may be larger than the piece grown by half the gap; a share of the
+gap. Fewer corners leave the search more time."""
+
+_SINGLE_MM: Final = 2e-4
+"""More than what single precision and the digits of the recipe move a piece by; millimetres."""
+
+_ANGLE_DIGITS: Final = 7
+_PLACE_DIGITS: Final = 6
+"""Decimals of turns in degrees, and of places in millimetres, in recipes: at the edge of a piece of 300 mm half a
+micrometre, and a nanometre."""
+
+_UNSEARCHED: Final = (
+    "spyrrow is not installed, so pieces were nested in patterns alone: with `pip install spyrrow` a search may find "
+    "places for more"
+)
+
+_QUARTER: Final = 8
+"""Chords of a quarter circle around a corner of a piece; a count."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Kinds:
+    """The kinds of pieces of a tessellation: for each a tile of the period that stands for it, and its share of all."""
+
+    tile: tuple[int, ...]
+    share: tuple[float, ...]
+
+    @classmethod
+    def of(cls, tiles: DressedTiles, grain: bool) -> _Kinds:
+        """Tiles of a site are of one kind, but those turned over, and with a grain, those turned by less than 180."""
+        members: dict[tuple[int, ...], list[int]] = {}
+        for tile, (site, motion) in enumerate(zip(tiles.period.site.tolist(), tiles.period.motion, strict=True)):
+            linear = tuple(map(int, motion[:4]))
+            along = max(linear, tuple(-part for part in linear)) if grain else (reverses_orientation(motion),)
+            members.setdefault((site, *along), []).append(tile)
+        count = len(tiles.period.site)
+        return cls(tuple(own[0] for own in members.values()), tuple(len(own) / count for own in members.values()))
+
+
+def arranged(
+    lay: Callable[..., Layout], job: Job, sheet: Sheet, progress: Progress | None
+) -> tuple[Layout, tuple[str, ...]]:
+    """The tiles of a job on its sheet, and what is to be said of them; `lay`, given job and sheet, does as `lay_out`.
+
+    The job of the layout says how they lie, and not how that was found. Raises what `lay_out` does, and JobError where
+    pieces cannot be nested.
+    """
+    plain = replace(job, layout="tessellated", grain=False, effort=EFFORT_S, seed=0)
+    if not (job.nests or (job.layout == "auto" and job.apart and job.not_nestable is None)):
+        return lay(job=plain, sheet=sheet), ()
+    if job.gap is None and not job.kerf:
+        plain = replace(plain, gap=job.side_by_side)
+    pieces = None if job.layout in LAYOUTS else read_places(job.layout)
+    if pieces == []:
+        return lay(job=plain, sheet=sheet), ()
+    # Nothing is to be filled: one tile stands for all of its kind.
+    base = lay(job=replace(plain, layout="nested"), sheet=Sheet(0.0, 0.0, None, 0j))
+    base = replace(base, sheet=sheet)
+    if pieces is not None:
+        return laid_again(base, pieces, job.layout), ()
+    try:
+        tessellated: Layout | None = lay(job=plain, sheet=sheet)
+    except JobError:
+        tessellated = None  # what is hooked, or does not fit as it lies, may fit by itself
+    fewer = 0 if tessellated is None else len(tessellated.copies.tile)
+    search = job.layout == "nested" and has_search()
+    nested = nest(base, job, progress, search=search)
+    count = len(nested.pieces)
+    said = [] if search or job.layout == "auto" else [_UNSEARCHED]
+    if tessellated is not None and count <= fewer:
+        said.append(f"nested there would be {counted(count, 'piece')}: they lie as in the tessellation")
+        return tessellated, tuple(said)
+    if not count:
+        raise JobError("no places were found for any piece", remedy="Give a longer `effort`, or a larger sheet.")
+    said.append(f"nested: as in the tessellation there would be {counted(fewer, 'piece')}")
+    return nested, tuple(said)
+
+
+def nest(layout: Layout, job: Job, progress: Progress | None = None, *, search: bool = True) -> Layout:
+    """A layout with as many of its pieces on its sheet as patterns, or with `search` that, find places for.
+
+    Raises JobError where a piece is larger than the sheet.
+    """
+    tiles, sheet = layout.tiles, layout.sheet
+    kinds = _Kinds.of(tiles, grain=job.grain)
+    gap = job.side_by_side
+    items, middle = _items(tiles, kinds, gap, layout.budget.measured, grain=job.grain)
+    # Polygons reach half a gap beyond the pieces, and may do so beyond the margin.
+    room = (sheet.width - 2 * job.margin + gap, sheet.height - 2 * job.margin + gap)
+    _refuse_large(items, room, gap)
+    found = lay_patterns(items, room)
+    if search:
+        found = most_pieces(items, room, found, job.effort, job.seed, progress)
+    corner = (job.margin - gap / 2) * (1 + 1j)
+    laid = placed(
+        layout, [_piece(tiles, kinds.tile[k], middle[k], turn, shift + corner) for k, turn, shift in _rows(found)]
+    )
+    # What the search gives is not trusted.
+    while len(wrong := misplaced(laid)):
+        counts = np.bincount(wrong.ravel(), minlength=len(laid.pieces))
+        worst = int(np.argmax(counts))
+        laid = placed(layout, [piece for k, piece in enumerate(laid.pieces) if k != worst])
+    return laid
+
+
+def laid_again(layout: Layout, pieces: Sequence[Piece], name: str) -> Layout:
+    """A layout with its pieces where a file has them. Raises JobError where they do not fit."""
+    if not {(piece.site, piece.over) for piece in pieces} <= set(_stand_ins(layout)):
+        raise JobError(f"`layout`: {shown(name)} is of another design", remedy="Name a file of this one.")
+    laid = placed(layout, pieces)
+    wrong = misplaced(laid)
+    if len(wrong):
+        raise JobError(
+            f"`layout`: {len(np.unique(wrong))} pieces in {shown(name)} would leave this job's sheet, "
+            f"or be nearer to each other than {layout.job.side_by_side:g} mm",
+            remedy="Give the options that it was made with, or use `layout='nested'`.",
+        )
+    return laid
+
+
+def read_places(name: str) -> list[Piece]:
+    """The places in the recipe of a file of ours; none where its pieces lie as in the tessellation. Raises JobError."""
+    try:
+        recipe = recipe_of(read_bytes(name, BYTES_MAX))
+    except (OSError, ValueError) as error:
+        reason = why_not_opened(name, error)
+        raise JobError(f"`layout`: {shown(name)} cannot be read: {reason}", remedy="Check the name.") from error
+    remedy = "Name a file that was made with `layout='nested'`."
+    if "design" not in recipe:
+        raise JobError(f"`layout`: {shown(name)} is no file of tiles of ours, and has no places", remedy=remedy)
+    if "places" not in recipe:
+        return []
+    try:
+        rows = json.loads(recipe["places"])
+        pieces = [Piece(int(k), bool(over), float(turn), complex(float(x), float(y))) for k, over, turn, x, y in rows]
+    except (ValueError, TypeError) as error:
+        raise JobError(f"`layout`: the places in {shown(name)} are damaged", remedy=remedy) from error
+    if not pieces or not np.isfinite([(piece.turn, abs(piece.shift)) for piece in pieces]).all():
+        raise JobError(f"`layout`: the places in {shown(name)} are damaged", remedy=remedy)
+    return pieces
+
+
+def places_text(pieces: tuple[Piece, ...]) -> str:
+    """What a recipe says of places, JSON."""
+    return json.dumps([[k, int(over), turn, place.real, place.imag] for k, over, turn, place in pieces])
+
+
+def placed(layout: Layout, pieces: Sequence[Piece]) -> Layout:
+    """A layout with pieces at places."""
+    tiles, stand_ins = layout.tiles, _stand_ins(layout)
+    tile = np.array([stand_ins[piece.site, piece.over] for piece in pieces], np.intp)
+    unit, shift = np.zeros((2, len(pieces)), np.complex128)
+    for k, piece in enumerate(pieces):
+        factor, place, _ = tiles.page.after(layout.period.motion[int(tile[k])])
+        unit[k] = unit_at(piece.turn) * (factor / abs(factor)).conjugate()
+        shift[k] = piece.shift - unit[k] * place
+    step, whole = np.zeros((len(tile), 2), np.intp), np.ones(len(tile), np.bool_)
+    return replace(
+        layout,
+        placement=TilePlacement(tile, step, whole),
+        copies=PlacedTiles(tile, step, whole, shift, unit),
+        pieces=tuple(pieces),
+    )
+
+
+def _stand_ins(layout: Layout) -> dict[tuple[int, bool], int]:
+    """The first tile of the period of each site, as drawn and, where the group does so, turned over."""
+    period = layout.period
+    found: dict[tuple[int, bool], int] = {}
+    for tile, (site, motion) in enumerate(zip(period.site.tolist(), period.motion, strict=True)):
+        found.setdefault((site, reverses_orientation(motion)), tile)
+    return found
+
+
+def misplaced(layout: Layout) -> Ints:
+    """The pairs of pieces that are nearer to each other than they may be, intp (k, 2); a piece off the sheet twice.
+
+    Contours are compared as they are, arcs and parabolas.
+    """
+    contours, sheet, margin = layout.contours, layout.sheet, layout.job.margin
+    pairs = near_items(contours.paths, contours.items, layout.job.side_by_side)
+    box = item_boxes(contours.paths, contours.items)
+    low, high = margin - ROUNDING, np.array([sheet.width, sheet.height]) - margin + ROUNDING
+    off = np.flatnonzero((box[:, :2] < low).any(axis=1) | (box[:, 2:] > high).any(axis=1))
+    return np.concatenate((pairs, np.column_stack((off, off))))
+
+
+def _rows(places: NestPlaces) -> list[tuple[int, float, complex]]:
+    """Item, turn and shift of each, from the left to the right."""
+    order = np.lexsort((places.shift.imag, places.shift.real))
+    return list(zip(*(part[order].tolist() for part in places), strict=True))
+
+
+def _piece(tiles: DressedTiles, tile: int, about: complex, turn: float, shift: complex) -> Piece:
+    """What a recipe says of a tile of the period that is turned about a point, which is moved to `shift`."""
+    factor, place, conj = tiles.page.after(tiles.period.motion[tile])
+    unit = unit_at(turn)
+    where = unit * (place - about) + shift
+    angle = round(math.degrees(cmath.phase(unit * factor)), _ANGLE_DIGITS)
+    x, y = round(where.real, _PLACE_DIGITS), round(where.imag, _PLACE_DIGITS)
+    return Piece(int(tiles.period.site[tile]), conj, angle, complex(x, y))
+
+
+def _items(
+    tiles: DressedTiles, kinds: _Kinds, gap: float, accuracy: float, *, grain: bool
+) -> tuple[list[NestItem], list[complex]]:
+    """What is laid: the pieces of each kind grown by half the gap, about 0; and what of the page was taken there."""
+    period = tiles.period
+    items: list[NestItem] = []
+    middle: list[complex] = []
+    first: dict[int, int] = {}
+    for tile, share in zip(kinds.tile, kinds.share, strict=True):
+        site = int(period.site[tile])
+        like = first.setdefault(site, len(items))
+        image = tiles.page.isometry(compose(period.motion[tile], inverse(period.motion[kinds.tile[like]])))
+        if like == len(items):
+            ring = _grown(tiles.rings(tile), gap, accuracy)
+            middle.append(complex(ring.mean()))
+            items.append(NestItem(ring - middle[-1], share, (0.0, 180.0) if grain else None))
+        else:
+            ring = image.a * (items[like].ring.conj() if image.conj else items[like].ring)
+            middle.append(image(middle[like]))
+            items.append(NestItem(ring, share, items[like].turns, like, image.a, image.conj))
+    return items, middle
+
+
+def _grown(rings: Paths, gap: float, accuracy: float) -> Complexes:
+    """A polygon around a piece, its holes filled, that holds all within half a gap of it: complex128 (n,)."""
+    import shapely
+
+    lines = to_lines(rings, accuracy=accuracy)
+    outer = shapely.Polygon(plane(lines.start[: lines.offsets[1]]))
+    slack = _COARSE * gap
+    # Chords cut off what simplifying may cut off in turn, and the arcs of the buffer are chords as well.
+    reach = gap / 2 + accuracy + slack + _SINGLE_MM
+    grown = outer.buffer(reach / math.cos(math.pi / (4 * _QUARTER)), quad_segs=_QUARTER)
+    x, y = shapely.Polygon(grown.exterior).simplify(slack).exterior.coords.xy
+    return np.array(x[:-1]) + 1j * np.array(y[:-1])
+
+
+def _refuse_large(items: Sequence[NestItem], room: tuple[float, float], gap: float) -> None:
+    """Refuse pieces that do not fit on the sheet, however they are turned as they may be."""
+    import shapely
+
+    for item in items:
+        if item.turns is None:
+            box = shapely.minimum_rotated_rectangle(shapely.Polygon(plane(item.ring)))
+            corners = np.array(box.exterior.coords)[:3]
+            sides = np.hypot(*np.diff(corners, axis=0).T)
+            need, have = sorted(sides.tolist()), sorted(room)
+        else:
+            need, have = [float(np.ptp(item.ring.real)), float(np.ptp(item.ring.imag))], list(room)
+        if need[0] > have[0] or need[1] > have[1]:
+            raise JobError(
+                f"one piece takes {need[0] - gap:.4g} x {need[1] - gap:.4g} mm, and the sheet has room for "
+                f"{have[0] - gap:.4g} x {have[1] - gap:.4g} mm",
+                remedy="Take a larger sheet, a smaller margin or a smaller design.",
+            )
