@@ -201,9 +201,17 @@ def test_jobs_that_cannot_be_nested_are_refused(job: dict[str, Any], message: st
         Job(**{**NESTED, **job})
 
 
+def test_too_many_pieces_are_not_nested() -> None:
+    """They would take for ever: `nested` says so, `auto` leaves them as they are."""
+    job = {"sheet": (800.0, 800.0), "gap": 1.0}
+    with pytest.raises(JobError, match=r"about 1,600 pieces, and 1,000 are the most"):
+        squares().make(Job(**job, layout="nested"))
+    assert not layout_of(squares(), **job, layout="auto").pieces
+
+
 def test_a_piece_larger_than_the_sheet_is_refused_with_its_size() -> None:
     """The search itself would only give up."""
-    with pytest.raises(JobError, match=r"one piece takes 20.13 x 20.13 mm, and the sheet has room for 9 x 50 mm"):
+    with pytest.raises(JobError, match=r"one piece takes 20\.\d+ x 20\.\d+ mm, and the sheet has room for 9 x 50 mm"):
         squares().make(Job(sheet=(9, 50), layout="nested"))
 
 

@@ -89,7 +89,8 @@ def most_pieces(
 ) -> NestPlaces:
     """The most pieces that fit into a rectangle from 0 to `size`: those `known`, or more found in `effort` seconds.
 
-    spyrrow has to be installed, and every item to fit by itself. Raises JobError where spyrrow gives up.
+    spyrrow has to be installed. Raises JobError where it gives up, as for an item that does not fit by itself, and none
+    are known.
     """
     width, height = size
     each = sum(item.share * _area(item.ring) for item in items)
@@ -99,9 +100,13 @@ def most_pieces(
         count = max(math.floor(hope * density * width * height / each), len(best.item) + 1)
         hope = _HOPE
         seconds = max(1, round(effort * share))
-        found = strip(
-            items, demands(items, count), height, seconds, seed, lambda now: _tell(progress, now - begun, effort)
-        )
+        demand = demands(items, count)
+        try:
+            found = strip(items, demand, height, seconds, seed, lambda now: _tell(progress, now - begun, effort))
+        except JobError:
+            if not len(best.item):
+                raise
+            break
         reach = _right_ends(items, found)
         density = count * each / (float(reach.max()) * height)
         fitting = found.take(np.flatnonzero(reach <= width))

@@ -52,6 +52,9 @@ _UNSEARCHED: Final = (
     "places for more"
 )
 
+NESTED_MAX: Final = 1_000
+"""Most pieces that are nested; a count. Their check takes a minute, and at a border so long there is little to gain."""
+
 _QUARTER: Final = 8
 """Chords of a quarter circle around a corner of a piece; a count."""
 
@@ -96,6 +99,14 @@ def arranged(
     base = replace(base, sheet=sheet)
     if pieces is not None:
         return laid_again(base, pieces, job.layout), ()
+    about = sheet.width * sheet.height / float(base.tile_areas.mean())
+    if about > NESTED_MAX:
+        if job.layout == "auto":
+            return lay(job=plain, sheet=sheet), ()
+        raise JobError(
+            f"the sheet would hold about {about:,.0f} pieces, and {NESTED_MAX:,} are the most that are nested",
+            remedy="Take a smaller sheet or a larger design, or `layout='tessellated'`.",
+        )
     try:
         tessellated: Layout | None = lay(job=plain, sheet=sheet)
     except JobError:
@@ -277,20 +288,16 @@ def _grown(rings: Paths, gap: float, accuracy: float) -> Complexes:
 
 
 def _refuse_large(items: Sequence[NestItem], room: tuple[float, float], gap: float) -> None:
-    """Refuse pieces that do not fit on the sheet, however they are turned as they may be."""
-    import shapely
-
+    """Refuse pieces that do not fit on the sheet by themselves, in whole degrees or as they may be turned."""
     for item in items:
-        if item.turns is None:
-            box = shapely.minimum_rotated_rectangle(shapely.Polygon(plane(item.ring)))
-            corners = np.array(box.exterior.coords)[:3]
-            sides = np.hypot(*np.diff(corners, axis=0).T)
-            need, have = sorted(sides.tolist()), sorted(room)
-        else:
-            need, have = [float(np.ptp(item.ring.real)), float(np.ptp(item.ring.imag))], list(room)
-        if need[0] > have[0] or need[1] > have[1]:
+        turns = np.arange(180.0) if item.turns is None else np.zeros(1)
+        turned = np.exp(1j * np.radians(turns))[:, None] * item.ring
+        sizes = np.column_stack((np.ptp(turned.real, axis=1), np.ptp(turned.imag, axis=1)))
+        excess = (sizes / room).max(axis=1)
+        if excess.min() > 1.0:
+            width, height = sizes[np.argmin(excess)] - gap
             raise JobError(
-                f"one piece takes {need[0] - gap:.4g} x {need[1] - gap:.4g} mm, and the sheet has room for "
-                f"{have[0] - gap:.4g} x {have[1] - gap:.4g} mm",
+                f"one piece takes {width:.4g} x {height:.4g} mm, and the sheet has room for {room[0] - gap:.4g} x "
+                f"{room[1] - gap:.4g} mm",
                 remedy="Take a larger sheet, a smaller margin or a smaller design.",
             )
