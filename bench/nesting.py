@@ -16,6 +16,7 @@ import time
 from pathlib import Path
 from statistics import median
 
+import numpy as np
 from report import machine, published, table
 
 from voronoi_tiles import Design, Job, Tiling
@@ -68,7 +69,7 @@ def bound(tiling: Tiling) -> float:
     """More than how many pieces no sheet holds: where a cell has several tiles, by the mean of their areas."""
     grown = [tile.outline.to_shapely(accuracy=0.01).buffer((KERF + GAP) / 2).area for tile in tiling]
     copies = [tile.copies_per_cell for tile in tiling]
-    mean = sum(area * count for area, count in zip(grown, copies, strict=True)) / sum(copies)
+    mean = float(np.average(grown, weights=copies))
     return (SHEET[0] - 2 * MARGIN + GAP) * (SHEET[1] - 2 * MARGIN + GAP) / mean
 
 

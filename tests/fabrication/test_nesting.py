@@ -203,7 +203,7 @@ def test_jobs_that_cannot_be_nested_are_refused(job: dict[str, Any], message: st
 
 def test_too_many_pieces_are_not_nested() -> None:
     """They would take for ever: `nested` says so, `auto` leaves them as they are."""
-    job = {"sheet": (800.0, 800.0), "gap": 1.0}
+    job: dict[str, Any] = {"sheet": (800.0, 800.0), "gap": 1.0}
     with pytest.raises(JobError, match=r"about 1,600 pieces, and 1,000 are the most"):
         squares().make(Job(**job, layout="nested"))
     assert not layout_of(squares(), **job, layout="auto").pieces

@@ -11,6 +11,7 @@ and its half turn, G. Kuperberg and W. Kuperberg, Double-lattice packings of con
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -42,6 +43,9 @@ _SEAMS: Final = 10
 
 _SPLITS: Final = (-0.08, -0.05, -0.03, -0.015, 0.0, 0.015, 0.03, 0.05, 0.08)
 """By how much the bands of kinds are moved; shares of the sheet."""
+
+_HALVES: Final = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8)
+"""Where the band of a kind is divided in two; shares of the sheet."""
 
 _EVEN: Final = 0.8
 """The least part of its share that each kind has."""
@@ -165,14 +169,11 @@ def lay_patterns(items: Sequence[NestItem], size: tuple[float, float]) -> NestPl
     ways = [_ways(item, own) for item, own in zip(items, patterns, strict=True)]
     shares = np.array([item.share for item in items])
     areas = shares * [_polygon(item.ring).area for item in items]
-    tops = np.cumsum(areas) / areas.sum() * size[1]
     best = _none()
-    for split in _SPLITS if len(items) > 1 else (0.0,):
+    for bands in _divisions(areas / areas.sum()):
         found, taken = [], None
-        for k, own in enumerate(ways):
-            low = 0.0 if k == 0 else tops[k - 1] + split * size[1]
-            top = size[1] if k == len(ways) - 1 else tops[k] + split * size[1]
-            places, taken = _band(k, items[k].ring, own, (size[0], low, top), taken)
+        for k, low, top in bands:
+            places, taken = _band(k, items[k].ring, ways[k], (size[0], low * size[1], top * size[1]), taken)
             found.append(places)
         laid = NestPlaces(*(np.concatenate(parts) for parts in zip(*found, strict=True)))
         counts = np.bincount(laid.item, minlength=len(items))
@@ -180,6 +181,18 @@ def lay_patterns(items: Sequence[NestItem], size: tuple[float, float]) -> NestPl
         if even and counts.sum() > len(best.item):
             best = laid
     return best
+
+
+def _divisions(shares: Floats) -> Iterator[list[tuple[int, float, float]]]:
+    """Ways to divide a height of 1 into bands: (item, bottom, top). What is of one kind can lie in two ways."""
+    if len(shares) == 1:
+        yield [(0, 0.0, 1.0)]
+        yield from ([(0, 0.0, split), (0, split, 1.0)] for split in _HALVES)
+        return
+    tops = np.cumsum(shares)[:-1]
+    for move in _SPLITS:
+        edges = [0.0, *(tops + move).tolist(), 1.0]
+        yield [(k, low, top) for k, (low, top) in enumerate(pairwise(edges))]
 
 
 class _Way(NamedTuple):
