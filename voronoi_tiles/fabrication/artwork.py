@@ -15,7 +15,7 @@ from voronoi_tiles.designs.art import GUIDE, Art
 from voronoi_tiles.fabrication.arc_fitting import edge_arcs
 from voronoi_tiles.fabrication.clipping import OUTSIDE, Strands, inner_runs, outer_strands
 from voronoi_tiles.fabrication.contours import clipped_pieces
-from voronoi_tiles.fabrication.job import SHEET_MAX
+from voronoi_tiles.fabrication.job_options import SHEET_MAX
 from voronoi_tiles.fabrication.layout import PIECES_MAX, Layout
 from voronoi_tiles.fabrication.region import Region
 from voronoi_tiles.formats.caveats import caveats

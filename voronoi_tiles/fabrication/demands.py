@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from voronoi_tiles.fabrication.job import APART_MM, Job, JobError
+from voronoi_tiles.fabrication.job import Job, JobError
+from voronoi_tiles.fabrication.job_limits import APART_MM
 from voronoi_tiles.formats.presets import Format, Preset
 
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
 from voronoi_tiles.fabrication.artwork import Works, draw_art
-from voronoi_tiles.fabrication.job import LABEL_MIN, Job, JobError
+from voronoi_tiles.fabrication.job import Job, JobError
+from voronoi_tiles.fabrication.job_limits import LABEL_MIN
 from voronoi_tiles.fabrication.layout import Contours, Layout, Sheet
 from voronoi_tiles.fabrication.lettering import fitting_height, label_position, place_labels, printable
 from voronoi_tiles.fabrication.marks import BAR_MM, bar_height, reference_bar, registration_marks

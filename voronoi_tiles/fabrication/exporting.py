@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 from voronoi_tiles.base.errors import OutputError
 from voronoi_tiles.base.files import STDOUT, is_special, refuse_overwriting, writing
 from voronoi_tiles.designs.design import Design
-from voronoi_tiles.fabrication.job import ACCURACY_MM, Job
+from voronoi_tiles.fabrication.job import Job
+from voronoi_tiles.fabrication.job_limits import ACCURACY_MM
 from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.formats.page import Drawing
 from voronoi_tiles.formats.presets import FORMATS, SUFFIXES, Format

@@ -5,11 +5,18 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
-from typing import Any, Final, Literal, cast, get_args
+from typing import Any, Literal, cast, get_args
 
+from voronoi_tiles.fabrication.job_limits import (
+    ACCURACY_MIN,
+    ACCURACY_MM,
+    APART_MM,
+    FRAME_MM,
+    LABEL_MIN,
+    STROKE_MIN,
+)
 from voronoi_tiles.fabrication.job_options import (
     EFFORT_S,
-    SHEET_MAX,
     SHEET_MIN,
     Choice,
     Flag,
@@ -37,7 +44,7 @@ from voronoi_tiles.fabrication.job_options import (
 )
 from voronoi_tiles.formats.presets import DxfVersion
 
-__all__ = ["ACCURACY_MM", "LABEL_MIN", "SHEET_MAX", "SHEET_MIN", "Job", "JobError"]
+__all__ = ["Job", "JobError"]
 
 Fit = Literal["whole", "clip", "frame"]
 Edges = Literal["once", "pieces"]
@@ -45,24 +52,6 @@ Curves = Literal["exact", "arc", "cubic", "spline", "polyline"]
 ArtUse = Literal["whole", "clip", "none"]
 Labels = Literal["none", "number", "site"]
 Into = Literal["layers", "files"]
-
-ACCURACY_MM: Final = 0.005
-"""How far approximated curves may be from the exact ones, where the caller does not say; a twentieth of a kerf."""
-
-ACCURACY_MIN: Final = 1e-5
-"""Finest accuracy; millimetres. A hundredth of a micrometre; files hold nanometres."""
-
-APART_MM: Final = 1.0
-"""How far contours with a kerf are kept apart where the caller does not say; millimetres: no sliver is left to burn."""
-
-STROKE_MIN: Final = 0.001
-"""Thinnest lines; millimetres. Thinner ones are lost in programs that keep few digits."""
-
-FRAME_MM: Final = 2.0
-"""Least width of a frame where the caller does not say; millimetres. A narrower one breaks, or is cut twice."""
-
-LABEL_MIN: Final = 0.5
-"""Smallest height of a label; millimetres. What is smaller nobody reads."""
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

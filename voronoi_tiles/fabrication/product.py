@@ -19,10 +19,11 @@ from voronoi_tiles.base.files import refuse_overwriting, writing
 from voronoi_tiles.base.text import counted
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
-from voronoi_tiles.fabrication.arc_fitting import curve_fit, edge_cubics
+from voronoi_tiles.fabrication.arc_fitting import curve_fit
 from voronoi_tiles.fabrication.artwork import Works
+from voronoi_tiles.fabrication.curve_choice import curve_converter, file_curves
 from voronoi_tiles.fabrication.cutting import Cut, cut_once, cut_pieces, cut_shapes, toured
-from voronoi_tiles.fabrication.demands import as_demanded, refuse_misread
+from voronoi_tiles.fabrication.demands import as_demanded
 from voronoi_tiles.fabrication.engraving import engrave
 from voronoi_tiles.fabrication.exact import design_recipe
 from voronoi_tiles.fabrication.gap_hint import smaller_gap
@@ -38,12 +39,9 @@ from voronoi_tiles.fabrication.sheets import read_sheet
 from voronoi_tiles.fabrication.sizing import sized
 from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_tiles
 from voronoi_tiles.formats.burns import Burn, Role
-from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
 from voronoi_tiles.formats.page import Drawing, Layer, Work, fitting_page
 from voronoi_tiles.formats.presets import FORMATS, DxfStyle, DxfVersion, Format, Preset, load_preset
 from voronoi_tiles.formats.writing import write_drawing
-from voronoi_tiles.paths.biarcs import to_arcs
-from voronoi_tiles.paths.conversion import to_cubics, to_lines
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.vector.tessellation import Tessellation
 
@@ -213,7 +211,7 @@ class _Plan:
         preset = load_preset(job.preset)
         preset.require(form)
         job = as_demanded(job, preset)
-        curves = _curves(job, preset, form)
+        curves = file_curves(job, preset, form)
         if form == "gcode":
             preset.burns(["cut"], job.feed, job.power)  # before anything is computed for nothing
         said: tuple[str, ...] = ()
@@ -269,7 +267,7 @@ class _Plan:
         shown = _shown(colouring, layout, job)
         fills = preset.fill_engraving and self.form != "gcode"  # whose lasers go along lines
         engraving = engrave(layout, contours, layout.sheet, shown, fills=fills)
-        layers = _layers(preset, self.form, job, cuts, engraving, _converter(self.curves, job, layout.budget))
+        layers = _layers(preset, self.form, job, cuts, engraving, curve_converter(self.curves, job, layout.budget))
         drawing = _page(layers, layout, job)
         said = (*self.said, *layout.sheet.notes, *layout.tiles.compensation.losses, *engraving.notes)
         twice = doubled(layout, job) if preset.contours == "shared" else []  # the others do not cut
@@ -327,42 +325,6 @@ def _shown(colouring: TileColouring, layout: Layout, job: Job) -> Bools:
     """Which tiles on the page are drawn."""
     colour = colouring.of_copies(np.arange(len(layout.copies.tile)))
     return np.ones(len(colour), np.bool_) if job.only_colour is None else np.asarray(colour == job.only_colour)
-
-
-def _curves(job: Job, preset: Preset, form: Format) -> str:
-    """What the curves become."""
-    wanted = job.curves
-    if wanted is None:
-        by_preset = {"svg": preset.svg_curves, "dxf": preset.dxf_curves, "gcode": "polyline"}.get(form, "exact")
-        wanted = by_preset
-    if form == "dxf" and wanted == "exact":
-        wanted = "spline"
-    if form == "gcode" and wanted not in {"arc", "polyline"}:
-        raise JobError(
-            f"G-code has lines and circular arcs, and no `curves='{wanted}'`", remedy="Use polyline, or arc."
-        )
-    if form == "dxf" and wanted == "cubic":
-        raise JobError(
-            "DXF has no Bezier curves, and no `curves='cubic'`",
-            remedy="Use arc, the fewest arcs, or spline, the exact curves; or write SVG, PDF or lbrn2.",
-        )
-    refuse_misread(job, preset, form, wanted)
-    return wanted
-
-
-def _converter(curves: str, job: Job, budget: AccuracyBudget) -> Callable[[Paths], Paths]:
-    """What is still to be done to paths so that they hold only what the file takes."""
-    match curves:
-        case "polyline":
-            return lambda paths: to_lines(paths, accuracy=budget.chords)
-        case "arc":
-            return lambda paths: to_arcs(paths, accuracy=budget.arcs)
-        case "cubic":
-            return lambda paths: edge_cubics(paths, budget, exact=not job.moves_contours)
-        case "spline":
-            return lambda paths: to_cubics(paths, accuracy=CUBIC_ACCURACY_MM)
-        case _:
-            return lambda paths: paths
 
 
 def _layers(

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
-from voronoi_tiles.fabrication.job import SHEET_MAX, SHEET_MIN, Job, JobError
+from voronoi_tiles.fabrication.job import Job, JobError
+from voronoi_tiles.fabrication.job_options import SHEET_MAX, SHEET_MIN
 from voronoi_tiles.fabrication.layout import Sheet
 from voronoi_tiles.fabrication.region import Region
 from voronoi_tiles.fabrication.sheet_outline import SheetOutline, reason_open, sheet_outline

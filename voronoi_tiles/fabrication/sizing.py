@@ -18,7 +18,8 @@ import numpy as np
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.arc_fitting import curve_fit
-from voronoi_tiles.fabrication.job import SHEET_MAX, Job, JobError
+from voronoi_tiles.fabrication.job import Job, JobError
+from voronoi_tiles.fabrication.job_options import SHEET_MAX
 from voronoi_tiles.fabrication.layout import Layout, lay_out, refilled
 from voronoi_tiles.fabrication.sheets import read_sheet
 from voronoi_tiles.fabrication.tile_placement import group_box
