@@ -9,11 +9,12 @@
 #   make wheels  what a release is made of: the source and a wheel for each platform, in dist
 #   make gallery the pictures of docs/gallery.md     make diagrams  the drawings of the other pages
 #   make screenshots  those of docs/studio.md, by the tests' browser
+#   make readers  docs/readers.md: what other programs make of our files, measured
 #   make page-tools  what the tests of the studio's page use, by npm: without it they are left out
 #   make page-format rewrite the layout of the page's modules and their tests
 
 .DEFAULT_GOAL := help
-.PHONY: help demo studio test test-slow test-pythons environment environments lint format types bench fuzz docs paper gallery diagrams screenshots wheels page-tools page-format clean
+.PHONY: help demo studio test test-slow test-pythons environment environments lint format types bench fuzz docs paper gallery diagrams screenshots wheels readers reader-programs page-tools page-format clean
 .DELETE_ON_ERROR:
 
 PYTHON ?= python3
@@ -136,6 +137,18 @@ docs: $(INSTALLED_DOCS)
 paper: $(INSTALLED_DOCS)
 	$(VENV)/bin/python docs/generate/paper.py
 
+# Other programs, measured: all that PyPI and npm have of them, 2 GB, and the distribution's as far as they are installed.
+readers: $(INSTALLED_DEV) reader-programs $(patsubst %,tests/readers/.venv-%/.installed,cadquery build123d blender)
+	$(VENV)/bin/python docs/generate/readers.py
+
+# The small ones, which the tests run.
+reader-programs: tests/readers/.venv-python/.installed tests/readers/node_modules/.package-lock.json
+
+tests/readers/.venv-%/.installed: tests/readers/%.txt
+	$(PYTHON) -m venv $(@D)
+	$(@D)/bin/python $(PIP) -r $<
+	touch $@
+
 # The studio's pages, photographed by the tests' browser.
 screenshots: $(INSTALLED_DEV)
 	$(VENV)/bin/python docs/generate/screenshots.py
@@ -159,8 +172,8 @@ wheels: $(INSTALLED_DEV)
 # Of exactly the versions that package-lock.json names; nothing of it runs in the page.
 page-tools: tests/studio/node_modules/.package-lock.json
 
-tests/studio/node_modules/.package-lock.json: tests/studio/package-lock.json
-	cd tests/studio && npm ci --silent
+%/node_modules/.package-lock.json: %/package-lock.json
+	cd $* && npm ci --silent
 	touch $@
 
 page-format: page-tools
@@ -168,6 +181,6 @@ page-format: page-tools
 	    "voronoi_tiles/studio/page/**/*.js" "tests/studio/page/*.js"
 
 clean:
-	rm -rf $(VENV) $(VENV)-3.* $(TYPES) tests/studio/node_modules $(DEMO) docs/_build build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
+	rm -rf $(VENV) $(VENV)-3.* $(TYPES) tests/studio/node_modules tests/readers/node_modules tests/readers/.venv-* $(DEMO) docs/_build build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis
 	rm -f voronoi_tiles/base/kernels.compiled.*
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +

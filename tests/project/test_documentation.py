@@ -63,7 +63,7 @@ RUN_BY_MAKE = {
 }
 """Pages of so many commands that here they are only read, as the command line reads them."""
 
-LONG = {"README.md", "laser.md", "start.md"}
+LONG = {"README.md", "laser.md", "readers.md", "start.md"}
 """Pages with so many commands that they take a quarter of a minute and more; the others are quickly run."""
 
 _BLOCK = re.compile(
