@@ -42,3 +42,46 @@ test("outlines are behind when none has come for a while, and not because none w
     assert.equal(await after(90), false);
     assert.equal(await after(10), true);
 });
+
+test("what is wrong with a job is said until it changes, and not of the next", async (context) => {
+    const { timers } = context.mock;
+    timers.enable({ apis: ["setTimeout"] });
+    /** @type {EventTarget & {send: (text: string) => void, readyState: number}} */
+    let socket;
+    class Socket extends EventTarget {
+        static OPEN = 1;
+        readyState = 1;
+        send() {}
+        constructor() {
+            super();
+            socket = this;
+        }
+    }
+    Object.assign(globalThis, { window: globalThis, WebSocket: Socket, location: { host: "here" } });
+    const store = new Store({ design: DESIGN, revision: 0, begun: 0, job: {}, exact: null, refusal: null });
+    const link = new Link(store);
+    link.connect();
+    link.askJobs(true);
+    const come = (/** @type {object} */ message) => {
+        const data = JSON.stringify({ lane: "job", rev: 0, ...message });
+        socket.dispatchEvent(Object.assign(new Event("message"), { data }));
+    };
+    /** Change the job, and send it or not. */
+    const change = async (/** @type {object} */ job, /** @type {number} */ ms) => {
+        store.set({ job });
+        await null;
+        timers.tick(ms);
+        await null;
+    };
+
+    await change({ margin: 400 }, 200);
+    come({ type: "refused", error: { message: "too wide" } });
+    assert.equal(store.state.jobRefusal?.error.message, "too wide");
+    await change({ margin: 5 }, 10);
+    assert.equal(store.state.jobRefusal, null);
+    come({ type: "refused", error: { message: "too wide" } }); // of the job that was sent before
+    assert.equal(store.state.jobRefusal, null);
+    await change({ margin: 5 }, 200);
+    come({ type: "product" });
+    assert.deepEqual([store.state.jobRefusal, store.state.jobPending], [null, false]);
+});

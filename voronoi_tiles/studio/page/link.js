@@ -60,6 +60,8 @@ export class Link {
     #tries = 0;
     #rest = 0;
     #jobTimer = 0;
+    /** @type {any} the job that was sent last */
+    #jobSent = null;
     #late = 0;
     /** @type {Outline | null} the last outlines that came */
     #newest = null;
@@ -83,7 +85,10 @@ export class Link {
     constructor(store) {
         this.#store = store;
         store.subscribe(["revision", "dragging"], () => this.#schedule());
-        store.subscribe(["job"], () => this.#scheduleJob());
+        store.subscribe(["job"], () => {
+            store.set({ jobRefusal: null }); // it was the last job's
+            this.#scheduleJob();
+        });
         store.subscribe(["revision", "exact"], () => this.#follow());
     }
 
@@ -243,6 +248,7 @@ export class Link {
         this.#jobTimer = window.setTimeout(() => {
             const { design, revision, job, dragging } = this.#store.state;
             if (this.#asksJobs && design && !dragging) {
+                this.#jobSent = job;
                 this.send({ type: "job", rev: revision, design, job });
             }
         }, JOB_MS);
@@ -250,7 +256,8 @@ export class Link {
 
     /** @param {any} message */
     #receive(message) {
-        const { exact, refusal, revision, begun, product } = this.#store.state;
+        const { exact, refusal, revision, begun, product, job } = this.#store.state;
+        const isOfJob = job === this.#jobSent && message.rev === revision;
         const isOfDesign = message.type === "outline" || message.type === "product" || message.type === "refused";
         if (isOfDesign && message.rev < begun && message.lane !== "thumbnail" && message.lane !== "new") {
             return;
@@ -271,13 +278,13 @@ export class Link {
             case "refused":
                 if (message.lane === "outline" && (!exact || message.rev >= exact.rev)) {
                     this.#store.set({ refusal: message });
-                } else if (message.lane === "job" && message.rev === revision) {
+                } else if (message.lane === "job" && isOfJob) {
                     this.#store.set({ jobRefusal: message, jobPending: false });
                 }
                 break;
             case "product":
                 if (!product || message.rev >= product.rev) {
-                    this.#store.set({ product: message, jobRefusal: null, jobPending: message.rev !== revision });
+                    this.#store.set({ product: message, jobRefusal: null, jobPending: !isOfJob });
                 }
                 break;
             case "trouble":
