@@ -111,21 +111,6 @@ def cut_runs(paths: Paths, corner: float, absorbed: float, breaks: Complexes | N
     return CutPaths(paths, bent, first, counts)
 
 
-def canonical_senses(cut: CutPaths) -> Bools:
-    """Which runs are looked at backwards, so that a run and its reverse look alike: by their points' order."""
-    return _turned(cut.paths, cut.first, cut.first + cut.counts - 1)
-
-
-def oriented_runs(cut: CutPaths, chosen: Ints, turned: Bools) -> tuple[RunCurves, Ints]:
-    """The segments of some runs, those of `turned` ones backwards, and where each run's begin; one number more."""
-    return _oriented(cut.paths, cut.first[chosen], cut.counts[chosen], turned)
-
-
-def replaced(cut: CutPaths, turned: Bools, drawn: Drawn) -> Paths:
-    """Put what was drawn in the place of the runs, backwards for those that are `turned`; all else stays as it is."""
-    return _assembled(cut.paths, ~cut.bent, cut.first, turned, drawn)
-
-
 def replace_runs(paths: Paths, corner: float, absorbed: float, draw: Callable[[SmoothRuns, RunCurves], Drawn]) -> Paths:
     """Put what `draw` makes of them in the place of the runs of `cut_runs`; all else stays as it is.
 
@@ -200,8 +185,9 @@ def _smooth(paths: Paths, corner: float) -> Bools:
     return smooth
 
 
-def _turned(paths: Paths, first: Ints, last: Ints) -> Bools:
-    """Which runs are fitted backwards, so that a run and its reverse are fitted alike: by their points' order."""
+def canonical_senses(cut: CutPaths) -> Bools:
+    """Which runs are looked at backwards, so that a run and its reverse look alike: by their points' order."""
+    paths, first, last = cut.paths, cut.first, cut.first + cut.counts - 1
     near = paths.control[first, 0]
     far = np.where(paths.kind[last] == CUBIC, paths.control[last, 1], paths.control[last, 0])
     turned = np.zeros(len(first), np.bool_)
@@ -213,12 +199,13 @@ def _turned(paths: Paths, first: Ints, last: Ints) -> Bools:
     return turned
 
 
-def _oriented(paths: Paths, first: Ints, counts: Ints, turned: Bools) -> tuple[RunCurves, Ints]:
-    """The segments of all runs, in the sense in which they are fitted, and where those of each begin."""
+def oriented_runs(cut: CutPaths, chosen: Ints, turned: Bools) -> tuple[RunCurves, Ints]:
+    """The segments of some runs, those of `turned` ones backwards, and where each run's begin; one number more."""
+    first, counts = cut.first[chosen], cut.counts[chosen]
     run = np.repeat(np.arange(len(first)), counts)
     segment = ranges(first, counts)
     back = turned[run]
-    segments = RunCurves.of_segments(paths, np.where(back, (2 * first + counts - 1)[run] - segment, segment))
+    segments = RunCurves.of_segments(cut.paths, np.where(back, (2 * first + counts - 1)[run] - segment, segment))
     swap = back & segments.cubic
     curves = RunCurves(
         np.where(back, segments.end, segments.start),
@@ -248,12 +235,12 @@ def _fewer(cut: CutPaths, draw: Callable[[SmoothRuns, RunCurves], Drawn]) -> tup
     return turned ^ other, drawn._replace(run=run).of(order)
 
 
-def _assembled(paths: Paths, kept: Bools, first: Ints, turned: Bools, drawn: Drawn) -> Paths:
-    """Put what replaces the runs in the place of their first segments, beside the segments that are kept."""
-    old = np.flatnonzero(kept)
+def replaced(cut: CutPaths, turned: Bools, drawn: Drawn) -> Paths:
+    """Put what was drawn in the place of the runs, backwards for those that are `turned`; all else stays as it is."""
+    paths, old = cut.paths, np.flatnonzero(~cut.bent)
     back = turned[drawn.run]
     number = np.arange(len(drawn.run))
-    rank = np.concatenate((old, first[drawn.run]))
+    rank = np.concatenate((old, cut.first[drawn.run]))
     order = np.lexsort((np.concatenate((np.zeros(len(old), np.intp), np.where(back, -number, number))), rank))
     swap = back & (drawn.kind == CUBIC)
     control = np.where(swap[:, None], drawn.control[:, ::-1], drawn.control)
