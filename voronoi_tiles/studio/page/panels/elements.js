@@ -112,7 +112,9 @@ export function textField(old, take, attributes = {}) {
         ".defaultValue": old,
         onchange() {
             try {
-                take(input.value);
+                if (input.value !== input.defaultValue) {
+                    take(input.value);
+                }
                 input.defaultValue = input.value;
                 refuse(input, "");
             } catch (error) {
@@ -121,7 +123,7 @@ export function textField(old, take, attributes = {}) {
         },
         onkeydown(/** @type {KeyboardEvent} */ event) {
             if (event.key === "Escape") {
-                input.value = old;
+                input.value = input.defaultValue;
                 refuse(input, "");
             }
         },
@@ -144,15 +146,14 @@ function refuse(input, error) {
  * @param {() => void} [empty] called where nothing is left in it; without this it needs a length
  */
 export function lengthField(value, unit, change, attributes = {}, empty) {
-    const old = value === null ? "" : shown(value, unit);
     const read = (/** @type {string} */ text) => {
         if (empty && !text.trim()) {
             empty();
-        } else if (text !== old) {
+        } else {
             change(evaluate(text, unit));
         }
     };
-    return textField(old, read, { inputmode: "decimal", ...attributes });
+    return textField(value === null ? "" : shown(value, unit), read, { inputmode: "decimal", ...attributes });
 }
 
 /** A length that is above zero. Throws an Error for people. @param {number} length */
