@@ -158,7 +158,7 @@ def test_a_scaled_design_has_no_check_of_another() -> None:
 
 # --- what a smaller gap would fit ---------------------------------------------------------------------------------
 
-HINT = re.compile(r"[^;]*; with `gap='([\d.]+)mm'` ([\d,]+) tiles would fit")
+HINT = re.compile(r"[^;]*; with `gap='([\d.]+)mm'` ([\d,]+) tiles would fit(; [^;]*hold more)?")
 
 
 @given(
@@ -190,3 +190,12 @@ def test_no_gap_is_named_where_there_is_no_smaller_one(job: dict[str, Any]) -> N
     """Below 0.3 mm, or twice the kerf, cuts hurt each other; clipped tiles fill the sheet anyway."""
     product = squares().make(Job(sheet=(104.0, 104.0), **job))
     assert "would fit" not in product.summary()
+
+
+def test_another_layout_is_named_where_tiles_are_hooked() -> None:
+    """Scrolls that are pulled apart take over four times their room; leaves do not, nor scrolls side by side."""
+    job = Job(sheet=(200.0, 150.0), kerf=0.15)
+    scrolls = tiling("cmm-scroll")
+    assert re.search(r"to 4\.\d times their room: `layout='auto'` may hold more$", scrolls.make(job).summary())
+    for said in (tiling("p1-leaf").make(job), scrolls.make(Job(sheet=(200.0, 150.0)))):
+        assert "layout" not in said.summary()

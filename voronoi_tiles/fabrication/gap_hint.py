@@ -1,10 +1,10 @@
-"""What a smaller gap would be good for: how many more tiles a sheet would hold."""
+"""What another gap, or layout, would be good for where tiles are pulled apart: more of them on the sheet."""
 
 from __future__ import annotations
 
 from typing import Final
 
-from voronoi_tiles.fabrication.job import JobError
+from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.layout import Layout, refilled
 
 _LESS: Final = 0.5
@@ -15,6 +15,19 @@ _LEAST_MM: Final = 0.3
 
 _NEARLY: Final = 0.9
 """A gap that is hardly smaller, as a share, is not worth a word."""
+
+_ROOM: Final = 1.5
+"""Tiles that are pulled apart to so many times their room are hooked: nested by themselves they take less."""
+
+
+def hints_of(layout: Layout, asked: Job) -> tuple[str, ...]:
+    """How more tiles may fit than lie on the sheet as a job asked for it, in words."""
+    stretch = layout.stretch
+    room = stretch.p**2 - abs(stretch.q) ** 2
+    hints = [smaller_gap(layout)]
+    if room >= _ROOM and asked.layout == "tessellated" and asked.not_nestable is None:
+        hints.append(f"tiles are pulled apart to {room:.1f} times their room: `layout='auto'` may hold more")
+    return tuple(filter(None, hints))
 
 
 def smaller_gap(layout: Layout) -> str:

@@ -26,7 +26,7 @@ from voronoi_tiles.fabrication.cutting import Cut, cut_once, cut_pieces, cut_sha
 from voronoi_tiles.fabrication.demands import as_demanded
 from voronoi_tiles.fabrication.engraving import engrave
 from voronoi_tiles.fabrication.exact import design_recipe
-from voronoi_tiles.fabrication.gap_hint import smaller_gap
+from voronoi_tiles.fabrication.gap_hint import hints_of
 from voronoi_tiles.fabrication.inventory import Inventory, cut_free, inventory
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.job_notes import doubled, untabbed, without_effect
@@ -75,7 +75,7 @@ class Product:
     files: tuple[str, ...]
     dxf_version: DxfVersion
     spline_edges: bool
-    hint: str = ""
+    hints: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return f"<Product {self.form}: {self._outcome()}>"
@@ -100,8 +100,8 @@ class Product:
         return replace(self, drawing=self.drawing.with_evidence(evidence))
 
     def summary(self) -> str:
-        """Say in a line what it comes to, and how many more tiles a smaller gap would fit."""
-        return f"{self._outcome()}; {self.hint}" if self.hint else self._outcome()
+        """Say in a line what it comes to, and how more tiles would fit."""
+        return "; ".join((self._outcome(), *self.hints))
 
     def _outcome(self) -> str:
         """Say in a line what it comes to."""
@@ -200,7 +200,7 @@ class _Plan:
     layout: Layout
     colouring: TileColouring
     said: tuple[str, ...]
-    hint: str
+    hints: tuple[str, ...]
     files: tuple[str, ...]
 
     @classmethod
@@ -227,7 +227,7 @@ class _Plan:
         if job.split is not None and colours.count == 1:
             said += (f"by {job.scheme} all tiles are alike: there is one colour",)
         colouring, files = TileColouring(colours, layout.copies), tuple(files_read(design, job))
-        return cls(form, preset, curves, layout, colouring, said, smaller_gap(layout), files)
+        return cls(form, preset, curves, layout, colouring, said, hints_of(layout, job), files)
 
     def colours(self) -> list[tuple[int, str]]:
         """The colours that the page has pieces of, each with a name for its file; FRAME for the frame."""
@@ -284,7 +284,7 @@ class _Plan:
             files=self.files,
             dxf_version=job.dxf_version,
             spline_edges=preset.spline_edges,
-            hint=self.hint,
+            hints=self.hints,
         )
 
     @property
