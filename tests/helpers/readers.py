@@ -125,12 +125,18 @@ class Exact:
         """The outlines where a file has them: pulled apart, pieces lie as their approximations do, to micrometres."""
         exact = _drawn(tiling, {**file.job, "curves": "exact", "preset": "plain"}, "svg")
         there = _drawn(tiling, file.job, file.suffix)
-        corners = there.start[there.offsets[:-1]]
         contours = []
         for points in sampled(exact, SAMPLES):
-            shifts = corners - points[0]  # a contour begins with a corner of its tile, which no approximation moves
+            shifts = there.start - _sharpest(points)  # no approximation moves the corners of a tile
             contours.append(points + shifts[np.abs(shifts).argmin()])
         return cls(tuple(contours), sum(tile.area for tile in tiling.tiles))
+
+
+def _sharpest(points: Complexes) -> complex:
+    """The corner of a closed contour at which it turns the most."""
+    ring = points[points != np.roll(points, -1)]
+    turn = np.angle((np.roll(ring, -1) - ring) / (ring - np.roll(ring, 1)))
+    return complex(ring[np.abs(turn).argmax()])
 
 
 def _drawn(tiling: Tiling, job: Mapping[str, Any], form: str) -> Paths:
