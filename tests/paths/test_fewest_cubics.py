@@ -206,6 +206,21 @@ def test_arcs_are_followed() -> None:
         assert distance(middle, new, 0.001) <= accuracy * 1.001 + 1e-7
 
 
+def test_a_loop_that_is_one_curve_stays() -> None:
+    """It ends where it begins, and is no line of length 0."""
+    loop = Paths(
+        np.array([5 + 3j]),
+        np.array([5 + 3j]),
+        np.array([[15 + 10j, -4 + 14j]]),
+        np.array([CUBIC], np.uint8),
+        np.array([0, 1]),
+        np.zeros(1, np.bool_),
+    )
+    fitted = to_fewest_cubics(loop, accuracy=0.005)
+    assert fitted.kind.tolist() == [CUBIC] * len(fitted.kind)
+    assert fitted.lengths.sum() == pytest.approx(loop.lengths.sum(), rel=1e-3)
+
+
 def test_what_is_straight_is_a_line() -> None:
     """Short lines beside curves may become parts of them; alone they are lines."""
     lines = chain((0j, 0.5 + 0j), (0.5 + 0j, 0.5 + 0.7j))

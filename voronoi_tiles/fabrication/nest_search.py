@@ -70,7 +70,7 @@ class NestPlaces(NamedTuple):
         return NestPlaces(self.item[which], self.turn[which], self.shift[which])
 
 
-def demands(items: Sequence[NestItem], count: int) -> Ints:
+def counts_of(items: Sequence[NestItem], count: int) -> Ints:
     """How many of each item make so many pieces: their shares, the largest remainders rounded up."""
     wanted = count * np.array([item.share for item in items])
     whole = np.floor(wanted + 1e-9).astype(np.intp)
@@ -100,7 +100,7 @@ def most_pieces(
         count = max(math.floor(hope * density * width * height / each), len(best.item) + 1)
         hope = _HOPE
         seconds = max(1, round(effort * share))
-        demand = demands(items, count)
+        demand = counts_of(items, count)
         try:
             found = strip(items, demand, height, seconds, seed, lambda now: _tell(progress, now - begun, effort))
         except JobError:

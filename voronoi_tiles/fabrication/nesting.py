@@ -107,10 +107,12 @@ def arranged(
             f"the sheet would hold about {about:,.0f} pieces, and {NESTED_MAX:,} are the most that are nested",
             remedy="Take a smaller sheet or a larger design, or `layout='tessellated'`.",
         )
+    tessellated: Layout | None = None
+    refusal: JobError | None = None
     try:
-        tessellated: Layout | None = lay(job=plain, sheet=sheet)
-    except JobError:
-        tessellated = None  # what is hooked, or does not fit as it lies, may fit by itself
+        tessellated = lay(job=plain, sheet=sheet)
+    except JobError as error:
+        refusal = error  # what is hooked, or does not fit as it lies, may fit by itself
     fewer = 0 if tessellated is None else len(tessellated.copies.tile)
     search = job.layout == "nested" and has_search()
     nested = nest(base, job, progress, search=search)
@@ -119,6 +121,8 @@ def arranged(
     if tessellated is not None and count <= fewer:
         said.append(f"nested there would be {counted(count, 'piece')}: they lie as in the tessellation")
         return tessellated, tuple(said)
+    if not count and job.layout == "auto" and refusal is not None:
+        raise refusal
     if not count:
         raise JobError("no places were found for any piece", remedy="Give a longer `effort`, or a larger sheet.")
     said.append(f"nested: as in the tessellation there would be {counted(fewer, 'piece')}")
@@ -144,12 +148,13 @@ def nest(layout: Layout, job: Job, progress: Progress | None = None, *, search: 
     laid = placed(
         layout, [_piece(tiles, kinds.tile[k], middle[k], turn, shift + corner) for k, turn, shift in _rows(found)]
     )
-    # What the search gives is not trusted.
-    while len(wrong := misplaced(laid)):
-        counts = np.bincount(wrong.ravel(), minlength=len(laid.pieces))
-        worst = int(np.argmax(counts))
-        laid = placed(layout, [piece for k, piece in enumerate(laid.pieces) if k != worst])
-    return laid
+    # What the search gives is not trusted: of pieces that are too near, those with the most such neighbours go.
+    wrong, gone = misplaced(laid), set()
+    while len(wrong):
+        worst = int(np.argmax(np.bincount(wrong.ravel())))
+        gone.add(worst)
+        wrong = wrong[(wrong != worst).all(axis=1)]
+    return placed(layout, [piece for k, piece in enumerate(laid.pieces) if k not in gone]) if gone else laid
 
 
 def laid_again(layout: Layout, pieces: Sequence[Piece], name: str) -> Layout:

@@ -259,9 +259,7 @@ def _read(name: str, values: Mapping[str, Any]) -> Preset:
         svg_curves=cast("SvgCurves", svg),
         dxf_curves=cast("DxfCurves", dxf),
         spline_edges=_at("spline_edges", _flag, values["spline_edges"]),
-        contours=cast(
-            "ContourUse", _at("contours", lambda value: _choice(value, get_args(ContourUse)), values["contours"])
-        ),
+        contours=cast("ContourUse", _at("contours", _contours, values["contours"])),
         solid=_at("solid", _flag, values["solid"]),
         unread=_unread(values),
         misread=_misread(values),

@@ -75,7 +75,7 @@ class Outlines:
                 row, i = row[of], i[of]
                 close = _together(boxes[i], boxes[j] + moved[row], reach)
                 row, i, j, above = row[close], i[close], j[close], boxes
-            square, way = _between(self._segments[i], self._segments[j] + moved[row])
+            square, way = squared_distances(self._segments[i], self._segments[j] + moved[row])
             near_ones = np.flatnonzero(square <= reach * reach)
             if len(near_ones):
                 first = near_ones[row[near_ones] == row[near_ones[0]]]
@@ -96,8 +96,11 @@ def _together(one: Floats, two: Floats, reach: float) -> Bools:
     return np.asarray(~(free > reach).any(axis=-1))
 
 
-def _between(one: Floats, two: Floats) -> tuple[Floats, Floats]:
-    """The squares of the distances of segments, (n, 4) each, and the ways from the second's nearest points, (n, 2)."""
+def squared_distances(one: Floats, two: Floats) -> tuple[Floats, Floats]:
+    """The squares of the distances of segments, (n, 4) each: x and y of the start, then of the end; 0 where they cross.
+
+    And the ways from the second ones' nearest points to the first ones', float64 (n, 2).
+    """
     a, b, c, d = one[:, :2], one[:, 2:], two[:, :2], two[:, 2:]
     ways = np.stack((_from(a, c, d), _from(b, c, d), -_from(c, a, b), -_from(d, a, b)))
     squares = ways[..., 0] * ways[..., 0] + ways[..., 1] * ways[..., 1]

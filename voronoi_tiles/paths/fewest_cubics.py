@@ -34,7 +34,6 @@ _FLAT: Final = 1e-9
 """A curve whose control points are nearer than this to the line between its ends is a line; relative to the
 accuracy."""
 
-
 _MANY: Final = 4
 """Where so many curves take the place of a run, other tangents are tried; a count."""
 
@@ -269,7 +268,7 @@ def _image(images: RunImages, spline: _Spline, starts: Complexes, ends: Complexe
     end = np.column_stack((inner, ends[images.runs])).ravel()
     chord = end - start
     across = np.abs(((control - start[:, None]) * chord.conj()[:, None]).imag).max(axis=1)
-    straight = across <= flat * np.abs(chord)
+    straight = (across <= flat * np.abs(chord)) & (chord != 0.0)  # a loop is none
     control[straight] = 0
     return Drawn(
         np.repeat(images.runs, pieces), start, end, control, np.where(straight, np.uint8(LINE), np.uint8(CUBIC))

@@ -10,14 +10,15 @@ from typing import Final, NamedTuple, Self
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Floats, Ints, plane
+from voronoi_tiles.paths.clearance import squared_distances
 from voronoi_tiles.paths.paths import ARC, QUAD, Paths
 from voronoi_tiles.paths.segments import candidate_pairs, split
 from voronoi_tiles.paths.winding import item_winding
 
-ROUNDING: Final = 1e-9
-"""What is nearer by less than this is as far apart as it has to be; millimetres. It is the last digit of files, over a
-thousand, and some ten thousand times the rounding of coordinates."""
+ROUNDING: Final = 1e-6
+"""What is nearer by less than this is as far apart as it has to be; millimetres. It is the last digit of files. What
+touches or crosses is near whatever the distance."""
 
 _AT_ONCE: Final = 1 << 18
 """Pairs of segments that are measured at once; a count. Bounds the memory."""
@@ -80,18 +81,24 @@ class _ChordedSegments(NamedTuple):
         return _ChordedSegments.of(Paths.concatenate([first, second]))
 
 
+def _rows(segments: Paths) -> Floats:
+    """The ends of segments, float64 (n, 4)."""
+    return np.concatenate((plane(segments.start), plane(segments.end)), axis=1)
+
+
 def _near(paths: Paths, one: Ints, two: Ints, owner: Ints, distance: float) -> Ints:
     """The pairs of owners of segments, of pairs of these, that are nearer than a distance; some of them repeated."""
     whole = np.zeros(len(paths.start))
     first, second = (_ChordedSegments.of(split(paths, of, whole[of], whole[of] + 1.0)) for of in (one, two))
     of = np.column_stack((owner[one], owner[two]))
+    limit = max(distance - ROUNDING, np.finfo(np.float64).tiny)
     found = [of[:0]]
     while len(of):
-        apart = chord_distances(first.paths.start, first.paths.end, second.paths.start, second.paths.end)
+        apart = np.sqrt(squared_distances(*(_rows(one.paths) for one in (first, second)))[0])
         off = first.off + second.off
-        near = (apart + off < distance - ROUNDING) | ((off < ROUNDING / 4) & (apart < distance - ROUNDING))
+        near = (apart + off < limit) | ((off < ROUNDING / 4) & (apart < limit))
         found.append(of[near])
-        unclear = (off >= ROUNDING / 4) & (apart - off < distance - ROUNDING)
+        unclear = (off >= ROUNDING / 4) & (apart - off < limit)
         # One pair of segments is enough for their owners.
         known = np.isin(of @ (len(owner), 1), of[near] @ (len(owner), 1))
         open_ = np.flatnonzero(unclear & ~known)
@@ -105,23 +112,3 @@ def _near(paths: Paths, one: Ints, two: Ints, owner: Ints, distance: float) -> I
         other = np.tile(np.arange(count), 4) + np.repeat([0, count, count, 0], count)
         first, second, of = first.take(mine), second.take(other), np.tile(of, (4, 1))
     return np.concatenate(found)
-
-
-def chord_distances(a: Complexes, b: Complexes, c: Complexes, d: Complexes) -> Floats:
-    """The distances of the straight segments from a to b and from c to d, float64 (n,); 0 where they cross."""
-
-    def side(p: Complexes, q: Complexes, r: Complexes) -> Floats:
-        """Twice the area of a triangle, > 0 where it turns left."""
-        return np.asarray(((q - p).conj() * (r - p)).imag, np.float64)
-
-    crossing = (side(a, b, c) * side(a, b, d) < 0) & (side(c, d, a) * side(c, d, b) < 0)
-    ends = [_from_chord(a, c, d), _from_chord(b, c, d), _from_chord(c, a, b), _from_chord(d, a, b)]
-    return np.where(crossing, 0.0, np.minimum.reduce(ends))
-
-
-def _from_chord(point: Complexes, start: Complexes, end: Complexes) -> Floats:
-    """The distances of points from straight segments."""
-    chord = end - start
-    square = np.abs(chord) ** 2
-    along = ((point - start) * chord.conj()).real / np.where(square == 0.0, 1.0, square)
-    return np.asarray(np.abs(point - (start + chord * np.clip(along, 0.0, 1.0))), np.float64)

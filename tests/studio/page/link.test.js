@@ -48,10 +48,15 @@ test("what is wrong with a job is said until it changes, and not of the next", a
     timers.enable({ apis: ["setTimeout"] });
     /** @type {EventTarget & {send: (text: string) => void, readyState: number}} */
     let socket;
+    /** @type {string[]} */
+    const sent = [];
     class Socket extends EventTarget {
         static OPEN = 1;
         readyState = 1;
-        send() {}
+        /** @param {string} text */
+        send(text) {
+            sent.push(JSON.parse(text).type);
+        }
         constructor() {
             super();
             socket = this;
@@ -84,4 +89,8 @@ test("what is wrong with a job is said until it changes, and not of the next", a
     await change({ margin: 5 }, 200);
     come({ type: "product" });
     assert.deepEqual([store.state.jobRefusal, store.state.jobPending], [null, false]);
+    sent.length = 0;
+    link.sendNow(); // to a server that has come again
+    timers.tick(200);
+    assert.deepEqual(sent, ["job"]);
 });

@@ -172,9 +172,10 @@ export class Link {
         return true;
     }
 
-    /** Send the design as it is, at once. */
+    /** Send the design as it is, at once, and soon the job: what was asked before may have been lost. */
     sendNow() {
         this.#send(!this.#store.state.dragging);
+        this.#scheduleJob();
     }
 
     /** @param {boolean} wanted whether report and findings are looked at */
