@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import html
 import json
+import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
@@ -161,6 +163,54 @@ def test_places_that_do_not_fit_a_job_are_refused(tmp_path: Path) -> None:
         tiles.export(path, job=Job(**JOB, layout=path))
 
 
+@pytest.mark.parametrize(
+    ("places", "message"),
+    [
+        ("[]", "damaged"),
+        ("{}", "damaged"),
+        ("[" * 60 + "]" * 60, "damaged"),
+        ("[[0, 0, 0, 1e300, 5]]", "damaged"),
+        (f"[[0, 0, 0, 1{'0' * 400}, 5]]", "damaged"),
+        ("[[0, 0, 400, 50, 50]]", "damaged"),
+        ("[[0, 0, 0, 50, NaN]]", "damaged"),
+        ("[[0.5, 0, 0, 50, 50]]", "damaged"),
+        ("[[0, 9, 0, 50, 50]]", "damaged"),
+        ("[[0, 0, 0, 50]]", "damaged"),
+        ("[[3, 0, 0, 50, 50]]", "another design"),
+        ("[[0, 0, 0, 0, 0]]", "1 piece in"),
+        (json.dumps([[0, 0, 0, 50, 50]] * 1001), "1,001 places, and 1,000 are the most"),
+        (None, "damaged"),
+    ],
+)
+def test_places_that_cannot_be_are_refused(places: str | None, message: str, tmp_path: Path) -> None:
+    """Whatever stands there; also where a file that was nested has lost them."""
+    text = re.sub(' places="[^"]*"', "" if places is None else f' places="{html.escape(places)}"', nested())
+    path = tmp_path / "broken.svg"
+    path.write_text(text, encoding="utf-8")
+    with pytest.raises(JobError, match=message):
+        hooks().make(Job(**JOB, layout=path))
+
+
+def test_pieces_are_not_laid_across_the_grain(tmp_path: Path) -> None:
+    """A file that was nested without a grain has turns that one forbids; what was nested with it fits."""
+    turned = re.sub(' places="[^"]*"', ' places="[[0, 0, 30.0, 80, 55]]"', nested())
+    path = tmp_path / "turned.svg"
+    path.write_text(turned, encoding="utf-8")
+    assert hooks().make(Job(**JOB, layout=path)).pieces.count == 1
+    with pytest.raises(JobError, match=r"1 piece in .* would lie across the grain"):
+        hooks().make(Job(**JOB, layout=path, grain=True))
+    path.write_text(turned.replace("30.0", "180.0"), encoding="utf-8")
+    assert hooks().make(Job(**JOB, layout=path, grain=True)).pieces.count == 1
+
+
+def test_it_is_said_where_a_file_was_made_of_another_design(tmp_path: Path) -> None:
+    """Its places may fit all the same, as after a small change."""
+    changed = Design.loads(HOOKS.replace("20]", "20.01]")).tessellate()
+    made = changed.make(Job(**JOB, layout=saved(tmp_path)))
+    assert [note for note in made.notes if "was made of another design" in note]
+    assert not [note for note in hooks().make(Job(**JOB, layout=saved(tmp_path))).notes if "another design" in note]
+
+
 def test_a_file_as_the_tessellation_lies_is_laid_so_again(tmp_path: Path) -> None:
     """`layout` takes any file of tiles of ours."""
     for name, job in (("one.svg", Job(**JOB)), ("two.svg", Job(**JOB, layout=tmp_path / "one.svg"))):
@@ -190,8 +240,8 @@ def test_labels_and_art_turn_with_their_pieces(tmp_path: Path) -> None:
         ({"colours": 3}, "parts neighbours"),
         ({"edges": "once", "kerf": 0.0}, "`layout` needs `edges='pieces'`"),
         ({"layout": "nestled"}, "is unknown"),
-        ({"effort": 0}, "no places are found in no time"),
-        ({"effort": "soon"}, "no places are found in no time"),
+        ({"effort": 0}, "Give seconds, from 1 to 86,400"),
+        ({"effort": "soon"}, "Give seconds, from 1 to 86,400"),
         ({"seed": -1}, "whole number"),
     ],
 )

@@ -232,10 +232,7 @@ def read_effort(name: str, value: Any) -> float:
     except (ValueError, OverflowError):
         seconds = math.nan
     if not 1.0 <= seconds <= EFFORT_MAX:
-        raise JobError(
-            f"`{name}` {shown(value)} cannot be: no places are found in no time",
-            remedy=f"Give seconds, from 1 to {EFFORT_MAX:,.0f}.",
-        )
+        raise JobError(f"`{name}` {shown(value)} cannot be", remedy=f"Give seconds, from 1 to {EFFORT_MAX:,.0f}.")
     return seconds
 
 
@@ -245,7 +242,7 @@ def read_seed(name: str, value: Any) -> int:
         value = int(value)
     if not isinstance(value, bool) and isinstance(value, Integral) and 0 <= int(value) < 2**31:
         return int(value)
-    raise JobError(f"`{name}` {shown(value)} cannot be", remedy="Give a whole number, 0 or more.")
+    raise JobError(f"`{name}` {shown(value)} cannot be", remedy=f"Give a whole number below {2**31:,}, 0 or more.")
 
 
 def read_rates(name: str, value: Any) -> str | None:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from importlib.util import find_spec
+from importlib import import_module
 from threading import Thread
 from time import monotonic
 from typing import Any, Final, NamedTuple
@@ -163,8 +163,12 @@ def strip(
 
 
 def has_search() -> bool:
-    """Whether spyrrow is installed."""
-    return find_spec("spyrrow") is not None
+    """Whether spyrrow is installed, and of this kind of machine."""
+    try:
+        import_module("spyrrow")
+    except Exception:  # noqa: BLE001 - whatever a broken build raises
+        return False
+    return True
 
 
 def _right_ends(items: Sequence[NestItem], places: NestPlaces) -> Floats:

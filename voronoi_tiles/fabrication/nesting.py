@@ -6,7 +6,6 @@ The places go into the file's recipe, by which the same file is made again.
 from __future__ import annotations
 
 import cmath
-import json
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -15,8 +14,6 @@ from typing import Final
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, Ints, plane
-from voronoi_tiles.base.documents import read_bytes
-from voronoi_tiles.base.errors import why_not_opened
 from voronoi_tiles.base.maps import unit_at
 from voronoi_tiles.base.text import counted
 from voronoi_tiles.base.values import shown
@@ -25,10 +22,9 @@ from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.job_options import EFFORT_S, LAYOUTS, JobError
 from voronoi_tiles.fabrication.layout import Layout, Piece, PlacedTiles, Sheet
 from voronoi_tiles.fabrication.nest_patterns import lay_patterns
+from voronoi_tiles.fabrication.nest_places import NESTED_MAX, read_places
 from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces, Progress, has_search, most_pieces
 from voronoi_tiles.fabrication.tile_placement import TilePlacement
-from voronoi_tiles.formats.recipe import recipe_of
-from voronoi_tiles.formats.shapes import BYTES_MAX
 from voronoi_tiles.paths.conversion import to_lines
 from voronoi_tiles.paths.near_items import ROUNDING, near_items
 from voronoi_tiles.paths.paths import Paths
@@ -47,13 +43,13 @@ _PLACE_DIGITS: Final = 6
 """Decimals of turns in degrees, and of places in millimetres, in recipes: at the edge of a piece of 300 mm half a
 micrometre, and a nanometre."""
 
+_SAME_DEG: Final = 1e-6
+"""Turns that differ by less are the same; degrees."""
+
 _UNSEARCHED: Final = (
     "spyrrow is not installed, so pieces were nested in patterns alone: with `pip install spyrrow` a search may find "
     "places for more"
 )
-
-NESTED_MAX: Final = 1_000
-"""Most pieces that are nested; a count. Their check takes a minute, and at a border so long there is little to gain."""
 
 _QUARTER: Final = 8
 """Chords of a quarter circle around a corner of a piece; a count."""
@@ -91,14 +87,15 @@ def arranged(
         return lay(job=plain, sheet=sheet), ()
     if job.gap is None and not job.kerf:
         plain = replace(plain, gap=job.side_by_side)
-    pieces = None if job.layout in LAYOUTS else read_places(job.layout)
-    if pieces == []:
-        return lay(job=plain, sheet=sheet), ()
+    saved = None if job.layout in LAYOUTS else read_places(job.layout)
+    if saved is not None and not saved.pieces:
+        tessellated = lay(job=plain, sheet=sheet)
+        return tessellated, saved.doubts(tessellated.design, job.layout)
     # Nothing is to be filled: one tile stands for all of its kind.
     base = lay(job=replace(plain, layout="nested"), sheet=Sheet(0.0, 0.0, None, 0j))
     base = replace(base, sheet=sheet)
-    if pieces is not None:
-        return laid_again(base, pieces, job.layout), ()
+    if saved is not None:
+        return laid_again(base, saved.pieces, job.layout, grain=job.grain), saved.doubts(base.design, job.layout)
     about = sheet.width * sheet.height / float(base.tile_areas.mean())
     if about > NESTED_MAX:
         if job.layout == "auto":
@@ -107,20 +104,20 @@ def arranged(
             f"the sheet would hold about {about:,.0f} pieces, and {NESTED_MAX:,} are the most that are nested",
             remedy="Take a smaller sheet or a larger design, or `layout='tessellated'`.",
         )
-    tessellated: Layout | None = None
+    unnested: Layout | None = None
     refusal: JobError | None = None
     try:
-        tessellated = lay(job=plain, sheet=sheet)
+        unnested = lay(job=plain, sheet=sheet)
     except JobError as error:
         refusal = error  # what is hooked, or does not fit as it lies, may fit by itself
-    fewer = 0 if tessellated is None else len(tessellated.copies.tile)
+    fewer = 0 if unnested is None else len(unnested.copies.tile)
     search = job.layout == "nested" and has_search()
     nested = nest(base, job, progress, search=search)
     count = len(nested.pieces)
     said = [] if search or job.layout == "auto" else [_UNSEARCHED]
-    if tessellated is not None and count <= fewer:
+    if unnested is not None and count <= fewer:
         said.append(f"nested there would be {counted(count, 'piece')}: they lie as in the tessellation")
-        return tessellated, tuple(said)
+        return unnested, tuple(said)
     if not count and job.layout == "auto" and refusal is not None:
         raise refusal
     if not count:
@@ -157,46 +154,25 @@ def nest(layout: Layout, job: Job, progress: Progress | None = None, *, search: 
     return placed(layout, [piece for k, piece in enumerate(laid.pieces) if k not in gone]) if gone else laid
 
 
-def laid_again(layout: Layout, pieces: Sequence[Piece], name: str) -> Layout:
-    """A layout with its pieces where a file has them. Raises JobError where they do not fit."""
+def laid_again(layout: Layout, pieces: Sequence[Piece], name: str, *, grain: bool = False) -> Layout:
+    """A layout with its pieces where a file has them. Raises JobError where they do not fit, or cross the grain."""
     if not {(piece.site, piece.over) for piece in pieces} <= set(_stand_ins(layout)):
         raise JobError(f"`layout`: {shown(name)} is of another design", remedy="Name a file of this one.")
+    across = sum(not _is_along(piece, layout.tiles) for piece in pieces) if grain else 0
+    if across:
+        raise JobError(
+            f"`layout`: {counted(across, 'piece')} in {shown(name)} would lie across the grain",
+            remedy="Leave `grain` out, or nest anew with it.",
+        )
     laid = placed(layout, pieces)
     wrong = misplaced(laid)
     if len(wrong):
         raise JobError(
-            f"`layout`: {len(np.unique(wrong))} pieces in {shown(name)} would leave this job's sheet, "
+            f"`layout`: {counted(len(np.unique(wrong)), 'piece')} in {shown(name)} would leave this job's sheet, "
             f"or be nearer to each other than {layout.job.side_by_side:g} mm",
             remedy="Give the options that it was made with, or use `layout='nested'`.",
         )
     return laid
-
-
-def read_places(name: str) -> list[Piece]:
-    """The places in the recipe of a file of ours; none where its pieces lie as in the tessellation. Raises JobError."""
-    try:
-        recipe = recipe_of(read_bytes(name, BYTES_MAX))
-    except (OSError, ValueError) as error:
-        reason = why_not_opened(name, error)
-        raise JobError(f"`layout`: {shown(name)} cannot be read: {reason}", remedy="Check the name.") from error
-    remedy = "Name a file that was made with `layout='nested'`."
-    if "design" not in recipe:
-        raise JobError(f"`layout`: {shown(name)} is no file of tiles of ours, and has no places", remedy=remedy)
-    if "places" not in recipe:
-        return []
-    try:
-        rows = json.loads(recipe["places"])
-        pieces = [Piece(int(k), bool(over), float(turn), complex(float(x), float(y))) for k, over, turn, x, y in rows]
-    except (ValueError, TypeError) as error:
-        raise JobError(f"`layout`: the places in {shown(name)} are damaged", remedy=remedy) from error
-    if not pieces or not np.isfinite([(piece.turn, abs(piece.shift)) for piece in pieces]).all():
-        raise JobError(f"`layout`: the places in {shown(name)} are damaged", remedy=remedy)
-    return pieces
-
-
-def places_text(pieces: tuple[Piece, ...]) -> str:
-    """What a recipe says of places, JSON."""
-    return json.dumps([[k, int(over), turn, place.real, place.imag] for k, over, turn, place in pieces])
 
 
 def placed(layout: Layout, pieces: Sequence[Piece]) -> Layout:
@@ -215,6 +191,16 @@ def placed(layout: Layout, pieces: Sequence[Piece]) -> Layout:
         copies=PlacedTiles(tile, step, whole, shift, unit),
         pieces=tuple(pieces),
     )
+
+
+def _is_along(piece: Piece, tiles: DressedTiles) -> bool:
+    """Whether a piece is turned as a tile of its kind in the tessellation, or by half a turn against that."""
+    for site, motion in zip(tiles.period.site.tolist(), tiles.period.motion, strict=True):
+        factor, _, conj = tiles.page.after(motion)
+        away = math.degrees(cmath.phase(unit_at(piece.turn) * factor.conjugate()))
+        if (site, conj) == (piece.site, piece.over) and abs(math.remainder(away, 180.0)) < _SAME_DEG:
+            return True
+    return False
 
 
 def _stand_ins(layout: Layout) -> dict[tuple[int, bool], int]:
@@ -284,7 +270,7 @@ def _grown(rings: Paths, gap: float, accuracy: float) -> Complexes:
 
     lines = to_lines(rings, accuracy=accuracy)
     outer = shapely.Polygon(plane(lines.start[: lines.offsets[1]]))
-    slack = _COARSE * gap
+    slack = max(_COARSE * gap, accuracy)
     # Chords cut off what simplifying may cut off in turn, and the arcs of the buffer are chords as well.
     reach = gap / 2 + accuracy + slack + _SINGLE_MM
     grown = outer.buffer(reach / math.cos(math.pi / (4 * _QUARTER)), quad_segs=_QUARTER)
@@ -300,9 +286,9 @@ def _refuse_large(items: Sequence[NestItem], room: tuple[float, float], gap: flo
         sizes = np.column_stack((np.ptp(turned.real, axis=1), np.ptp(turned.imag, axis=1)))
         excess = (sizes / room).max(axis=1)
         if excess.min() > 1.0:
-            width, height = sizes[np.argmin(excess)] - gap
+            width, height = sizes[np.argmin(excess)] - (1 + 2 * _COARSE) * gap
             raise JobError(
                 f"one piece takes {width:.4g} x {height:.4g} mm, and the sheet has room for {room[0] - gap:.4g} x "
                 f"{room[1] - gap:.4g} mm",
-                remedy="Take a larger sheet, a smaller margin or a smaller design.",
+                remedy="Take a larger sheet, or a smaller margin, gap or design.",
             )

@@ -32,8 +32,9 @@ from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.job_notes import doubled, untabbed, without_effect
 from voronoi_tiles.fabrication.job_options import LAYOUTS
 from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, lay_out
+from voronoi_tiles.fabrication.nest_places import places_text
 from voronoi_tiles.fabrication.nest_search import Progress
-from voronoi_tiles.fabrication.nesting import arranged, places_text
+from voronoi_tiles.fabrication.nesting import arranged
 from voronoi_tiles.fabrication.packed_sheets import pack_colours
 from voronoi_tiles.fabrication.sheets import read_sheet
 from voronoi_tiles.fabrication.sizing import sized
