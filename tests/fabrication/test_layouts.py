@@ -430,3 +430,11 @@ def test_frames_that_cannot_be(job: dict[str, Any], message: str) -> None:
     with pytest.raises(JobError, match=message) as caught:
         squares().make(Job(**{"sheet": (70.0, 70.0), **job}))
     assert caught.value.remedy
+
+
+@pytest.mark.parametrize("job", [{}, {"kerf": 0.1}, {"curves": "cubic"}])
+def test_a_tile_that_is_larger_than_any_file_holds_is_refused(job: dict[str, Any]) -> None:
+    """With its size, and before its curves are fitted."""
+    large = squares().design.scaled(1e6).tessellate()
+    with pytest.raises(JobError, match=r"a tile of 20,000,000 mm is larger than 100,000 mm"):
+        large.make(Job(**job))

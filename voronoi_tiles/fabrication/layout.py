@@ -18,6 +18,7 @@ from voronoi_tiles.fabrication.clipping import Strands, clipped_strands, whole_s
 from voronoi_tiles.fabrication.contours import ClosedPieces, clipped_pieces, frame_pieces
 from voronoi_tiles.fabrication.dressed_tiles import DressedTiles, PageMap
 from voronoi_tiles.fabrication.job import Job, JobError
+from voronoi_tiles.fabrication.job_options import SHEET_MAX
 from voronoi_tiles.fabrication.kerf import Compensation
 from voronoi_tiles.fabrication.region import Region
 from voronoi_tiles.fabrication.spacing import FARTHEST, UNSTRETCHED, Stretch, pulled_apart
@@ -25,6 +26,7 @@ from voronoi_tiles.fabrication.tile_placement import TilePlacement, place_tiles,
 from voronoi_tiles.paths.areas import item_areas
 from voronoi_tiles.paths.offset import OffsetError, offset
 from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.paths.segments import item_boxes
 from voronoi_tiles.vector.complex.period import Period
 from voronoi_tiles.vector.copies import Placed
 from voronoi_tiles.vector.motions import IDENTITY, reverses_orientation
@@ -232,6 +234,8 @@ def lay_out(
     Raises JobError where the sheet holds no tile, or too many, or a tile does not survive kerf or fillet.
     """
     region = sheet.region
+    if region is None:
+        _refuse_size(tessellation.period, scale * design.unit_mm)
     shift = 0j if region is None else sheet.centre + (job.offset or 0j)
     page = PageMap(tessellation.action, scale * design.unit_mm * unit_at(job.rotate), shift)
     period = tessellation.period if fit is None else tessellation.approximated(fit)
@@ -244,6 +248,17 @@ def lay_out(
     _refuse_crowd(tiles.period, region)
     stretch = UNSTRETCHED if job.apart is None else _stretch(tiles, job.apart, budget.measured)
     return _filled(design, tessellation, job, sheet, budget, tiles, stretch, rough)
+
+
+def _refuse_size(period: Period, unit_mm: float) -> None:
+    """Refuse tiles that are larger than sheets can be; files hold no such coordinates."""
+    box = item_boxes(*period.own_outlines)
+    side = float((box[:, 2:] - box[:, :2]).max()) * unit_mm
+    if side > SHEET_MAX:
+        raise JobError(
+            f"a tile of {side:,.0f} mm is larger than {SHEET_MAX:,.0f} mm, the most that files hold",
+            remedy="Give a smaller `scale`, or another unit.",
+        )
 
 
 def refilled(layout: Layout, *, sheet: Sheet | None = None, gap: float | None = None) -> Layout:
