@@ -349,3 +349,19 @@ def test_a_place_is_that_of_the_tile_as_it_is_drawn() -> None:
     turned = shapely.affinity.translate(shapely.affinity.rotate(drawn, 90, origin=(0, 0)), 50, 60)
     for shape, wanted in zip(contour_shapes(laid.contours.paths), (upright, turned), strict=True):
         assert shape.buffer(-0.1).hausdorff_distance(wanted) < 0.03  # half the kerf of 0.2
+
+
+@pytest.mark.parametrize(
+    ("job", "said"),
+    [
+        ({"grain": True}, "`grain` changes nothing without a `layout`"),
+        ({"effort": 5}, "`effort` changes nothing without `layout='nested'`"),
+        ({"seed": 5, "layout": "auto", "fit": "clip"}, "`seed` changes nothing without `layout='nested'`"),
+        ({"layout": "auto", "offset": 3j}, "pieces are not nested: `layout='auto'` moves every piece anew"),
+        ({"layout": "auto", "kerf": 0}, "is for those that a `kerf` or a `gap` pulls apart"),
+    ],
+)
+def test_what_changes_nothing_about_nesting_is_said(job: dict[str, Any], said: str) -> None:
+    """Options of a search that is not made, and `auto` where it has nothing to do."""
+    assert [note for note in hooks().make(Job(**{**JOB, **job})).notes if said in note]
+    assert not [note for note in hooks().make(Job(**JOB)).notes if "nest" in note or "changes nothing" in note]

@@ -158,7 +158,7 @@ def _bar(layout: Layout, contours: Contours | None, sheet: Sheet) -> Paths:
     if letters < 1.0 or sheet.width < BAR_MM + beside or not sheet.region.is_rectangle:
         raise JobError(
             "`bar`, 100 mm long, has no room at the sheet's edge",
-            remedy="Give a rectangular sheet that is wide enough a `margin` of 8mm, at least 4mm.",
+            remedy="Give a rectangular sheet that is wide enough, and a `margin` of 8mm, at least 4mm.",
         )
     place = complex(sheet.width / 2 - BAR_MM / 2, (job.margin - bar_height(letters)) / 2)
     return reference_bar(letters).moved(1.0, place)

@@ -33,6 +33,24 @@ def without_effect(form: Format, job: Job) -> list[str]:
     return said
 
 
+def unnested(job: Job) -> list[str]:
+    """Say what of that which was asked about nesting changes nothing."""
+    said = [
+        f"`{name}` changes nothing without {what}"
+        for name, works, what in (
+            ("grain", job.layout != "tessellated", "a `layout`"),
+            ("effort", job.layout == "nested", "`layout='nested'`"),
+            ("seed", job.layout == "nested", "`layout='nested'`"),
+        )
+        if not works and getattr(job, name) != Job.options()[name].default
+    ]
+    if job.layout == "auto" and job.not_nestable is not None:
+        said.append(f"pieces are not nested: `layout='auto'` {job.not_nestable[0]}")
+    elif job.layout == "auto" and not job.apart:
+        said.append("pieces are not nested: `layout='auto'` is for those that a `kerf` or a `gap` pulls apart")
+    return said
+
+
 def doubled(layout: Layout, job: Job) -> list[str]:
     """Say that neighbours' contours lie on each other, or touch, where they do."""
     if not job.cuts_pieces or job.nests or (job.apart or 0.0) > 0.0 or len(layout.copies.tile) < 2 or job.sheet is None:

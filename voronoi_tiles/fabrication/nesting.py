@@ -116,14 +116,23 @@ def arranged(
     count = len(nested.pieces)
     said = [] if search or job.layout == "auto" else [_UNSEARCHED]
     if unnested is not None and count <= fewer:
-        said.append(f"nested there would be {counted(count, 'piece')}: they lie as in the tessellation")
+        said.append(f"nested there would be {_counts(nested)}: they lie as in the tessellation")
         return unnested, tuple(said)
     if not count and job.layout == "auto" and refusal is not None:
         raise refusal
     if not count:
         raise JobError("no places were found for any piece", remedy="Give a longer `effort`, or a larger sheet.")
-    said.append(f"nested: as in the tessellation there would be {counted(fewer, 'piece')}")
+    as_drawn = counted(0, "piece") if unnested is None else _counts(unnested)
+    said.append(f"nested are {_counts(nested)}: as in the tessellation there would be {as_drawn}")
     return nested, tuple(said)
+
+
+def _counts(layout: Layout) -> str:
+    """How many pieces a layout has; of several sites, each site's."""
+    names = [site.name for site in layout.design.noded]
+    of_site = np.bincount(layout.period.site[layout.copies.tile], minlength=len(names)).tolist()
+    each = [f"{count:,} {name}" for count, name in zip(of_site, names, strict=True)]
+    return counted(sum(of_site), "piece") + (f" ({', '.join(each)})" if len(each) > 1 else "")
 
 
 def nest(layout: Layout, job: Job, progress: Progress | None = None, *, search: bool = True) -> Layout:

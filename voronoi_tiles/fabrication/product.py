@@ -29,7 +29,7 @@ from voronoi_tiles.fabrication.exact import design_recipe
 from voronoi_tiles.fabrication.gap_hint import hints_of
 from voronoi_tiles.fabrication.inventory import Inventory, cut_free, inventory
 from voronoi_tiles.fabrication.job import Job, JobError
-from voronoi_tiles.fabrication.job_notes import doubled, untabbed, without_effect
+from voronoi_tiles.fabrication.job_notes import doubled, unnested, untabbed, without_effect
 from voronoi_tiles.fabrication.job_options import LAYOUTS
 from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, lay_out
 from voronoi_tiles.fabrication.nest_places import places_text
@@ -225,6 +225,7 @@ class _Plan:
             layout, found = sized(design, tessellation, job, curves, form)
             said = (found,)
         colours = colour_tiles(layout.tessellation, job.scheme, layout.period)
+        said += tuple(unnested(job))
         if job.split is not None and colours.count == 1:
             said += (f"by {job.scheme} all tiles are alike: there is one colour",)
         colouring, files = TileColouring(colours, layout.copies), tuple(files_read(design, job))

@@ -101,7 +101,7 @@ export function outgoing({ store }) {
                     make(
                         "p",
                         {},
-                        "Cut it once in your material: how well its slots fit says how wide your laser cuts.",
+                        "Cut it once in your material: which plug just holds in its hole says how wide your laser cuts.",
                     ),
                     field("Thickness of the material", thickness),
                     field("Format", format, { help: "Preset, feed and power are those of the job." }),
