@@ -29,8 +29,9 @@ def blob(corners: int, bends: list[tuple[int, float]], centre: complex, turn: fl
 
 
 BENDS = st.lists(
-    st.tuples(st.integers(0, 2), st.floats(-0.2, 0.2).filter(lambda bend: abs(bend) > 0.01)), min_size=1, max_size=4
+    st.tuples(st.integers(0, 2), st.floats(-0.12, 0.12).filter(lambda bend: abs(bend) > 0.01)), min_size=1, max_size=4
 )
+"""Arcs that turn in by more would cross each other beside the corners of a triangle."""
 BLOBS = st.builds(blob, st.integers(3, 7), BENDS, st.builds(complex, *[st.floats(0, 30)] * 2), st.floats(0, 6))
 
 
