@@ -50,7 +50,7 @@ def read_places(name: str) -> SavedPlaces:
             return SavedPlaces((), recipe["design"])
         rows = json.loads(recipe["places"])
         count = len(rows)
-        pieces = tuple(_piece(*row) for row in rows[:NESTED_MAX])
+        pieces = tuple(_piece(*row) for row in list(rows)[:NESTED_MAX])
     except (ValueError, TypeError, AttributeError, OverflowError, RecursionError):
         raise damaged from None
     if not pieces:
