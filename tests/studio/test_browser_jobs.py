@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from helpers.studio import Studio, Window, opened, running
 
 import voronoi_tiles as vt
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Download, Page
 
 TEXT = """\
 schema = 1
@@ -48,11 +51,16 @@ def window(chromium: Any, studio: Studio) -> Iterator[Window]:
         yield found
 
 
-def download(window: Window, form: str) -> Any:
+def download(window: Window, form: str) -> Download:
     """The file of a format, by the dialog."""
     page = window.page
     page.keyboard.press("Control+e")
     page.get_by_label("Format").select_option(form)
+    return downloaded(page)
+
+
+def downloaded(page: Page) -> Download:
+    """What the button of the dialog that is open gives; the dialog closes."""
     with page.expect_download() as found:
         page.get_by_role("button", name="Download").click()
     page.locator("dialog").wait_for(state="detached")
@@ -237,21 +245,17 @@ def test_coupon_picture_and_parts(window: Window) -> None:
     page.get_by_role("button", name="Download").click()
     page.get_by_role("dialog").get_by_role("alert").get_by_text("a lot").wait_for()
     page.get_by_label("Thickness of the material").fill("4mm")
-    with page.expect_download() as found:
-        page.get_by_role("button", name="Download").click()
-    assert found.value.suggested_filename.endswith(".svg")
-    assert b"<svg" in Path(found.value.path()).read_bytes()
-    page.locator("dialog").wait_for(state="detached")
+    piece = downloaded(page)
+    assert piece.suggested_filename.endswith(".svg")
+    assert b"<svg" in Path(piece.path()).read_bytes()
     page.get_by_role("button", name="Test piece for the kerf").click()
     page.get_by_label("Format").select_option("gcode")
     page.get_by_role("button", name="Download").click()
     page.get_by_role("dialog").get_by_role("alert").get_by_text("it needs Feed and Power").wait_for()
     page.get_by_label("Format").select_option("lbrn2")
-    with page.expect_download() as found:
-        page.get_by_role("button", name="Download").click()
-    assert found.value.suggested_filename == "coupon.lbrn2"
-    assert b"<LightBurnProject" in Path(found.value.path()).read_bytes()
-    page.locator("dialog").wait_for(state="detached")
+    piece = downloaded(page)
+    assert piece.suggested_filename == "coupon.lbrn2"
+    assert b"<LightBurnProject" in Path(piece.path()).read_bytes()
     page.locator("#panel-job summary", has_text="Colours").click()
     page.get_by_label("Into", exact=True).select_option("files")
     page.get_by_label("Colours", exact=True).fill("3")

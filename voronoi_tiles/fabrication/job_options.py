@@ -17,6 +17,7 @@ from voronoi_tiles.base.errors import ArgumentError, DesignError
 from voronoi_tiles.base.units import parse_length, parse_size
 from voronoi_tiles.base.values import is_number, shown
 from voronoi_tiles.formats.burns import ROLES, rates_of
+from voronoi_tiles.formats.presets import FORMATS, SUFFIXES
 
 SHEET_MAX: Final = 100_000.0
 """Largest side of a sheet, and largest length of an option; millimetres."""
@@ -42,7 +43,7 @@ EFFORT_S: Final = 30.0
 EFFORT_MAX: Final = 86_400.0
 """Longest search for places; seconds."""
 
-LAID: Final = (".svg", ".svgz", ".dxf", ".pdf", ".lbrn2", ".gcode", ".nc")
+LAID: Final = tuple(f".{name}" for name in (*FORMATS, *SUFFIXES))
 """The suffixes of files that have places."""
 
 Given = TypeVar("Given")

@@ -9,6 +9,7 @@ import cmath
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Final
 
 import numpy as np
@@ -96,10 +97,17 @@ def arranged(
     base = replace(base, sheet=sheet)
     if saved is not None:
         return laid_again(base, saved.pieces, job.layout, grain=job.grain), saved.doubts(base.design, job.layout)
-    about = sheet.width * sheet.height / float(base.tile_areas.mean())
+    return _densest(base, partial(lay, job=plain, sheet=sheet), job, progress)
+
+
+def _densest(
+    base: Layout, lay: Callable[[], Layout], job: Job, progress: Progress | None
+) -> tuple[Layout, tuple[str, ...]]:
+    """The pieces of `base` nested on its sheet, or as `lay` lays them where that is as good; and what is to be said."""
+    about = base.sheet.width * base.sheet.height / float(base.tile_areas.mean())
     if about > NESTED_MAX:
         if job.layout == "auto":
-            return lay(job=plain, sheet=sheet), ()
+            return lay(), ()
         raise JobError(
             f"the sheet would hold about {about:,.0f} pieces, and {NESTED_MAX:,} are the most that are nested",
             remedy="Take a smaller sheet or a larger design, or `layout='tessellated'`.",
@@ -107,7 +115,7 @@ def arranged(
     unnested: Layout | None = None
     refusal: JobError | None = None
     try:
-        unnested = lay(job=plain, sheet=sheet)
+        unnested = lay()
     except JobError as error:
         refusal = error  # what is hooked, or does not fit as it lies, may fit by itself
     fewer = 0 if unnested is None else len(unnested.copies.tile)

@@ -26,7 +26,7 @@ from voronoi_tiles.fabrication.cutting import Cut, cut_once, cut_pieces, cut_sha
 from voronoi_tiles.fabrication.demands import as_demanded
 from voronoi_tiles.fabrication.engraving import engrave
 from voronoi_tiles.fabrication.exact import design_recipe
-from voronoi_tiles.fabrication.gap_hint import hints_of
+from voronoi_tiles.fabrication.hints import hints_of
 from voronoi_tiles.fabrication.inventory import Inventory, cut_free, inventory
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.job_notes import doubled, unnested, untabbed, without_effect

@@ -9,7 +9,7 @@ import numpy as np
 from voronoi_tiles.base.arrays import Bools, Floats, Ints
 from voronoi_tiles.paths.cubic_bounds import FittedCubics, bounds, derivatives, nearer_foot
 from voronoi_tiles.paths.smooth_runs import SmoothRuns, tangents
-from voronoi_tiles.paths.stretch_parts import StretchParts, cut
+from voronoi_tiles.paths.stretch_parts import StretchEnds, StretchParts, cut
 
 _STEPS: Final = 5
 """Steps of Gauss and Newton in which handles are found; a count."""
@@ -23,7 +23,6 @@ _SHORTEST, _LONGEST = 0.02, 2.0
 
 _FARTHEST: Final = 0.3
 """What a handle may change by in a step; relative to the stretch's length."""
-
 
 _SIDE: Final = 8
 """Points on either side of a place by which a tangent is found; a count."""
@@ -46,23 +45,16 @@ class CubicFit(NamedTuple):
 
 
 class _Hermite(NamedTuple):
-    """What is given of curves that begin at 0: the end, the unit tangents a and b at both ends, the length of each."""
+    """What is given of curves that begin at 0: their ends and unit tangents, and the length of each."""
 
-    x: Floats
-    y: Floats
-    ax: Floats
-    ay: Floats
-    bx: Floats
-    by: Floats
+    ends: StretchEnds
     length: Floats
 
     def curves(self, near: Floats, far: Floats) -> FittedCubics:
         """The curves whose handles have these lengths."""
-        zero = np.zeros(len(self.x))
-        return FittedCubics(
-            np.stack((zero, near * self.ax, self.x - far * self.bx, self.x)),
-            np.stack((zero, near * self.ay, self.y - far * self.by, self.y)),
-        )
+        x, y, ax, ay, bx, by = self.ends
+        zero = np.zeros(len(x))
+        return FittedCubics(np.stack((zero, near * ax, x - far * bx, x)), np.stack((zero, near * ay, y - far * by, y)))
 
 
 class PlacedStretches(NamedTuple):
@@ -94,7 +86,7 @@ def fit_cubics(runs: SmoothRuns, stretches: PlacedStretches) -> CubicFit:
     total = np.add.reduceat(lengths, first)
     bx, by = tangents_at(runs, run, high, high_window)
     ax, ay = _evened(ends.x, ends.y, *tangents_at(runs, run, low, low_window), bx, by, even)
-    given = _Hermite(ends.x, ends.y, ax, ay, bx, by, total)
+    given = _Hermite(StretchEnds(ends.x, ends.y, ax, ay, bx, by), total)
     share = np.ceil(lengths / total[stretch] * _UNITS).astype(np.int64)  # they add up without rounding
     sums = np.cumsum(share) - share
     before = (sums - sums[first][stretch]) / _UNITS
@@ -202,9 +194,9 @@ def _better_handles(
     speed = np.where(speed > 0.0, speed, 1.0)
     nx, ny = -uy / speed, ux / speed
     off = (points[0] - px) * nx + (points[1] - py) * ny
-    s = 1.0 - t
-    by_near = 3.0 * s * s * t * (given.ax[stretch] * nx + given.ay[stretch] * ny)
-    by_far = -3.0 * s * t * t * (given.bx[stretch] * nx + given.by[stretch] * ny)
+    s, ends = 1.0 - t, given.ends
+    by_near = 3.0 * s * s * t * (ends.ax[stretch] * nx + ends.ay[stretch] * ny)
+    by_far = -3.0 * s * t * t * (ends.bx[stretch] * nx + ends.by[stretch] * ny)
 
     def over_all(values: Floats) -> Floats:
         """The weighted sums over the samples of stretches."""
@@ -215,12 +207,8 @@ def _better_handles(
     mixed = over_all(by_near * by_far)
     u, v = over_all(by_near * off) + _TIE * (third - near), over_all(by_far * off) + _TIE * (third - far)
     det = a * b - mixed * mixed  # positive, by the ties
-    most = _FARTHEST * given.length
+    most, low, high = (share * given.length for share in (_FARTHEST, _SHORTEST, _LONGEST))
     return (
-        np.clip(
-            near + np.clip((b * u - mixed * v) / det, -most, most), _SHORTEST * given.length, _LONGEST * given.length
-        ),
-        np.clip(
-            far + np.clip((a * v - mixed * u) / det, -most, most), _SHORTEST * given.length, _LONGEST * given.length
-        ),
+        np.clip(near + np.clip((b * u - mixed * v) / det, -most, most), low, high),
+        np.clip(far + np.clip((a * v - mixed * u) / det, -most, most), low, high),
     )

@@ -65,7 +65,7 @@ def product(
     layers, whole = _shown_layers(drawing)
     findings = _findings(drawing, limits)
     notes = [*tiling.design.notes, *made.notes]
-    notes.extend(map(_in_labels, made.hints))
+    notes.extend(re.sub(r"^with `gap='([\d.]+)mm'`", r"With a gap of \1 mm", hint) for hint in made.hints)
     if not whole:
         notes.append("there is more than can be shown here; the file has it all")
     return {
@@ -80,11 +80,6 @@ def product(
         "notes": notes,
         "ms": round(1000 * (perf_counter() - begun), 3),
     }
-
-
-def _in_labels(hint: str) -> str:
-    """A hint with the panel's labels in the place of options."""
-    return re.sub(r"^with `gap='([\d.]+)mm'`", r"With a gap of \1 mm", hint).replace("`layout='auto'`", "Layout: auto")
 
 
 def exported(design: Mapping[str, Any], job: Mapping[str, Any], name: str) -> tuple[str, bytes]:
