@@ -68,6 +68,7 @@ def test_version_says_what_it_runs_on(voronoi_tiles: CommandLine, arguments: lis
     assert others[0].startswith(f"Python {platform.python_version()} on ")
     assert {f"numpy {version('numpy')}", f"shapely {version('shapely')}"} < {*others}
     assert not any(line.startswith("pytest") for line in others)
+    assert len(others) == len({*others})
 
 
 def test_verbose_goes_with_version(voronoi_tiles: CommandLine) -> None:
