@@ -57,6 +57,9 @@ SUBSTITUTES = {
 }
 """What is made smaller before it is run, and why."""
 
+PATHS = re.compile(r'<path d="([^"]*)"')
+"""The paths of a drawing, their letters and numbers apart."""
+
 RUN_BY_MAKE = {
     "gallery.md": "test_gallery.py runs them all, and compares what they write",
     "paper.md": "test_paper.py runs them all, and compares what they write",
@@ -483,6 +486,28 @@ def test_the_tables_of_the_groups_are_computed() -> None:
         "page = d.PAGE.read_text(encoding='utf-8'); sys.exit(d.with_tables(page) != page)"
     )
     subprocess.run([sys.executable, "-c", script], cwd=ROOT, check=True, timeout=60)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("part", ["strokes", "method"])
+def test_the_drawings_are_made_anew(part: str, tmp_path: Path) -> None:
+    """docs/pictures hold what docs/generate draws of the engine's answers: the same paths, to 0.02 of a point."""
+    script = (
+        "import sys; sys.path.insert(0, 'docs/generate'); import pathlib, diagrams, diagrams_style; "
+        f"diagrams_style.PICTURES = pathlib.Path({str(tmp_path)!r}); diagrams.PARTS[{part!r}]()"
+    )
+    subprocess.run([sys.executable, "-c", script], cwd=ROOT, check=True, timeout=300, stdout=subprocess.DEVNULL)
+    drawn = sorted(tmp_path.glob("*.svg"))
+    assert len(drawn) > 3
+    for path in drawn:
+        made, kept = (
+            [part for path in PATHS.findall(file.read_text(encoding="utf-8")) for part in path.split()]
+            for file in (path, ROOT / "docs/pictures" / path.name)
+        )
+        places = [k for k, part in enumerate(kept) if not part.isalpha()]
+        assert places, path.name
+        assert [part for part in made if part.isalpha()] == [part for part in kept if part.isalpha()], path.name
+        assert [float(made[k]) for k in places] == pytest.approx([float(kept[k]) for k in places], abs=0.02), path.name
 
 
 def general_tile(group: str, seed: int) -> tuple[vt.Tile, vt.Lattice]:
