@@ -11,7 +11,7 @@
 #   make screenshots  those of docs/studio.md, by the tests' browser
 #   make readers  docs/readers.md: what other programs make of our files, measured
 #   make page-tools  what the tests of the studio's page use, by npm: without it they are left out
-#   make page-format rewrite the layout of the page's modules and their tests
+#   make page-format rewrite the layout of the page's modules, and of the tests' scripts
 
 .DEFAULT_GOAL := help
 .PHONY: help demo studio test test-slow test-pythons environment environments lint format types bench fuzz docs paper gallery diagrams screenshots wheels readers reader-programs page-tools page-format clean
@@ -178,7 +178,7 @@ page-tools: tests/studio/node_modules/.package-lock.json
 
 page-format: page-tools
 	node tests/studio/node_modules/prettier/bin/prettier.cjs --config tests/studio/package.json --log-level warn --write \
-	    "voronoi_tiles/studio/page/**/*.js" "tests/studio/page/*.js"
+	    "voronoi_tiles/studio/page/**/*.js" "tests/studio/page/*.js" "tests/readers/programs/*.mjs"
 
 clean:
 	rm -rf $(VENV) $(VENV)-3.* $(TYPES) tests/studio/node_modules tests/readers/node_modules tests/readers/.venv-* $(DEMO) docs/_build build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -45,8 +45,10 @@ def laid_out(*files: Path) -> subprocess.CompletedProcess[str]:
 
 
 def test_layout_of_the_page(tmp_path: Path) -> None:
-    """All modules, and their tests, are as `make page-format` writes them; what is not is found."""
-    done = laid_out(*sorted(PAGE.rglob("*.js")), *sorted((TESTS / "page").glob("*.js")))
+    """All modules, and the tests' scripts, are as `make page-format` writes them; what is not is found."""
+    programs = sorted((TESTS.parent / "readers/programs").glob("*.mjs"))
+    assert programs
+    done = laid_out(*sorted(PAGE.rglob("*.js")), *sorted((TESTS / "page").glob("*.js")), *programs)
     assert done.returncode == 0, done.stderr
     spoilt = tmp_path / "spoilt.js"
     spoilt.write_text("export const two = [ 1,2 ]\n", encoding="utf-8")

@@ -8,16 +8,14 @@ const entities = [];
 const contours = paths.flatMap((data) => {
     const model = makerjs.importer.fromSVGPathData(data);
     makerjs.model.walk(model, { onPath: (walked) => entities.push(walked.pathContext.type) });
-    return makerjs.model
-        .findChains(model)
-        .map((chain) => ({
-            points: chain.links.flatMap(({ walkedPath: { pathContext, offset }, reversed }) => {
-                const points = Array.from({ length: SAMPLES + 1 }, (_, k) =>
-                    makerjs.point.add(makerjs.point.middle(pathContext, k / SAMPLES), offset),
-                );
-                return reversed ? points.reverse() : points;
-            }),
-            closed: Boolean(chain.endless),
-        }));
+    return makerjs.model.findChains(model).map((chain) => ({
+        points: chain.links.flatMap(({ walkedPath: { pathContext, offset }, reversed }) => {
+            const points = Array.from({ length: SAMPLES + 1 }, (_, k) =>
+                makerjs.point.add(makerjs.point.middle(pathContext, k / SAMPLES), offset),
+            );
+            return reversed ? points.reverse() : points;
+        }),
+        closed: Boolean(chain.endless),
+    }));
 });
 answer("makerjs", contours, { scale: userUnit(text), entities });
