@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import http.client
 import json
 import os
@@ -23,6 +24,7 @@ from test_lanes import is_alive, is_gone
 from websockets.exceptions import ConnectionClosed
 
 from voronoi_tiles.designs.starters import starter, starter_text
+from voronoi_tiles.studio.server import bind
 
 linux = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="only Linux tells whose processes there are")
 """For tests that look for processes."""
@@ -73,6 +75,24 @@ def test_a_design_is_answered_by_its_outline(studio: RunningStudio) -> None:
         assert (product["type"], product["rev"]) == ("product", 4)
         tell(page, "job", rev=5, design=design, job={"sheet": "x"})
         assert told(page)["error"]["key"] == "sheet"
+
+
+def test_what_is_short_is_sent_at_once() -> None:
+    """A proof follows its outline: no connection waits with it until what was sent before is acknowledged."""
+
+    async def story() -> bool:
+        listener = bind(0)
+        served: asyncio.Queue[asyncio.StreamWriter] = asyncio.Queue()
+        server = await asyncio.start_server(lambda _, writer: served.put_nowait(writer), sock=listener)
+        async with server:
+            _, page = await asyncio.open_connection(*listener.getsockname())
+            writer = await served.get()
+            option = writer.get_extra_info("socket").getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
+            for end in (page, writer):
+                end.close()
+        return bool(option)
+
+    assert asyncio.run(story())
 
 
 def home_of(opened: Mapping[str, Any]) -> str:

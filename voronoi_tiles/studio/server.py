@@ -48,7 +48,9 @@ def bind(port: int | None) -> socket.socket:
         with suppress(ArgumentError):
             return bind(USUAL)
         port = 0
-    listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
+    # Of a protocol that is named: asyncio sends what is short at once on connections of such alone, and others wait for
+    # 40 ms until what was sent before has been acknowledged.
+    listener = socket.socket(socket.AF_INET, socket.SOCK_STREAM, socket.IPPROTO_TCP)
     try:
         if os.name == "posix":  # elsewhere it would let two programs have the port
             listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
