@@ -6,7 +6,7 @@ import os
 import sys
 import tempfile
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,15 @@ from voronoi_tiles.studio.work import Done, run
 def echo(request: Mapping[str, Any], body: bytes) -> Done:
     """Give back what came."""
     return {"said": request.get("say"), "pid": os.getpid()}, body
+
+
+def count(request: Mapping[str, Any], _body: bytes) -> Iterator[Done]:
+    """Count up to a number, an answer each, the last with an error where it is `wrong`."""
+    for k in range(request["to"]):
+        yield {"said": k, "more": True}, b""
+    if request.get("wrong"):
+        raise ArgumentError("the `kerf` is wrong", remedy="Mend it.")
+    yield {"said": request["to"]}, b"end"
 
 
 def nap(request: Mapping[str, Any], _body: bytes) -> Done:
@@ -70,4 +79,4 @@ def hoard(request: Mapping[str, Any], _body: bytes) -> Done:
 
 
 if __name__ == "__main__":
-    run({task.__name__: task for task in (echo, nap, spin, listen, leave, die, chatter, fail, hoard)})
+    run({task.__name__: task for task in (echo, count, nap, spin, listen, leave, die, chatter, fail, hoard)})

@@ -81,6 +81,23 @@ def test_what_is_asked_is_answered() -> None:
     assert is_gone(pid)
 
 
+def test_an_answer_comes_in_parts() -> None:
+    """Each part is delivered as it comes, an error as the last; then the worker does the next thing."""
+
+    async def story(served: Lane) -> None:
+        heard: list[object] = []
+
+        async def deliver(answer: Answer) -> None:
+            heard.append(answer.head["said"] if answer.error is None else answer.error["key"])
+
+        served.put("right", {"task": "count", "to": 3}, deliver)
+        served.put("wrong", {"task": "count", "to": 2, "wrong": True}, deliver)
+        assert (await served.ask({"task": "echo", "say": "next"}, urgent=False)).head["said"] == "next"
+        assert heard == [0, 1, 2, 3, 0, 1, "kerf"]
+
+    in_lane(story)
+
+
 def test_the_newest_wins() -> None:
     """Of what comes for a slot while the worker is busy the last alone is done; other slots do not suffer."""
 

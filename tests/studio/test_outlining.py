@@ -3,23 +3,29 @@
 from __future__ import annotations
 
 import itertools
+import json
 import re
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
 import shapely
 from helpers.examples import EXAMPLES, tiling
 
-from voronoi_tiles.base.errors import TouchingCopiesError
+from voronoi_tiles.base.errors import ProofError, TouchingCopiesError
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.designs.starters import starter
 from voronoi_tiles.groups.periodic_colouring import PeriodicColouring
 from voronoi_tiles.groups.wallpaper import GROUPS
+from voronoi_tiles.studio import outlining
+from voronoi_tiles.studio.frames import FRAME_START, sizes_of
 from voronoi_tiles.studio.outlining import Outliner, coarser
+from voronoi_tiles.studio.work import do
 from voronoi_tiles.tiling import Tiling
+from voronoi_tiles.vector.tessellation import tessellate
 
 COLOURED = ("p2-anchor", "p4-mill", "p6m-flower")
 """The examples whose colours the quick tests look at."""
@@ -31,7 +37,7 @@ SLOW = 1.0
 
 def shown(design: Mapping[str, Any], *, rest: bool = True, tolerance: float | None = None) -> dict[str, Any]:
     """What the page is told of a design."""
-    return Outliner().outline(7, design, rest=rest, tolerance=tolerance)
+    return next(Outliner().outlines(7, design, rest=rest, tolerance=tolerance)).message
 
 
 def rings(path: str) -> list[list[complex]]:
@@ -87,21 +93,65 @@ def image_of(design: Design, nodes: Any, number: int) -> frozenset[tuple[int, in
     return frozenset(zip(*(np.round(part * 1e6).astype(int) % 1_000_000 for part in (x, y)), strict=True))
 
 
+@pytest.fixture
+def unhurried(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Give engines and proofs a second, which they have on the busiest machine."""
+    monkeypatch.setattr(outlining, "PROOF_S", 1.0)
+
+
+@pytest.mark.usefixtures("unhurried")
 def test_at_rest_all_is_proved_and_while_the_pointer_moves_what_is_quick() -> None:
-    """An outline says whether it is proved; one that is not is the same outline."""
+    """An outline says whether it is proved; one that is not is the same outline, and its proof comes after it."""
     design = starter("p4").to_dict()
-    for proof_s, rest, proved in ((QUICK, True, True), (SLOW, True, True), (SLOW, False, False)):
-        answer = Outliner(proof_s).outline(1, design, rest=rest, tolerance=None)
-        assert answer["proved"] is proved
+    for proof_s, rest, proofs in ((QUICK, True, 0), (SLOW, True, 0), (SLOW, False, 0), (QUICK, False, 1)):
+        said = list(Outliner(proof_s).outlines(1, design, rest=rest, tolerance=None))
+        answer = said[0].message
+        assert answer["proved"] is rest
         assert answer["tiles"] == shown(design)["tiles"]
         assert ("colouring" in answer) is rest
+        assert [one.more for one in said] == [True] * proofs + [False]
+        assert [one.message for one in said[1:]] == [{"type": "proof", "rev": 1}] * proofs
     outliner = Outliner(SLOW)
-    outliner.outline(1, design, rest=True, tolerance=None)
+    assert list(outliner.outlines(1, design, rest=True, tolerance=None))
     assert 0.0 < outliner.proof_s < SLOW  # it has seen how quick a proof is here
     outliner.proof_s = SLOW
     for _ in range(20):  # one that was slow is tried again some time
-        outliner.outline(1, design, rest=False, tolerance=None)
+        assert list(outliner.outlines(1, design, rest=False, tolerance=None))
     assert outliner.proof_s < SLOW / 4
+
+
+@pytest.mark.usefixtures("unhurried")
+def test_a_worker_tells_an_outline_before_its_proof() -> None:
+    """The frames of an answer: all but the last say that there is more."""
+    asked = {"task": "outline", "rev": 3, "design": starter("p4").to_dict(), "rest": False, "tolerance": None}
+    said = []
+    for frame in do(asked, b""):
+        head, _ = sizes_of(frame[:FRAME_START])
+        texts = frame[FRAME_START : FRAME_START + head], frame[FRAME_START + head :]
+        said.append(tuple(json.loads(text) for text in texts))
+    assert [(head["more"], message["type"], message["rev"]) for head, message in said] == [
+        (True, "outline", 3),
+        (False, "proof", 3),
+    ]
+
+
+@pytest.mark.usefixtures("unhurried")
+def test_an_outline_that_fails_its_proof_is_made_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was shown before its proof is replaced by one that passes, or refused where there is none."""
+    design = starter("p4").to_dict()
+    right = shown(design)["tiles"]
+    larger = Design.from_dict({**design, "cell": {"a": design["cell"]["a"] * 1.001}})
+    wrong = tessellate(larger.noded, larger.group, larger.lattice)
+    monkeypatch.setattr(outlining, "tessellate", lambda *_: wrong)
+    first, second = (said.message for said in Outliner().outlines(1, design, rest=False, tolerance=None))
+    assert (first["proved"], first["tiles"] == right) == (False, False)
+    assert (second["proved"], second["tiles"] == right) == (True, True)
+    assert shown(design)["tiles"] == right  # at rest it is proved before it is shown
+    monkeypatch.setattr(outlining, "proved_tiles", Mock(side_effect=ProofError("there is a gap")))
+    answers = Outliner().outlines(1, design, rest=False, tolerance=None)
+    assert next(answers).more
+    with pytest.raises(ProofError):
+        next(answers)
 
 
 @pytest.mark.parametrize("scale", [1.0, 3.0])
@@ -202,13 +252,17 @@ def refuse_alike(tiles: Tiling) -> None:
 def test_colours_stay_while_they_can() -> None:
     """What was sent last is sent again while no neighbours are alike in it, also where other colours would do."""
     outliner, design = Outliner(), starter("p4").to_dict()
-    first = outliner.outline(1, design, rest=True, tolerance=None)["colouring"]
+
+    def colouring(design: Mapping[str, Any]) -> Any:
+        return next(outliner.outlines(1, design, rest=True, tolerance=None)).message["colouring"]
+
+    first = colouring(design)
     last = outliner.colourist.last
     assert last is not None
     for colour, kept in ((last.count - 1 - last.colour, True), (np.zeros_like(last.colour), False)):
         outliner.colourist.last = PeriodicColouring(last.repeat, colour)
-        again = outliner.outline(1, design, rest=True, tolerance=None)["colouring"]
+        again = colouring(design)
         assert (again != first) is kept
         assert again["count"] == first["count"]
-    other = outliner.outline(1, starter("p6").to_dict(), rest=True, tolerance=None)["colouring"]
-    assert other == shown(starter("p6").to_dict())["colouring"]
+    other = starter("p6").to_dict()
+    assert colouring(other) == shown(other)["colouring"]

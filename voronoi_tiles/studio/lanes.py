@@ -55,6 +55,9 @@ class Answer(NamedTuple):
     error: Mapping[str, Any] | None = None
 
 
+Deliver = Callable[[Answer], Awaitable[None]]
+
+
 class Worker:
     """A worker's process, which is started when it is needed, and does one thing at a time."""
 
@@ -91,14 +94,21 @@ class Worker:
             await self.end()
             raise
 
-    async def ask(self, head: Mapping[str, Any], body: bytes = b"", limit_s: float = SECONDS_MAX) -> Answer:
-        """Have something done; a worker that does not do it is ended."""
+    async def ask(
+        self, head: Mapping[str, Any], body: bytes = b"", limit_s: float = SECONDS_MAX, deliver: Deliver | None = None
+    ) -> Answer:
+        """Have something done; a worker that does not do it is ended. What comes before the last goes to `deliver`."""
         try:
             await self.start()
             assert self._process is not None
             assert self._process.stdin is not None
             self._process.stdin.write(pack(head, body))
-            answer, data = await asyncio.wait_for(self._receive(), limit_s)
+            async with asyncio.timeout(limit_s):
+                answer, data = await self._receive()
+                while answer.get("more"):
+                    if deliver is not None:
+                        await deliver(Answer(answer, data))
+                    answer, data = await self._receive()
         except TimeoutError:
             await self.end()
             return Answer({}, b"", TOO_LONG)
@@ -129,9 +139,6 @@ class Worker:
         head, body = sizes_of(await self._process.stdout.readexactly(FRAME_START))
         text = await self._process.stdout.readexactly(head)
         return json.loads(text), await self._process.stdout.readexactly(body)
-
-
-Deliver = Callable[[Answer], Awaitable[None]]
 
 
 @dataclass(eq=False)
@@ -222,7 +229,8 @@ class Lane:
                     continue
                 slot = min(self._slots, key=lambda key: not self._slots[key].urgent)
                 asked = self._slots.pop(slot)
-                work = asyncio.ensure_future(self.worker.ask(asked.head, asked.body, self._limit_s))
+                asking = self.worker.ask(asked.head, asked.body, self._limit_s, asked.deliver)
+                work = asyncio.ensure_future(asking)
                 self._doing = _Doing(slot, work, asyncio.get_running_loop().time())
                 await asyncio.wait((work,))
                 self._doing = None

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 from voronoi_tiles.base.errors import TouchingCopiesError
 from voronoi_tiles.base.operations import Operation
@@ -29,6 +30,13 @@ _FADING: Final = 0.9
 """How what a slow proof took fades with each outline that is not proved: a busy machine may have been to blame."""
 
 
+class Said(NamedTuple):
+    """A message to the page, and whether there is more to be said of the same design."""
+
+    message: dict[str, Any]
+    more: bool = False
+
+
 @dataclass
 class Outliner:
     """Outlines of one design after the other; `proof_s` is what the last proof took for each edge, in seconds."""
@@ -36,53 +44,68 @@ class Outliner:
     proof_s: float = 0.0
     colourist: Colourist = field(default_factory=Colourist)
 
-    def outline(self, rev: int, design: Mapping[str, Any], *, rest: bool, tolerance: float | None) -> dict[str, Any]:
-        """The message "outline" of a design: proved at rest, and while the pointer moves where that is quick enough.
+    def outlines(self, rev: int, design: Mapping[str, Any], *, rest: bool, tolerance: float | None) -> Iterator[Said]:
+        """What is said of a design: at rest its message "outline", proved and coloured.
 
-        Strokes are flattened within `tolerance` while the pointer moves, in the coordinates of the drawing; None is as
-        the design says. Raises DesignError, TouchingCopiesError and ProofError.
+        While the pointer moves the outline comes before its proof, which is the message "proof", where that is quick
+        enough; of an outline that failed, one that passed takes the place. Strokes are flattened within `tolerance`
+        then, in the coordinates of the drawing; None is as the design says. Raises DesignError, TouchingCopiesError
+        and ProofError.
         """
         begun = time.perf_counter()
-        if rest or tolerance is None:
-            read = Design.from_dict(design)
-            tiles, proved = self._tiles(read, rest)
-        else:
-            read = Design.from_dict(coarser(design, tolerance))
-            try:
-                tiles, proved = self._tiles(read, rest)
-            except TouchingCopiesError:  # perhaps as they are flattened, and not as they are drawn
-                read = Design.from_dict(design)
-                tiles, proved = self._tiles(read, rest)
-        documents = [tile_document(tile, read.group) for tile in tiles]
-        colouring = {}
-        if rest:  # the page keeps the last one meanwhile
-            operations = [document["operations"] for document in documents]
-            colouring = {"colouring": self.colourist.colour(tiles[0].tessellation, operations)}
-        return {
-            "type": "outline",
-            "rev": rev,
-            "proved": proved,
-            "scale": read.scale,
-            "tiles": documents,
-            "resolved": resolved(read),
-            **colouring,
-            "ms": round(1000 * (time.perf_counter() - begun), 3),
-        }
-
-    def _tiles(self, design: Design, rest: bool) -> tuple[list[TileRecord], bool]:
-        """The tiles of a design, and whether they are proved."""
-        begun = time.perf_counter()
-        tiles = tessellate(design.noded, design.group, design.lattice)
-        now = time.perf_counter()
+        if rest:
+            read, tiles = _tiles(design)
+            tiles, _ = self._proved(read, tiles)
+            message = _message(rev, read, tiles, proved=True)
+            operations = [document["operations"] for document in message["tiles"]]
+            message["colouring"] = self.colourist.colour(tiles[0].tessellation, operations)
+            yield Said(_timed(message, begun))
+            return
+        read, tiles = _tiles(design, tolerance)
+        message = _message(rev, read, tiles, proved=False)
         edges = sum(len(tile.outline) for tile in tiles)
-        if not rest and now - begun + self.proof_s * edges > PROOF_S:
+        if time.perf_counter() - begun + self.proof_s * edges > PROOF_S:
             self.proof_s *= _FADING
-            return tiles, False
+            yield Said(_timed(message, begun))
+            return
+        yield Said(_timed(message, begun), more=True)
+        tiles, mended = self._proved(read, tiles)
+        yield Said(_timed(_message(rev, read, tiles, proved=True), begun) if mended else {"type": "proof", "rev": rev})
+
+    def _proved(self, design: Design, tiles: list[TileRecord]) -> tuple[list[TileRecord], bool]:
+        """The tiles of a design, proved, and whether they are others. Raises ProofError."""
+        begun = time.perf_counter()
         passed = prove(design.group, design.lattice, tiles).passed
-        self.proof_s = (time.perf_counter() - now) / edges
+        self.proof_s = (time.perf_counter() - begun) / sum(len(tile.outline) for tile in tiles)
         if not passed:  # once more, as designs are tessellated that are not shown but written
             tiles, _ = proved_tiles(design.noded, design.group, design.lattice)
-        return tiles, True
+        return tiles, not passed
+
+
+def _tiles(design: Mapping[str, Any], tolerance: float | None = None) -> tuple[Design, list[TileRecord]]:
+    """A design, read, and its tiles, not proved; flattened as coarsely as `tolerance` where it has tiles then."""
+    if tolerance is not None:
+        with suppress(TouchingCopiesError):  # perhaps as they are flattened, and not as they are drawn
+            return _tiles(coarser(design, tolerance))
+    read = Design.from_dict(design)
+    return read, tessellate(read.noded, read.group, read.lattice)
+
+
+def _message(rev: int, design: Design, tiles: list[TileRecord], *, proved: bool) -> dict[str, Any]:
+    """The message "outline" of a design, but for its time and its colours, which the page keeps meanwhile."""
+    return {
+        "type": "outline",
+        "rev": rev,
+        "proved": proved,
+        "scale": design.scale,
+        "tiles": [tile_document(tile, design.group) for tile in tiles],
+        "resolved": resolved(design),
+    }
+
+
+def _timed(message: dict[str, Any], begun: float) -> dict[str, Any]:
+    """A message with what it took, in milliseconds."""
+    return {**message, "ms": round(1000 * (time.perf_counter() - begun), 3)}
 
 
 def coarser(design: Mapping[str, Any], tolerance: float) -> Mapping[str, Any]:

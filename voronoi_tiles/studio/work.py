@@ -1,7 +1,8 @@
 """What a worker does: reads requests from its standard input until it ends, and answers each on its standard output.
 
 A request is a frame: an object with a "task", which names the function that does it, and what that needs.
-An answer is a frame, too: its head has an "error", or else what there is to say of its body.
+An answer is frames, too: a head has an "error", or else what there is to say of its body, and "more" where it is not
+the last.
 """
 
 from __future__ import annotations
@@ -13,7 +14,8 @@ import shutil
 import sys
 import tempfile
 import threading
-from collections.abc import Callable, Mapping, Sequence
+import time
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from functools import cache
 from typing import TYPE_CHECKING, Any, BinaryIO, Final
@@ -29,6 +31,9 @@ Done = tuple[Mapping[str, Any], bytes]
 
 _MEMORY: Final = 4 << 30
 """How much memory a worker may have; bytes. What takes more is refused, and the machine lives on."""
+
+_AHEAD_S: Final = 0.001
+"""How much of a start an outline has before its proof is begun: where processors are few, it would wait; seconds."""
 
 
 def text_of(message: Mapping[str, Any] | Sequence[Any]) -> Done:
@@ -50,10 +55,13 @@ def examples(_request: Request, _body: bytes) -> Done:
     return text_of(starter_designs())
 
 
-def outline(request: Request, _body: bytes) -> Done:
-    """The outlines of a design."""
+def outline(request: Request, _body: bytes) -> Iterator[Done]:
+    """The outlines of a design, and their proof."""
     asked = {name: request[name] for name in ("rev", "design", "rest", "tolerance")}
-    return text_of(_outliner().outline(**asked))
+    for message, more in _outliner().outlines(**asked):
+        yield {"more": more}, text_of(message)[1]
+        if more:
+            time.sleep(_AHEAD_S)
 
 
 def product(request: Request, _body: bytes) -> Done:
@@ -107,7 +115,7 @@ def _outliner() -> Outliner:
     return Outliner()
 
 
-Tasks = Mapping[str, Callable[[Request, bytes], Done]]
+Tasks = Mapping[str, Callable[[Request, bytes], Done | Iterator[Done]]]
 
 TASKS: Final[Tasks] = {
     "tables": tables,
@@ -121,14 +129,15 @@ TASKS: Final[Tasks] = {
 }
 
 
-def do(request: Request, body: bytes, tasks: Tasks = TASKS) -> bytes:
-    """Do what is asked for; the frame of the answer. Whatever goes wrong becomes an error for people."""
+def do(request: Request, body: bytes, tasks: Tasks = TASKS) -> Iterator[bytes]:
+    """Do what is asked for; the frames of the answer. Whatever goes wrong becomes an error for people, the last."""
     try:
-        head, data = tasks[request["task"]](request, body)
-        return pack(head, data)
+        done = tasks[request["task"]](request, body)
+        for head, data in (done,) if isinstance(done, tuple) else done:
+            yield pack(head, data)
     except Exception as error:  # noqa: BLE001 - a worker goes on
         scale = request.get("design", {}).get("scale", 1.0)
-        return pack({"error": error_document(error, scale if isinstance(scale, float | int) and scale > 0 else 1.0)})
+        yield pack({"error": error_document(error, scale if isinstance(scale, float | int) and scale > 0 else 1.0)})
 
 
 def run(tasks: Tasks = TASKS, warm: Callable[[], object] | None = None) -> None:
@@ -145,11 +154,12 @@ def run(tasks: Tasks = TASKS, warm: Callable[[], object] | None = None) -> None:
     threading.Thread(target=_read, args=(asked, requests, scratch), daemon=True).start()
     if warm is not None:
         warm()
-    frame = pack({"ready": True})
+    frames: Iterable[bytes] = (pack({"ready": True}),)
     while True:
-        answers.write(frame)
-        answers.flush()
-        frame = do(*requests.get(), tasks)
+        for frame in frames:
+            answers.write(frame)
+            answers.flush()
+        frames = do(*requests.get(), tasks)
 
 
 def _read(file: BinaryIO, requests: queue.SimpleQueue[tuple[Request, bytes]], scratch: str | None) -> None:

@@ -43,34 +43,59 @@ test("outlines are behind when none has come for a while, and not because none w
     assert.equal(await after(10), true);
 });
 
-test("what is wrong with a job is said until it changes, and not of the next", async (context) => {
-    const { timers } = context.mock;
-    timers.enable({ apis: ["setTimeout"] });
-    /** @type {EventTarget & {send: (text: string) => void, readyState: number}} */
-    let socket;
+/** A page's end of a connection: what it is told, and the types of what it has sent. @param {Store} store */
+function connected(store) {
     /** @type {string[]} */
     const sent = [];
     class Socket extends EventTarget {
         static OPEN = 1;
-        readyState = 1;
+        readyState = Socket.OPEN;
         /** @param {string} text */
         send(text) {
             sent.push(JSON.parse(text).type);
+        }
+        /** @param {object} message */
+        static come(message) {
+            socket.dispatchEvent(Object.assign(new Event("message"), { data: JSON.stringify(message) }));
         }
         constructor() {
             super();
             socket = this;
         }
     }
+    /** @type {Socket} */
+    let socket;
     Object.assign(globalThis, { window: globalThis, WebSocket: Socket, location: { host: "here" } });
-    const store = new Store({ design: DESIGN, revision: 0, begun: 0, job: {}, exact: null, refusal: null });
     const link = new Link(store);
     link.connect();
+    return { link, sent, come: Socket.come };
+}
+
+test("an outline is proved once its proof has come", async (context) => {
+    context.mock.timers.enable({ apis: ["setTimeout"] });
+    const store = new Store({ design: DESIGN, revision: 5, begun: 3, exact: null, proved: -1, refusal: null });
+    const { come } = connected(store);
+    const seen = () => [store.state.exact?.rev, store.state.exact?.after, store.state.proved];
+
+    come({ type: "outline", rev: 2, proved: true }); // of the design before
+    assert.deepEqual(seen(), [undefined, undefined, -1]);
+    come({ type: "outline", rev: 3, proved: false });
+    assert.deepEqual(seen(), [3, undefined, -1]);
+    come({ type: "proof", rev: 3 });
+    assert.deepEqual(seen(), [3, undefined, 3]);
+    come({ type: "outline", rev: 4, proved: false });
+    assert.deepEqual(seen(), [4, 3, 3]);
+    come({ type: "outline", rev: 5, proved: true });
+    assert.deepEqual(seen(), [5, 4, 5]);
+});
+
+test("what is wrong with a job is said until it changes, and not of the next", async (context) => {
+    const { timers } = context.mock;
+    timers.enable({ apis: ["setTimeout"] });
+    const store = new Store({ design: DESIGN, revision: 0, begun: 0, job: {}, exact: null, refusal: null });
+    const { link, sent, come: told } = connected(store);
     link.askJobs(true);
-    const come = (/** @type {object} */ message) => {
-        const data = JSON.stringify({ lane: "job", rev: 0, ...message });
-        socket.dispatchEvent(Object.assign(new Event("message"), { data }));
-    };
+    const come = (/** @type {object} */ message) => told({ lane: "job", rev: 0, ...message });
     /** Change the job, and send it or not. */
     const change = async (/** @type {object} */ job, /** @type {number} */ ms) => {
         store.set({ job });

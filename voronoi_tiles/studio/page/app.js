@@ -35,6 +35,7 @@ const store = new Store({
     site: 0,
     tables: null,
     exact: null,
+    proved: -1,
     refusal: null,
     product: null,
     jobRefusal: null,

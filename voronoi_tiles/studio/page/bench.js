@@ -32,6 +32,9 @@ export function bench({ store, stage }) {
             made.delete([...made.keys()][0]);
         }
     });
+    store.subscribe(["proved"], () => {
+        figures.proved += 1;
+    });
     store.subscribe(["exact"], ({ exact }) => {
         const start = exact ? made.get(exact.rev) : undefined;
         if (!exact || start === undefined) {
@@ -41,7 +44,6 @@ export function bench({ store, stage }) {
         const drawn = () => {
             const age = performance.now() - start;
             figures.ages.push(age);
-            figures.proved += Number(proved);
             if (proved && rev === revision && !store.state.dragging) {
                 figures.rests.push(age);
             }

@@ -16,13 +16,14 @@
  * @property {number[]} operations one of the group's for each copy, as indices
  * @typedef {object} Outline the exact tiles of a revision
  * @property {number} rev
- * @property {boolean} proved
+ * @property {boolean} proved else its proof comes after it, where that is quick enough
  * @property {number} scale
  * @property {Tile[]} tiles
  * @property {Record<string, string>} [resolved] path data of strokes that are files, by "site.stroke"
  * @property {any} [colouring]
  * @property {number} ms
  * @property {Design} design that it is of
+ * @property {number | undefined} after the revision of the one before
  * @typedef {object} Refusal
  * @property {number} rev
  * @property {string} lane
@@ -269,12 +270,17 @@ export class Link {
         switch (message.type) {
             case "outline":
                 if (!exact || message.rev >= exact.rev) {
+                    const design = this.#designs.get(message.rev) ?? this.#store.state.design;
                     this.#store.set({
-                        exact: { ...message, design: this.#designs.get(message.rev) ?? this.#store.state.design },
+                        exact: { ...message, design, after: exact?.rev },
                         refusal: refusal && refusal.rev > message.rev ? refusal : null,
+                        ...(message.proved ? { proved: message.rev } : {}),
                     });
                     this.#forget(message.rev);
                 }
+                break;
+            case "proof":
+                this.#store.set({ proved: message.rev });
                 break;
             case "refused":
                 if (message.lane === "outline" && (!exact || message.rev >= exact.rev)) {

@@ -22,6 +22,7 @@ import { UNLAID } from "./model/tracing.js";
  * @property {number} site the site that new strokes go to
  * @property {any} tables what the server says of groups, options and formats
  * @property {Outline | null} exact the last outlines that came
+ * @property {number} proved the last revision whose outlines are proved
  * @property {Refusal | null} refusal why the design has none, null where it has
  * @property {Product | null} product the last job's result
  * @property {Refusal | null} jobRefusal

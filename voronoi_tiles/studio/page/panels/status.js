@@ -8,7 +8,7 @@ import { stepIn } from "../tools/trace.js";
 import { button, byId, make } from "./elements.js";
 
 /** @param {import("../store.js").State} state @returns {[string, string]} */
-function proofOf({ exact, refusal, revision, connected, behind, dragging }) {
+function proofOf({ exact, proved, refusal, revision, connected, behind, dragging }) {
     if (!connected) {
         return ["behind", "no connection"];
     }
@@ -18,7 +18,10 @@ function proofOf({ exact, refusal, revision, connected, behind, dragging }) {
     if (!exact || (exact.rev < revision && (behind || !dragging))) {
         return ["behind", "exact tile follows"];
     }
-    return exact.proved ? ["proved", "proved"] : ["proving", "exact, proof follows"];
+    // While something is dragged, the proof of the last outline may be on its way.
+    return proved === exact.rev || (dragging && proved === exact.after)
+        ? ["proved", "proved"]
+        : ["proving", "exact, proof follows"];
 }
 
 const LOST = {
@@ -62,7 +65,7 @@ export function showStatus(store) {
     );
 
     store.subscribe(
-        ["exact", "refusal", "revision", "connected", "behind", "dragging"],
+        ["exact", "proved", "refusal", "revision", "connected", "behind", "dragging"],
         (state) => {
             const [name, text] = proofOf(state);
             byId("exact").dataset.state = name;
