@@ -256,22 +256,24 @@ def test_without_webgl(chromium: Any, studio: Studio, how: str) -> None:
             window.begin(design_of([WING]))
             assert page.locator("#picture").is_hidden()
             seen = (
-                "([x, y]) => [...document.getElementById('outlines').getContext('2d')"
+                "([x, y]) => [...document.getElementById('tiles').getContext('2d')"
                 ".getImageData(x, y, 1, 1).data].join()"
             )
             box = page.locator("#overlay").bounding_box()
 
-            def colour(x: float, y: float) -> str:
-                at = window.at(x, y)
-                found: str = page.evaluate(seen, [round(at[0] - box["x"]), round(at[1] - box["y"])])
-                return found
+            def colours() -> set[str]:
+                """The colours of four tiles."""
+                places = (window.at(x, y) for x, y in ((14, 12), (14, 44), (46, 46), (44, 14)))
+                return {page.evaluate(seen, [round(x - box["x"]), round(y - box["y"])]) for x, y in places}
 
             page.wait_for_function("() => document.documentElement.dataset.exact.startsWith('proved')")
-            assert len({colour(x, y) for x, y in ((14, 12), (14, 44), (46, 46), (44, 14))}) >= 2
+            assert len(before := colours()) >= 2
             window.choose("Line 1")
             window.drag((25, 18), (24, 24))
             window.wait()
-            assert colour(14, 12).endswith(",255")
+            assert page.locator("#tiles").is_visible()
+            assert page.locator("#outlines").is_hidden()
+            assert colours() == before
     finally:
         if browser is not chromium:
             browser.close()

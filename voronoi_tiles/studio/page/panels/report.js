@@ -2,6 +2,7 @@
 // What the job comes to, and what preflight finds: each finding with its place on the sheet.
 
 import { shown } from "../model/lengths.js";
+import { Kept } from "../model/kept.js";
 import { button, inLabels, make, refill } from "./elements.js";
 
 /** @import { Context } from "./panels.js" */
@@ -18,6 +19,8 @@ export class ReportPanel extends HTMLElement {
     /** @type {Context} */
     // @ts-expect-error set by connect, before anything else
     #context;
+    /** @type {Kept<void>} what is shown */
+    #filled = new Kept();
 
     /** @param {Context} context */
     connect(context) {
@@ -34,7 +37,19 @@ export class ReportPanel extends HTMLElement {
         if (!tables) {
             return;
         }
-        const bad = refusal?.error ?? jobRefusal?.error;
+        const bad = refusal?.error ?? jobRefusal?.error ?? null;
+        const isOld = product !== null && (product.rev < revision || jobPending);
+        this.#filled.get([bad, product, isOld, unit, tables], () => this.#show(bad, product, isOld, unit, tables));
+    }
+
+    /**
+     * @param {import("../link.js").Refusal["error"] | null} bad
+     * @param {State["product"]} product
+     * @param {boolean} isOld
+     * @param {State["unit"]} unit
+     * @param {any} tables
+     */
+    #show(bad, product, isOld, unit, tables) {
         if (bad || !product) {
             refill(this, [
                 bad
@@ -65,7 +80,7 @@ export class ReportPanel extends HTMLElement {
             make("h2", {}, "Report"),
             make(
                 "dl",
-                { class: product.rev < revision || jobPending ? "figures old" : "figures" },
+                { class: isOld ? "figures old" : "figures" },
                 ...rows.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]),
             ),
             make(

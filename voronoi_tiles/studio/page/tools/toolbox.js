@@ -123,8 +123,7 @@ export class Toolbox {
     }
 
     /** @param {PointerEvent | MouseEvent} event @returns {Point} */
-    #screen(event) {
-        const box = this.#canvas.getBoundingClientRect();
+    #screen(event, box = this.#canvas.getBoundingClientRect()) {
         return [event.clientX - box.left, event.clientY - box.top];
     }
 
@@ -132,8 +131,9 @@ export class Toolbox {
     #touch(event) {
         const touch = "pointerType" in event && event.pointerType === "touch";
         const past = "getCoalescedEvents" in event ? event.getCoalescedEvents() : [];
-        const trail = (past.length ? past : [event]).map((one) => this.#hands.camera.toDrawing(this.#screen(one)));
-        return this.#touchAt(this.#screen(event), {
+        const box = this.#canvas.getBoundingClientRect();
+        const trail = (past.length ? past : [event]).map((one) => this.#hands.camera.toDrawing(this.#screen(one, box)));
+        return this.#touchAt(this.#screen(event, box), {
             shift: event.shiftKey,
             alt: event.altKey,
             ctrl: event.ctrlKey || event.metaKey,

@@ -222,18 +222,22 @@ function nodes(context, hands, colour) {
         }
     }
     context.stroke();
+    const [others, chosen] = [new Path2D(), new Path2D()];
     for (const node of shown) {
         const [x, y] = camera.toScreen(node.at);
-        const chosen = selection.nodes.some((ref) => isSameNode(ref, nodeRef(node)));
-        context.fillStyle = chosen ? colour.accent : colour.panel;
+        const nodes = selection.nodes.some((ref) => isSameNode(ref, nodeRef(node))) ? chosen : others;
         if (node.role === "anchor" && !node.smooth) {
-            context.beginPath();
-            context.rect(x - 4, y - 4, 8, 8);
+            nodes.rect(x - 4, y - 4, 8, 8);
         } else {
-            ring(context, [x, y], node.role === "anchor" || node.role === "centre" ? 4.5 : 3.5);
+            const radius = node.role === "anchor" || node.role === "centre" ? 4.5 : 3.5;
+            nodes.moveTo(x + radius, y);
+            nodes.arc(x, y, radius, 0, 2 * Math.PI);
         }
-        context.fill();
-        context.stroke();
+    }
+    for (const nodes of [others, chosen]) {
+        context.fillStyle = nodes === chosen ? colour.accent : colour.panel;
+        context.fill(nodes);
+        context.stroke(nodes);
     }
 }
 

@@ -25,9 +25,9 @@ const QUICK_MS = 50;
 export class Stage {
     camera = new Camera();
     #store;
-    /** of the overlay, and of the outlines with the picture to trace below it */
+    /** of the overlay, and below it of outlines with the picture to trace: over the live picture, or of whole tiles */
     #contexts;
-    /** @type {Kept<void>} what the outlines' canvas shows */
+    /** @type {Kept<void>} what the canvas of outlines or tiles shows */
     #drawn = new Kept();
     /** @type {Preview | null} */
     #preview = null;
@@ -60,14 +60,16 @@ export class Stage {
     constructor(picture, overlay, store) {
         this.#store = store;
         this.#picture = picture;
-        const outlines = document.createElement("canvas");
-        outlines.id = "outlines";
-        outlines.ariaHidden = "true";
-        overlay.before(outlines);
         // Drawn by the processor: where WebGL is software, Chromium would draw lines by it too, four times slower.
-        const contextOf = (/** @type {HTMLCanvasElement} */ canvas) =>
-            /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { willReadFrequently: true }));
-        this.#contexts = { overlay: contextOf(overlay), outlines: contextOf(outlines) };
+        const contextOf = (/** @type {HTMLCanvasElement} */ canvas, alpha = true) =>
+            /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d", { willReadFrequently: true, alpha }));
+        const below = (/** @type {string} */ id, alpha = true) => {
+            const canvas = Object.assign(document.createElement("canvas"), { id, ariaHidden: "true", hidden: true });
+            overlay.before(canvas);
+            return contextOf(canvas, alpha);
+        };
+        // Tiles cover the window: nothing is mixed with what lies below them, a millisecond in each frame.
+        this.#contexts = { overlay: contextOf(overlay), outlines: below("outlines"), tiles: below("tiles", false) };
         watchSize(overlay, ({ size, ratio, pixels }) => {
             Object.assign(this.camera, { size, ratio, pixels });
             if (!this.#fitted) {
@@ -198,7 +200,7 @@ export class Stage {
         const scene = { design: this.#store.state.design, ...this.symmetry(), entries: this.entries() };
         const seen = this.#morph.at(scene, performance.now());
         const hands = { ...this.hands, entries: () => seen.entries };
-        drawOverlay(this.#cleared("overlay"), hands, this.toolbox, seen.motions, seen.lattice);
+        drawOverlay(this.#cleared(this.#contexts.overlay), hands, this.toolbox, seen.motions, seen.lattice);
         if (seen.moves) {
             this.redraw();
         }
@@ -206,10 +208,9 @@ export class Stage {
 
     /**
      * A canvas to draw on, empty, in the size of the window.
-     * @param {"overlay" | "outlines"} which
+     * @param {CanvasRenderingContext2D} context
      */
-    #cleared(which) {
-        const context = this.#contexts[which];
+    #cleared(context) {
         const [width, height] = this.#pixels;
         if (context.canvas.width !== width || context.canvas.height !== height) {
             Object.assign(context.canvas, { width, height });
@@ -235,7 +236,10 @@ export class Stage {
         const looks = outlines ? Object.values(outlines.style).flat() : [];
         const causes = [outlines?.copies, ...looks, state.trace, camera.scale, ...camera.centre, ...this.#pixels];
         this.#drawn.get(causes, () => {
-            const context = this.#cleared("outlines");
+            const { outlines: clear, tiles } = this.#contexts;
+            const context = this.#cleared(outlines?.style.fill ? tiles : clear);
+            context.canvas.hidden = false;
+            (context === tiles ? clear : tiles).canvas.hidden = true;
             if (outlines?.style.fill) {
                 fillCopies(context, camera, outlines.copies, outlines.style);
             }
