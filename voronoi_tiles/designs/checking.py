@@ -262,6 +262,8 @@ def _read_name(value: object, taken: Mapping[str, int]) -> str:
 
 def _canonical(value: Any) -> Any:
     """A checked value in the types of JSON; whole numbers without a fraction, so that 60 and 60.0 are one design."""
+    if type(value) is float:  # most are
+        return int(value) if value.is_integer() else value
     if isinstance(value, Mapping):
         return {name: _canonical(item) for name, item in value.items()}
     if isinstance(value, np.ndarray):
