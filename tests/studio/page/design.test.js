@@ -5,7 +5,7 @@ import { test } from "node:test";
 
 import * as edits from "../../../voronoi_tiles/studio/page/model/design.js";
 import { cubicsOf, placementOf } from "../../../voronoi_tiles/studio/page/model/strokes.js";
-import { assertNear, frozen } from "./helpers.js";
+import { allStrokes, assertNear, frozen } from "./helpers.js";
 
 const DESIGN = frozen({
     schema: 1,
@@ -74,12 +74,12 @@ test("strokes are added, replaced and removed, and the rest is shared", () => {
         [2, 0],
     );
     assert.equal(edits.addStroke(DESIGN, 7, { point: [3, 4] }), DESIGN);
-    assert.equal(edits.allStrokes(DESIGN).length, 5);
+    assert.equal(allStrokes(DESIGN).length, 5);
 });
 
 test("strokes move by the vector, however they and their sites are placed", () => {
-    const moved = edits.moveStrokes(DESIGN, edits.allStrokes(DESIGN), [0.3, -7]);
-    for (const { site, stroke } of edits.allStrokes(DESIGN)) {
+    const moved = edits.moveStrokes(DESIGN, allStrokes(DESIGN), [0.3, -7]);
+    for (const { site, stroke } of allStrokes(DESIGN)) {
         assertNear(
             drawn(moved, site, stroke),
             drawn(DESIGN, site, stroke).map((value, k) => value + (k % 2 ? -7 : 0.3)),
@@ -141,7 +141,7 @@ test("units change by name alone, or with all lengths so that the size stays", (
     assertNear([inches.site[0].tolerance], [0.01 / 25.4]);
     assert.deepEqual(inches.site[0].art, { file: "face.svg", translate: [1, 0] });
     assert.equal(inches.scale, 1.5);
-    for (const { site, stroke } of edits.allStrokes(DESIGN)) {
+    for (const { site, stroke } of allStrokes(DESIGN)) {
         assertNear(
             drawn(inches, site, stroke).map((value) => value * 25.4),
             drawn(DESIGN, site, stroke),

@@ -148,3 +148,8 @@ export const PLACEMENTS = frozen([
         { mirror: true, rotate: -50, translate: [1, 1] },
     ],
 ]);
+
+/** The references of all strokes, in the order of the design. @param {any} design */
+export function allStrokes(design) {
+    return design.site.flatMap((site, k) => site.strokes.map((_, stroke) => ({ site: k, stroke })));
+}

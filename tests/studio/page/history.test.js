@@ -16,7 +16,7 @@ import {
 } from "../../../voronoi_tiles/studio/page/model/nodes.js";
 import { cubicsOf, placementOf } from "../../../voronoi_tiles/studio/page/model/strokes.js";
 import { setGroup } from "../../../voronoi_tiles/studio/page/model/regroup.js";
-import { PLACEMENTS, STROKES, frozen, random } from "./helpers.js";
+import { PLACEMENTS, STROKES, allStrokes, frozen, random } from "./helpers.js";
 
 /** How many random stories are told; the slow test asks for 10,000. */
 const STORIES = Number(process.env.VORONOI_TILES_STORIES ?? 250);
@@ -71,7 +71,7 @@ const START = frozen({
 function edited(design, chance) {
     const pick = (list) => list[Math.floor(chance() * list.length)];
     const point = () => [60 * chance() - 20, 50 * chance() - 10];
-    const refs = edits.allStrokes(design);
+    const refs = allStrokes(design);
     const ref = refs.length ? pick(refs) : null;
     const site = Math.floor(chance() * design.site.length);
     const ofStroke = (change) => {
@@ -136,7 +136,7 @@ test(`${STORIES} random stories of edits, undo and redo come back to the same by
                 const before = history.design;
                 const design = edited(before, chance);
                 const merge = chance() < 0.2 ? "nudge" : undefined;
-                history.push(design, { label: `edit ${step}`, merge });
+                history.push(design, merge);
                 if (design !== before) {
                     if (!(merging && merge)) now++;
                     texts = [...texts.slice(0, now), JSON.stringify(design)];
@@ -163,28 +163,18 @@ test(`${STORIES} random stories of edits, undo and redo come back to the same by
     assert.ok(taken > 8 * STORIES);
 });
 
-test("labels say what undo takes back and redo makes again", () => {
-    const history = new History(START);
-    assert.deepEqual([history.undoLabel, history.redoLabel], ["", ""]);
-    history.push({ ...START }, { label: "move" });
-    history.push({ ...START }, { label: "delete" });
-    assert.deepEqual([history.undoLabel, history.redoLabel], ["delete", ""]);
-    history.undo();
-    assert.deepEqual([history.undoLabel, history.redoLabel], ["move", "delete"]);
-});
-
 test("edits of one kind in a row are one step, unless undo or another edit comes between", () => {
     const [one, two, three, four] = [1, 2, 3, 4].map((a) => ({ ...START, cell: { a } }));
     const history = new History(START);
-    history.push(one, { label: "nudge", merge: "nudge" });
-    history.push(two, { label: "nudge", merge: "nudge" });
+    history.push(one, "nudge");
+    history.push(two, "nudge");
     assert.equal(history.undo(), START);
     assert.equal(history.redo(), two);
-    history.push(three, { label: "nudge", merge: "nudge" });
-    history.push(three, { label: "nudge", merge: "nudge" });
+    history.push(three, "nudge");
+    history.push(three, "nudge");
     assert.equal(history.undo(), two);
-    history.push(four, { label: "other", merge: "other" });
-    history.push(one, { label: "nudge", merge: "nudge" });
+    history.push(four, "other");
+    history.push(one, "nudge");
     assert.equal(history.canRedo, false);
     assert.deepEqual([history.undo(), history.undo(), history.undo(), history.undo()], [four, two, START, START]);
 });

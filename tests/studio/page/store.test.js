@@ -48,11 +48,11 @@ test("while something is dragged calm listeners are told of the newest a few tim
 test("calm listeners are told at once of what is no drag, and of a drag's end", async (context) => {
     const later = clock(context);
     const { store, told } = watched();
-    store.edit("wider", wide(61));
+    store.edit(wide(61));
     await later();
     store.preview(wide(62));
     await later();
-    store.edit("wider", wide(63));
+    store.edit(wide(63));
     await later();
     assert.deepEqual(told.calm, [60, 61, 63]);
     store.preview(wide(64));

@@ -6,13 +6,13 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { nearestOn, pointOn } from "../../../voronoi_tiles/studio/page/model/nearest.js";
+import { apply } from "../../../voronoi_tiles/studio/page/model/plane.js";
 import { pathCubics } from "../../../voronoi_tiles/studio/page/model/pathdata.js";
 import {
     KINDS,
     cubicsOf,
     flatten,
     kindOf,
-    place,
     placementOf,
     unplace,
 } from "../../../voronoi_tiles/studio/page/model/strokes.js";
@@ -143,7 +143,7 @@ test("path data are drawn up to the first character that is out of place", () =>
 test("a place is undone", () => {
     for (const [site, stroke] of PLACEMENTS) {
         const placement = placementOf(site, stroke);
-        assertNear(unplace(placement, place(placement, [3.7, -1.2])), [3.7, -1.2], 1e-12);
+        assertNear(unplace(placement, apply(placement, [3.7, -1.2])), [3.7, -1.2], 1e-12);
     }
 });
 

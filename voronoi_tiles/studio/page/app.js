@@ -144,7 +144,7 @@ const COMMANDS = {
         }
         const joined = joinSelected(store.settled, selection, MEETS / stage.camera.scale);
         if (joined) {
-            store.edit("join", () => joined.design, { selection: { strokes: [joined.ref], nodes: [] } });
+            store.edit(() => joined.design, { selection: { strokes: [joined.ref], nodes: [] } });
         } else {
             const remedy = whyNotJoined(store.settled, selection);
             store.set({ trouble: { message: "Nothing here can be joined.", remedy, quiet: true } });
@@ -158,7 +158,7 @@ const COMMANDS = {
         }));
         if (strokes.length) {
             const by = 12 / stage.camera.scale;
-            store.edit("double", (design) => copied(design, strokes, by).design);
+            store.edit((design) => copied(design, strokes, by).design);
         }
     },
 };

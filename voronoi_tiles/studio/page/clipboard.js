@@ -66,7 +66,7 @@ export function clipboard({ store, entries, camera }) {
             event.clipboardData.setData("text/plain", svg);
             event.preventDefault();
             if (kind === "cut") {
-                store.edit("cut", (design) => without(design, { strokes: selection.strokes, nodes: [] }), {
+                store.edit((design) => without(design, { strokes: selection.strokes, nodes: [] }), {
                     selection: NOTHING,
                 });
             }
@@ -109,5 +109,5 @@ export function paste(store, strokes, by) {
     const { site } = store.state;
     const placed = strokes.map((stroke) => ({ site, stroke }));
     const { design, refs } = copied(store.settled, placed, by);
-    store.edit("paste", () => design, { selection: { strokes: refs, nodes: [] } });
+    store.edit(() => design, { selection: { strokes: refs, nodes: [] } });
 }

@@ -138,7 +138,7 @@ export class OpenedFile {
         }
         if (this.#home === found) {
             // What others have made of the file was asked for: undo leads back.
-            store.edit("take theirs", () => design, { selection: NOTHING });
+            store.edit(() => design, { selection: NOTHING });
             store.set({ file, trouble });
         } else {
             store.open(design, { file, trouble });

@@ -150,16 +150,15 @@ export class Store {
 
     /**
      * Change the design, a step of the history. Changes of one `merge` that follow each other are one step.
-     * @param {string} label what undo says it takes back
      * @param {(design: Design) => Design} change
      * @param {{merge?: string, selection?: Selection}} [more]
      */
-    edit(label, change, more = {}) {
+    edit(change, more = {}) {
         const design = change(this.#history.design);
         if (design === this.#history.design && !this.#state.dragging) {
             return;
         }
-        this.#history.push(design, { label, merge: more.merge });
+        this.#history.push(design, more.merge);
         this.#show(design, { dragging: false, ...(more.selection ? { selection: more.selection } : {}) });
     }
 

@@ -89,16 +89,6 @@ export class Preview {
         this.#paint(this.#painter, 1, true);
     }
 
-    /** Stop, and let go of the graphics card. */
-    dispose() {
-        const { canvas } = this.#gl;
-        this.#wait();
-        canvas.removeEventListener("webglcontextlost", this.#lost);
-        canvas.removeEventListener("webglcontextrestored", this.#restored);
-        this.#painter = null;
-        this.#gl.getExtension("WEBGL_lose_context")?.loseContext();
-    }
-
     /**
      * Who owns each pixel's middle, see Painter.labels; null where there is nothing to draw.
      * @param {Scene} scene

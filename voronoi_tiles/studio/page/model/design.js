@@ -104,11 +104,6 @@ export function copied(design, strokes, by) {
     return { design: moveStrokes(design, refs, [by, -by]), refs };
 }
 
-/** The references of all strokes, in the order of the design. @type {(design: Design) => Ref[]} */
-export function allStrokes(design) {
-    return design.site.flatMap((site, k) => site.strokes.map((_, stroke) => ({ site: k, stroke })));
-}
-
 /**
  * The design with another list of strokes in one site.
  * @type {(design: Design, site: number, edit: (strokes: readonly Stroke[]) => readonly Stroke[]) => Design}
@@ -173,7 +168,7 @@ export function moveStrokes(design, refs, vector) {
  * of its own or has no points.
  * @type {(site: Site, stroke: Stroke, vector: Point) => Stroke}
  */
-export function movedStroke(site, stroke, vector) {
+function movedStroke(site, stroke, vector) {
     const by = turned(inverse(placementIn(site)), vector);
     const isPlaced = ["mirror", "scale", "rotate", "translate"].some((key) => key in stroke);
     if (isPlaced || !pointsOf(stroke).length) return { ...stroke, translate: tidyPlus(stroke.translate ?? [0, 0], by) };

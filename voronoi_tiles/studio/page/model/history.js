@@ -7,8 +7,7 @@
  * A step: the design after an edit.
  * @typedef {object} Step
  * @property {Design} design
- * @property {string} label what the edit did
- * @property {string} [merge]
+ * @property {string} [merge] edits of one that follow each other are one step
  */
 
 export class History {
@@ -20,7 +19,7 @@ export class History {
 
     /** Begin with a design. @param {Design} design */
     constructor(design) {
-        this.#steps = [{ design, label: "" }];
+        this.#steps = [{ design }];
     }
 
     /** The design as it is now. */
@@ -38,29 +37,19 @@ export class History {
         return this.#at + 1 < this.#steps.length;
     }
 
-    /** What undo takes back, "" for nothing. */
-    get undoLabel() {
-        return this.#steps[this.#at].label;
-    }
-
-    /** What redo makes again, "" for nothing. */
-    get redoLabel() {
-        return this.#steps[this.#at + 1]?.label ?? "";
-    }
-
     /**
      * Take an edited design as the present one; what had been taken back is gone.
      *
      * Edits of one `merge` that follow each other, with neither undo nor redo between, are one step. The same design
      * again is no step.
      * @param {Design} design
-     * @param {{label?: string, merge?: string}} [what]
+     * @param {string} [merge]
      */
-    push(design, { label = "edit", merge } = {}) {
+    push(design, merge) {
         if (design === this.design) return;
         const joins = this.#open && merge !== undefined && this.#steps[this.#at].merge === merge;
         if (!joins) this.#at++;
-        this.#steps.splice(this.#at, Infinity, { design, label, merge });
+        this.#steps.splice(this.#at, Infinity, { design, merge });
         this.#open = true;
     }
 

@@ -76,9 +76,6 @@ export function placementIn({ mirror = false, scale = 1, rotate = 0, translate =
  */
 export const placementOf = (site, stroke) => compose(placementIn(site), placementIn(stroke));
 
-/** A point of a stroke where it is placed. @type {(placement: Placement, at: Point) => Point} */
-export const place = apply;
-
 /** The point of a stroke that is placed there. @type {(placement: Placement, at: Point) => Point} */
 export const unplace = (placement, at) => (placement === IDENTITY ? at : apply(inverse(placement), at));
 

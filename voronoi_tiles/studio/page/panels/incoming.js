@@ -29,7 +29,7 @@ export function incoming({ store, link, stage, file: opened }) {
 
     /** @param {any} design that takes the place of what is drawn; undo leads back */
     const begin = (design) => {
-        store.edit("open", () => design, { selection: NOTHING });
+        store.edit(() => design, { selection: NOTHING });
         store.set({ site: 0 });
         stage.fit();
     };

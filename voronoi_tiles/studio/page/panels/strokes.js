@@ -93,7 +93,7 @@ export class StrokePanel extends HTMLElement {
 
     #addSite() {
         const { store } = this.#context;
-        store.edit("add site", (design) => addSite(design), { selection: NOTHING });
+        store.edit((design) => addSite(design), { selection: NOTHING });
         store.set({ site: store.state.design.site.length - 1 });
     }
 
@@ -111,7 +111,7 @@ export class StrokePanel extends HTMLElement {
             if (problem) {
                 throw new Error(problem);
             }
-            store.edit("rename", (design) => renameSite(design, i, text));
+            store.edit((design) => renameSite(design, i, text));
         };
         const field = textField(name, rename, { "aria-label": `Name of site ${i + 1}`, "data-key": `name ${i}` });
         const draw = make("input", {
@@ -124,7 +124,7 @@ export class StrokePanel extends HTMLElement {
         });
         const takeOut = () => {
             store.set({ site: 0 });
-            store.edit("take out site", (design) => removeSite(design, i), { selection: NOTHING });
+            store.edit((design) => removeSite(design, i), { selection: NOTHING });
         };
         const remove = button("Take out", takeOut, {
             class: "quiet",
@@ -175,7 +175,7 @@ export class StrokePanel extends HTMLElement {
         const { ref } = entry;
         const { strokes, nodes: points } = state.selection;
         const key = `${ref.site} ${ref.stroke}`;
-        const takeOut = () => store.edit("delete", (design) => removeStrokes(design, [ref]), { selection: NOTHING });
+        const takeOut = () => store.edit((design) => removeStrokes(design, [ref]), { selection: NOTHING });
         const nodes = entry.nodes.slice(0, NODES_MAX);
         const shown = nodes.map((node, k) => {
             const at = /** @type {[number, number]} */ (node.at);
@@ -187,7 +187,7 @@ export class StrokePanel extends HTMLElement {
                         const to = /** @type {[number, number]} */ ([...at]);
                         to[axis] = value / this.#factor;
                         const moves = [{ node: node.node, to }];
-                        store.edit("move point", (design) =>
+                        store.edit((design) =>
                             replaceStroke(
                                 design,
                                 ref,
@@ -241,7 +241,7 @@ export class StrokePanel extends HTMLElement {
                 (value) => {
                     const step = /** @type {[number, number]} */ ([0, 0]);
                     step[axis] = value / this.#factor;
-                    this.#context.store.edit("move", (design) => moveStrokes(design, [entry.ref], step));
+                    this.#context.store.edit((design) => moveStrokes(design, [entry.ref], step));
                 },
                 {
                     "aria-label": `Move by ${"xy"[axis]}`,
@@ -260,7 +260,7 @@ export class StrokePanel extends HTMLElement {
             [{ site: ref.site, stroke: store.settled.site[ref.site].strokes[ref.stroke] }],
             by,
         );
-        store.edit("double", () => design, { selection: { strokes: refs, nodes: [] } });
+        store.edit(() => design, { selection: { strokes: refs, nodes: [] } });
     }
 
     /** Where the stroke goes: another site. @param {State} state @param {Entry} entry */
@@ -273,7 +273,6 @@ export class StrokePanel extends HTMLElement {
             onchange: (/** @type {Event} */ event) => {
                 const to = Number(/** @type {HTMLSelectElement} */ (event.target).value);
                 this.#context.store.edit(
-                    "to another site",
                     (design) => removeStrokes(addStroke(design, to, design.site[ref.site].strokes[ref.stroke]), [ref]),
                     { selection: NOTHING },
                 );

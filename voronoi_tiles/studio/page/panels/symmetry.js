@@ -153,7 +153,7 @@ export class SymmetryPanel extends HTMLElement {
         const { store } = this.#context;
         const from = this.#origin;
         const { design, note } = this.#inGroup(from, name);
-        store.edit("group", () => design);
+        store.edit(() => design);
         this.#tried = { from, made: store.settled, note };
     }
 
@@ -209,7 +209,7 @@ export class SymmetryPanel extends HTMLElement {
                 const input = lengthField(
                     /** @type {any} */ (design.cell)[name] * factor,
                     unit,
-                    (value) => store.edit("cell", (old) => setCell(old, { [name]: value / factor })),
+                    (value) => store.edit((old) => setCell(old, { [name]: value / factor })),
                     { "data-key": name },
                 );
                 fields.push(field(`Side ${name}, ${unit}`, input));
@@ -222,7 +222,7 @@ export class SymmetryPanel extends HTMLElement {
                 "data-key": "angle",
                 ".value": design.cell.angle ?? 90,
                 onchange: (/** @type {Event} */ event) =>
-                    store.edit("cell", (old) =>
+                    store.edit((old) =>
                         setCell(old, { angle: /** @type {HTMLInputElement} */ (event.target).valueAsNumber }),
                     ),
             });
@@ -232,7 +232,7 @@ export class SymmetryPanel extends HTMLElement {
         const units = make("select", {
             "data-key": "units",
             onchange: (/** @type {Event} */ event) =>
-                store.edit("units", (old) => setUnits(old, /** @type {any} */ (event.target).value, true)),
+                store.edit((old) => setUnits(old, /** @type {any} */ (event.target).value, true)),
         });
         units.append(
             ...Object.keys(tables.units).map((name) =>
@@ -264,7 +264,7 @@ export class SymmetryPanel extends HTMLElement {
                     unit,
                     (wanted) => {
                         const times = (((design.scale ?? 1) * above(wanted)) / (tile[name] * scale)).toPrecision(12);
-                        store.edit("size", (old) => ({ ...old, scale: Number(times) }));
+                        store.edit((old) => ({ ...old, scale: Number(times) }));
                     },
                     { "data-key": name },
                 ),

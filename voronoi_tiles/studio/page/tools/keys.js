@@ -124,7 +124,7 @@ export function listen(hands, toolbox, canvas, run) {
         }
         if (arrow && (selection.strokes.length || selection.nodes.length) && store.state.tool === "select") {
             const name = `nudge ${JSON.stringify(selection)}`;
-            store.edit("nudge", (design) => moved(design, selection, [arrow[0] * by, arrow[1] * by]), { merge: name });
+            store.edit((design) => moved(design, selection, [arrow[0] * by, arrow[1] * by]), { merge: name });
             return true;
         }
         if (arrow && toolbox.tool.draws) {
@@ -184,7 +184,7 @@ export function listen(hands, toolbox, canvas, run) {
             (event.key === "Delete" || event.key === "Backspace") &&
             (selection.strokes.length || selection.nodes.length)
         ) {
-            store.edit("delete", (design) => without(design, selection, event.shiftKey), {
+            store.edit((design) => without(design, selection, event.shiftKey), {
                 selection: selection.nodes.length ? { strokes: selection.strokes, nodes: [] } : NOTHING,
             });
             return true;

@@ -126,7 +126,7 @@ function pointTool({ make, handles = false, ...what }) {
         const { store } = hands;
         const site = ref ? ref.site : store.state.site;
         const before = store.settled;
-        store.edit(ref ? "point" : what.title.toLowerCase(), (design) => withStroke(design, points, hands));
+        store.edit((design) => withStroke(design, points, hands));
         if (!ref && store.settled !== before) {
             ref = { site, stroke: store.settled.site[site].strokes.length - 1 };
         }

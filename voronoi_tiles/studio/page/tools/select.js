@@ -235,10 +235,10 @@ export const select = {
             const onto = kind === "nodes" && touch.snapped?.onto;
             const joined = onto && joinNodes(store.settled, nodeRef(node), onto);
             if (joined) {
-                store.edit("join", () => joined.design, { selection: { strokes: [joined.ref], nodes: [] } });
+                store.edit(() => joined.design, { selection: { strokes: [joined.ref], nodes: [] } });
             } else {
                 const { design } = store.state;
-                store.edit(kind === "strokes" ? "move" : "move point", () => design);
+                store.edit(() => design);
             }
         }
         drag = still;
@@ -248,15 +248,12 @@ export const select = {
         const { store } = hands;
         const node = nearestNode(shownNodes(hands), touch.raw, touch.reach);
         if (node && node.role === "anchor") {
-            store.edit("smooth or corner", (design) =>
-                changeNodes(design, [nodeRef(node)], (stroke) => toggleSmooth(stroke, node.node)),
-            );
+            store.edit((design) => changeNodes(design, [nodeRef(node)], (stroke) => toggleSmooth(stroke, node.node)));
             return;
         }
         const hit = nearestStroke(hands.entries(), touch.raw, touch.reach);
         if (hit) {
             store.edit(
-                "insert point",
                 (design) =>
                     replaceStroke(
                         design,

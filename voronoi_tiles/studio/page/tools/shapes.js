@@ -13,11 +13,10 @@ import { colours, path } from "../view/marks.js";
 /**
  * Add a stroke to the site in hand, whose coordinates are the site's own.
  * @param {Hands} hands
- * @param {string} label
  * @param {(unplaced: (at: Point) => Point, factor: number) => any} make
  * @param {"edit" | "preview"} [how]
  */
-function add(hands, label, make, how = "edit") {
+function add(hands, make, how = "edit") {
     const { store } = hands;
     const { site } = store.state;
     const change = (/** @type {any} */ design) => {
@@ -28,7 +27,7 @@ function add(hands, label, make, how = "edit") {
     if (how === "preview") {
         store.preview(change);
     } else {
-        store.edit(label, change);
+        store.edit(change);
         const count = store.settled.site[site].strokes.length;
         store.set({ selection: { strokes: [{ site, stroke: count - 1 }], nodes: [] } });
     }
@@ -45,7 +44,7 @@ export const point = {
     draws: true,
     help: "Click where an isolated point shall be.",
     up(touch, hands) {
-        add(hands, "point", (unplaced) => ({ point: unplaced(touch.at) }));
+        add(hands, (unplaced) => ({ point: unplaced(touch.at) }));
     },
 };
 
@@ -62,12 +61,7 @@ const radiusTo = (centre, { at }, { camera }) => rounded([distance(at, centre), 
 
 /** @param {Hands} hands @param {Point} centre @param {number} radius @param {"preview"} [how] */
 const addCircle = (hands, centre, radius, how) =>
-    add(
-        hands,
-        "circle",
-        (unplaced, factor) => ({ circle: unplaced(centre), radius: tidyProduct(radius, factor) }),
-        how,
-    );
+    add(hands, (unplaced, factor) => ({ circle: unplaced(centre), radius: tidyProduct(radius, factor) }), how);
 
 /** @type {Tool} */
 export const circle = {
@@ -141,7 +135,7 @@ export const freehand = {
         trail = [];
         const length = drawn.slice(1).reduce((sum, at, k) => sum + distance(at, drawn[k]), 0);
         if (length > touch.reach) {
-            add(hands, "freehand", (unplaced, factor) => fit(drawn.map(unplaced), (2 / hands.camera.scale) * factor));
+            add(hands, (unplaced, factor) => fit(drawn.map(unplaced), (2 / hands.camera.scale) * factor));
         }
         hands.redraw();
     },
