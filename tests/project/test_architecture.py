@@ -32,7 +32,7 @@ def test_the_page_names_much() -> None:
 
 def test_every_package_has_its_line_in_the_order_of_ranks() -> None:
     """The table of ranks is that of the test of layers."""
-    rows = re.findall(r"^\| (\d) \| `(?:voronoi_tiles/)?(\w+?)(?:\.py)?/?` \|", PAGE, re.MULTILINE)
+    rows = re.findall(r"^\| (\d+) \| `(?:voronoi_tiles/)?(\w+?)(?:\.py)?/?` \|", PAGE, re.MULTILINE)
     packages = {name: int(rank) for rank, name in rows}
     expected = {name: rank for rank, names in enumerate(RANKS) for name in names}
     assert {name: packages.get(name) for name in expected} == expected

@@ -21,6 +21,7 @@ RANKS = (
     ("fabrication", "preflight", "crosscheck", "pictures"),
     ("tile",),
     ("tiling",),
+    ("solid",),
     ("studio",),
     ("cli",),
 )
