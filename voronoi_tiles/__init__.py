@@ -62,6 +62,11 @@ if TYPE_CHECKING:
     from voronoi_tiles.preflight.findings import Finding, LayerUse, Limits, PreflightReport
     from voronoi_tiles.raster.frame import Frame
     from voronoi_tiles.raster.renderer import Provenance
+    from voronoi_tiles.solid.extrusion import extrude
+    from voronoi_tiles.solid.mesh import TriangleMesh
+    from voronoi_tiles.solid.pieces import SolidPiece
+    from voronoi_tiles.solid.solid_job import SolidJob
+    from voronoi_tiles.solid.solid_model import SolidModel
     from voronoi_tiles.tile import Tile, TileCopy
     from voronoi_tiles.tiling import Tiling
     from voronoi_tiles.vector.arcs import Arc, LineArc, Neighbour, ParabolaArc
@@ -116,11 +121,15 @@ __all__ = [
     "Rendering",
     "Shape",
     "Site",
+    "SolidJob",
+    "SolidModel",
+    "SolidPiece",
     "Stroke",
     "Tile",
     "TileCopy",
     "Tiling",
     "TouchingCopiesError",
+    "TriangleMesh",
     "UnknownNameError",
     "VoronoiTilesError",
     "WallpaperGroup",
@@ -131,6 +140,7 @@ __all__ = [
     "circle",
     "coupon",
     "drawing",
+    "extrude",
     "hermite",
     "path",
     "placed",
@@ -177,6 +187,11 @@ _HOMES = {
     "voronoi_tiles.preflight.findings": "Finding LayerUse Limits PreflightReport",
     "voronoi_tiles.raster.frame": "Frame",
     "voronoi_tiles.raster.renderer": "Provenance",
+    "voronoi_tiles.solid.extrusion": "extrude",
+    "voronoi_tiles.solid.mesh": "TriangleMesh",
+    "voronoi_tiles.solid.solid_job": "SolidJob",
+    "voronoi_tiles.solid.pieces": "SolidPiece",
+    "voronoi_tiles.solid.solid_model": "SolidModel",
     "voronoi_tiles.tile": "Tile TileCopy",
     "voronoi_tiles.tiling": "Tiling",
     "voronoi_tiles.vector.arcs": "Arc LineArc Neighbour ParabolaArc",

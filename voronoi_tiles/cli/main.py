@@ -30,6 +30,7 @@ COMMANDS: Final = (
     "preflight",
     "render",
     "report",
+    "solid",
     "studio",
     "template",
     "watch",

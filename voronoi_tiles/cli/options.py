@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from functools import wraps
 from typing import Any, TypeVar
 
@@ -12,6 +12,7 @@ import click
 from voronoi_tiles.cli.common import SCALE, as_options
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.job_options import Option
+from voronoi_tiles.solid.solid_job import SolidJob
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -156,7 +157,24 @@ def with_job(command: Command) -> Command:
             _refuse_scale()
         return command(job=job, **arguments)
 
-    for name, option in reversed(_OPTIONS.items()):
+    return _with_options(run, _OPTIONS)
+
+
+def with_solid_job(command: Command) -> Command:
+    """Add the options of solids; the command gets `job`."""
+    options = SolidJob.options()
+
+    @wraps(command)
+    def run(**arguments: Any) -> Any:
+        given = {name: value for name in options if (value := arguments.pop(name)) is not None}
+        return command(job=SolidJob(**given), **arguments)
+
+    return _with_options(run, options)
+
+
+def _with_options(command: Any, options: Mapping[str, Option[Any, Any]]) -> Any:
+    """Add options to a command, in their order."""
+    for name, option in reversed(options.items()):
         flags = _SPELLINGS.get(name, (f"--{name.replace('_', '-')}",))
-        run = click.option(*flags, help=as_options(option.help), **_settings(option))(run)
-    return run  # type: ignore[return-value]
+        command = click.option(*flags, help=as_options(option.help), **_settings(option))(command)
+    return command

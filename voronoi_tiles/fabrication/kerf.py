@@ -71,23 +71,40 @@ class Compensation:
         self, change: Callable[[Paths, float], Offset], rings: Paths, size: float, name: str, *, whole: bool
     ) -> Paths:
         """Apply a change to a piece, and note what is lost by it."""
-        try:
-            result = change(rings, size)
-        except OffsetError as error:
+        return changed(change, rings, size, (name, getattr(self.job, name)), self.losses, whole=whole)
+
+
+def changed(
+    change: Callable[[Paths, float], Offset],
+    rings: Paths,
+    size: float,
+    asked: tuple[str, float],
+    losses: list[str],
+    *,
+    whole: bool,
+) -> Paths:
+    """Apply a change of some size to a piece, and note in `losses` what is lost by it.
+
+    `asked` is the option that wants it, and its millimetres. Of a piece that is `whole` all rings must stay. Raises
+    JobError.
+    """
+    name, given = asked
+    try:
+        result = change(rings, size)
+    except OffsetError as error:
+        raise JobError(
+            f"`{name}` cannot be applied at ({error.place.real:.4g}, {error.place.imag:.4g}) mm of the page",
+            remedy=f"Change `{name}` a little, and please report the design.",
+        ) from error
+    for lost in result.lost:
+        place = f"({lost.place.real:.4g}, {lost.place.imag:.4g}) mm"
+        if whole and (lost.kind in ("ring", "neck") or len(result.paths) != len(rings)):
             raise JobError(
-                f"`{name}` cannot be applied at ({error.place.real:.4g}, {error.place.imag:.4g}) mm of the page",
-                remedy=f"Change `{name}` a little, and please report the design.",
-            ) from error
-        given = getattr(self.job, name)
-        for lost in result.lost:
-            place = f"({lost.place.real:.4g}, {lost.place.imag:.4g}) mm"
-            if whole and (lost.kind in ("ring", "neck") or len(result.paths) != len(rings)):
-                raise JobError(
-                    f"`{name}='{given:g}mm'` is too much: {_LOSSES[lost.kind]} at {place} of the page",
-                    remedy=f"Use a smaller `{name}`, or a larger design.",
-                )
-            self.losses.append(f"`{name}='{given:g}mm'`: {_LOSSES[lost.kind]} at {place} of the page")
-        return result.paths
+                f"`{name}='{given:g}mm'` is too much: {_LOSSES[lost.kind]} at {place} of the page",
+                remedy=f"Use a smaller `{name}`, or a larger design.",
+            )
+        losses.append(f"`{name}='{given:g}mm'`: {_LOSSES[lost.kind]} at {place} of the page")
+    return result.paths
 
 
 def _parts(rings: Paths) -> list[Paths]:

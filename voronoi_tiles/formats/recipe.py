@@ -5,8 +5,11 @@ from __future__ import annotations
 import html
 import json
 import re
+import zlib
 from collections.abc import Mapping
+from io import BytesIO
 from typing import Any, Final
+from zipfile import BadZipFile, ZipFile
 
 _HEAD: Final = 4 * 2**20
 """How much of a file is looked through, at its beginning and at its end; bytes. No recipe stands between paths."""
@@ -17,29 +20,37 @@ _SVG_FACT: Final = re.compile(r'([\w-]+)="([^"]*)"')
 _DXF: Final = re.compile(rb"^999\r?\nrecipe (.*?)\r?$", re.MULTILINE)
 _GCODE: Final = re.compile(rb"^; recipe (.*?)\r?$", re.MULTILINE)
 _PDF: Final = re.compile(rb"/Subject <FEFF([0-9A-F]+)>")
+_THREEMF: Final = re.compile(rb'<metadata name="vt:(\w+)">([^<]*)<')
+
+THREEMF_MODEL: Final = "3D/3dmodel.model"
+"""The part of a 3MF file, a zip archive, that holds what it is about."""
+
 _LIGHTBURN: Final = re.compile(rb"<Notes\b[^<>]*?\bNotes=(?:\"([^\"]*)\"|'([^']*)')")
 
 
 def recipe_of(data: bytes) -> Mapping[str, str]:
-    """What an SVG, DXF, PDF, LightBurn or G-code file of ours says of how it was made; nothing for files of others.
+    """What an SVG, DXF, PDF, LightBurn, G-code or 3MF file of ours says of how it was made; nothing for others' files.
 
-    "design" and "job" are JSON, where there are any.
+    "design", and "job" or "solid", are JSON, where there are any.
     """
     head, tail = data[:_HEAD], data[-_HEAD:]
     try:
+        if data.startswith(b"PK"):
+            with ZipFile(BytesIO(data)) as package, package.open(THREEMF_MODEL) as model:
+                head = model.read(_HEAD)
+        if threemf := _THREEMF.findall(head):
+            return {name.decode(): html.unescape(text.decode()) for name, text in threemf}
         if svg := _SVG.search(head):
             facts = {name: html.unescape(text) for name, text in _SVG_FACT.findall(svg[1].decode())}
             return {**facts, "design": html.unescape(svg[2].decode())}
-        if dxf := _DXF.findall(head):
-            return _texts(b"".join(dxf).decode())
+        if lines := _DXF.findall(head) or _GCODE.findall(head):
+            return _texts(b"".join(lines).decode())
         if pdf := _PDF.search(tail) or _PDF.search(head):
             return _texts(bytes.fromhex(pdf[1].decode()).decode("utf-16-be"))
         if notes := _LIGHTBURN.search(tail):
             lines = html.unescape((notes[1] or notes[2] or b"").decode()).splitlines()
             return dict(line.split(": ", 1) for line in lines if ": " in line)
-        if gcode := _GCODE.findall(head):
-            return _texts(b"".join(gcode).decode())
-    except (ValueError, RecursionError):
+    except (ValueError, RecursionError, BadZipFile, KeyError, NotImplementedError, EOFError, zlib.error):
         pass
     return {}
 

@@ -1,0 +1,62 @@
+"""The command `solid`: tiles as solids, to print, and pictures and figures of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from voronoi_tiles.cli.common import (
+    PATH,
+    as_options,
+    refuse_output,
+    reporting,
+    say,
+    say_written,
+    tessellate,
+)
+from voronoi_tiles.cli.options import with_scale, with_solid_job
+
+if TYPE_CHECKING:
+    from voronoi_tiles.solid.solid_job import SolidJob
+    from voronoi_tiles.solid.solid_model import SolidFormat
+
+_SUFFIXES = (".3mf", ".stl", ".png")
+
+
+@click.command()
+@click.argument("design", type=PATH)
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    metavar="FILE",
+    type=PATH,
+    help="The file to write, its format by its suffix: .3mf, .stl, or .png for a picture; - for standard output.",
+)
+@click.option(
+    "--format", "file_format", type=click.Choice(("3mf", "stl", "png")), help="The format on standard output."
+)
+@with_scale
+@with_solid_job
+@click.option("-q", "--quiet", is_flag=True, help="Report only what fails.")
+def solid(design: str, output: str, file_format: SolidFormat | None, job: SolidJob, quiet: bool) -> None:
+    """Write the tiles of a design as solids, proved: one of each, or a sheet of them.
+
+    3MF holds an object for each piece, with its colour, and what it was made from; STL all of them in one, without
+    colours. Neighbours share every point of their walls: printed pieces need a clearance, 0.2mm, to go together.
+    """
+    from voronoi_tiles.solid.extrusion import extrude
+
+    if output == "-" and file_format is None:
+        raise click.UsageError("On standard output the format is not clear: add --format 3mf, stl or png.")
+    refuse_output(design, output, (f".{file_format}",) if file_format else _SUFFIXES)
+    with reporting(design):
+        made = extrude(tessellate(design, quiet=quiet), job)
+        made.save(output, file_format)
+    if quiet:
+        return
+    for note in made.notes:
+        say(as_options(note))
+    say_written(output, made.summary())
+    say(f"proved: {made.proved}")

@@ -1,0 +1,135 @@
+"""The proof of prisms, from the finished meshes: closed, of the right volume, and each beside its neighbours."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import fsum
+from typing import Any, Final
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Complexes, plane
+from voronoi_tiles.base.errors import ProofError
+from voronoi_tiles.base.tolerance import EPSILON
+from voronoi_tiles.fabrication.tile_colouring import neighbour_pairs
+from voronoi_tiles.solid.caps import polygons
+from voronoi_tiles.solid.prism import Prism
+from voronoi_tiles.solid.solid_job import SolidJob
+from voronoi_tiles.vector.complex.period import Period
+
+VOLUME_TOLERANCE: Final = 1e-12
+"""How far the volume of tiles that fill a slab may be from the slab's; relative: what rounding leaves."""
+
+
+@dataclass(frozen=True)
+class PrismProof:
+    """What was proved of the prisms over the tiles of a period.
+
+    Where they fill the slab (`fills`), `volume_error` is how far all together are from the cell's area times the
+    height, relative to it; else how far one is from the exact tile's volume at most, relative to that. `shared` is how
+    many points the outlines have, each of them, bit for bit, a neighbour's as well; None where they are drawn in. Then
+    `apart` is the least distance between neighbours in millimetres.
+    """
+
+    fills: bool
+    volume_error: float
+    shared: int | None
+    apart: float | None
+
+    def __str__(self) -> str:
+        if self.fills:
+            volume = f"volume = cell area x height (relative error {self.volume_error:.1g})"
+        else:
+            volume = f"volumes within {self.volume_error:.1g} of the exact tiles'"
+        shared = "" if self.shared is None else f"; all {self.shared:,} points of outlines are neighbours', bit for bit"
+        apart = "" if self.apart is None else f"; neighbours at least {self.apart:.4g} mm apart"
+        return f"closed; {volume}{shared}{apart}"
+
+    def document(self) -> dict[str, Any]:
+        """The figures, in the types of JSON."""
+        return {
+            "closed": True,
+            "volume_error": self.volume_error,
+            "shared_points": self.shared,
+            "least_distance": self.apart,
+        }
+
+
+def prove_prisms(prisms: Sequence[Prism], period: Period, job: SolidJob) -> PrismProof:
+    """Prove the prisms over the tiles of a period. Raises ProofError where they are not what the job asks for."""
+    meshes = [prism.mesh() for prism in prisms]
+    if not all(mesh.is_closed for mesh in meshes):
+        raise ProofError("a solid is not closed")
+    volumes = [mesh.volume for mesh in meshes]
+    filled = job.clearance == 0.0
+    shared = _shared(prisms, period) if filled else None
+    apart = None if filled else _apart(prisms, period)
+    if apart is not None and apart < job.clearance - 2 * job.accuracy:
+        raise ProofError(f"neighbours are {apart:.4g} mm apart, and not the clearance of {job.clearance:g} mm")
+    if filled and not job.chamfer:
+        slab = period.lattice.det * job.height
+        error = abs(fsum(volumes) - slab) / slab
+        if error > VOLUME_TOLERANCE:
+            raise ProofError(f"the volume of the solids is {error:.1g} off, relative to the cell's")
+        return PrismProof(True, error, shared, None)
+    error = max(_excess(prism, volume, job) for prism, volume in zip(prisms, volumes, strict=True))
+    return PrismProof(False, error, shared, apart)
+
+
+def _excess(prism: Prism, volume: float, job: SolidJob) -> float:
+    """How far a volume is from that of the exact prism, relative to it. Raises ProofError where that is too much.
+
+    Chords within a distance of the exact edge lose as much times its length at most. Between the two faces of a
+    chamfer the volume is that of neither, but bounded by both.
+    """
+
+    def area(points: Complexes, offsets: Any, exact: float) -> tuple[float, float]:
+        """The exact area, and how far that of the chords may be off."""
+        length = sum(float(np.abs(ring - np.roll(ring, 1)).sum()) for ring in np.split(points, offsets[1:-1]))
+        return exact, length * job.accuracy + 64 * EPSILON * length**2
+
+    outer, slack = area(*prism.outer[:3])
+    inner = outer if prism.inner is None else prism.inner.area
+    most = outer * job.height
+    least = most - 2 * job.chamfer * (outer - inner)
+    if not least - slack * job.height <= volume <= most + slack * job.height:
+        raise ProofError(f"a solid has {volume:.6g} cubic millimetres, and not {least:.6g} to {most:.6g}")
+    return max(volume - most, least - volume, 0.0) / most
+
+
+def _shared(prisms: Sequence[Prism], period: Period) -> int:
+    """How many points outlines have. Raises ProofError where one is no neighbour's as well, bit for bit."""
+    around: list[list[Complexes]] = [[] for _ in prisms]
+    for p, q, i, j in neighbour_pairs(period).tolist():
+        for one, other, sign in ((p, q, 1), (q, p, -1)):
+            step = np.array([[sign * i, sign * j]], np.intp)
+            around[one].append(period.outlines(np.array([other]), step)[0].start)
+    for prism, beside in zip(prisms, around, strict=True):
+        lone = ~np.isin(prism.outer.points, np.concatenate(beside))
+        if lone.any():
+            place = prism.outer.points[lone][0]
+            raise ProofError(f"neighbours do not share the point ({place.real:.6g}, {place.imag:.6g})")
+    return sum(len(prism.outer.points) for prism in prisms)
+
+
+def _apart(prisms: Sequence[Prism], period: Period) -> float:
+    """The least distance between the faces of neighbours; millimetres."""
+    import shapely
+
+    shapes = [
+        shapely.MultiPolygon(
+            [
+                (plane(points[loops[0]]), [plane(points[hole]) for hole in loops[1:]])
+                for loops in polygons(points, prism.outer.offsets)
+            ]
+        )
+        for prism in prisms
+        for points in [prism.outer.points]
+    ]
+    pairs = neighbour_pairs(period)
+    shifts = plane(period.shifts(pairs[:, 2:]))
+    return min(
+        float(shapely.distance(shapes[p], shapely.transform(shapes[q], lambda z, shift=shift: z + shift)))
+        for (p, q), shift in zip(pairs[:, :2].tolist(), shifts, strict=True)
+    )

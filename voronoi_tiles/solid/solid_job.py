@@ -1,0 +1,131 @@
+"""What is to be made of a tiling in three dimensions: how high, how far apart, and where."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+from typing import Any, Final
+
+from voronoi_tiles.fabrication.job import Job
+from voronoi_tiles.fabrication.job_limits import ACCURACY_MIN
+from voronoi_tiles.fabrication.job_options import (
+    JobError,
+    Length,
+    Option,
+    SheetSize,
+    length,
+    read_angle,
+    read_colours,
+    read_sheet,
+)
+
+HEIGHT_MM: Final = 3.0
+"""How high solids are where nobody says; millimetres: a board as they are sold."""
+
+HEIGHT_MIN: Final = 0.01
+"""Least height; millimetres. A tenth of the thinnest layer that is printed."""
+
+CHORDS_MM: Final = 0.01
+"""How far the walls of solids may be from the exact ones, where nobody says; millimetres: a fortieth of a nozzle."""
+
+_STEEP: Final = 4.0
+"""A chamfer has so many accuracies at least: else chords within the accuracy could cross."""
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class SolidJob:
+    """What is to be made of a tiling as solids; lengths are numbers of millimetres or texts with a unit, "3mm".
+
+    Without a `sheet` one of each tile is made. Raises JobError for values that cannot be, and that contradict each
+    other.
+
+    >>> import voronoi_tiles as vt
+    >>> vt.SolidJob(height="5mm", clearance=0.2)
+    SolidJob(height=5.0, clearance=0.2)
+    """
+
+    height: Length = length(HEIGHT_MM, "How high the solids are [default: 3mm].", least=HEIGHT_MIN, shown="HEIGHT")
+    clearance: Length = length(
+        0.0, "Leave this much between neighbours: each tile is drawn in by half of it, so that printed ones fit."
+    )
+    chamfer: Length = length(0.0, "Break the upper and the lower rim by so much, at 45 degrees.")
+    sheet: Option[SheetSize, tuple[float, float] | str | None] = Option(
+        None,
+        read_sheet,
+        "Fill a print bed, 200x200mm, or what the paths of an SVG or DXF file bound [default: one of each tile].",
+        kind="text",
+        shown="WxH|FILE",
+    )
+    margin: Length = length(0.0, "Keep this distance from the edge of the sheet.")
+    rotate: Option[float, float] = Option(
+        0.0, read_angle, "Turn the tiles counter-clockwise.", kind="angle", shown="DEGREES"
+    )
+    gap: Option[float | str | None, float | None] = length(None, "Pull tiles apart until they keep this distance.")
+    colours: Option[str | int, str | int] = Option(
+        "none",
+        read_colours,
+        "Colour the tiles, a filament each: by N colours or the fewest, so that no neighbours are alike; by site, "
+        "handedness or orientation. Each colour is one object of a 3MF file.",
+        kind="text",
+        shown="N|fewest|site|handedness|orientation",
+    )
+    accuracy: Length = length(
+        CHORDS_MM, "How far walls may be from the exact ones [default: 0.01mm].", least=ACCURACY_MIN, most=1.0
+    )
+
+    def __post_init__(self) -> None:
+        if 2 * self.chamfer >= self.height:
+            raise JobError(
+                f"two rims with `chamfer='{self.chamfer:g}mm'` leave nothing of a `height` of {self.height:g} mm",
+                remedy="Use a smaller `chamfer`, or more `height`.",
+            )
+        for name in ("chamfer", "clearance"):
+            if 0.0 < getattr(self, name) < _STEEP * self.accuracy:
+                raise JobError(
+                    f"`{name}='{getattr(self, name):g}mm'` is hardly more than the `accuracy` of {self.accuracy:g} mm",
+                    remedy=f"Give a finer `accuracy`, or leave `{name}` out.",
+                )
+        self.flat  # noqa: B018 - what cannot be laid out is refused here
+
+    def __repr__(self) -> str:
+        return f"SolidJob({', '.join(f'{name}={value!r}' for name, value in self._said())})"
+
+    @classmethod
+    def options(cls) -> dict[str, Option[Any, Any]]:
+        """The options by their names, in the order of the fields."""
+        return {field.name: vars(cls)[field.name] for field in fields(cls)}
+
+    @property
+    def flat(self) -> Job:
+        """The job that lays the tiles out; what drawing them in makes room for needs no pulling apart."""
+        gap = None if self.gap is None else max(self.gap - self.clearance, 0.0)
+        return Job(
+            sheet=self.sheet, margin=self.margin, rotate=self.rotate, gap=gap, colours=self.colours, edges="pieces"
+        )
+
+    @property
+    def insets(self) -> bool:
+        """Whether anything lies within the tiles' outlines: by half a clearance, or by a chamfer."""
+        return self.clearance > 0.0 or self.chamfer > 0.0
+
+    def recipe(self) -> dict[str, Any]:
+        """What differs from the defaults, in the types of JSON."""
+        return {name: list(value) if isinstance(value, tuple) else value for name, value in self._said()}
+
+    @property
+    def files(self) -> tuple[str, ...]:
+        """The files that it reads: the sheet's drawing."""
+        return (os.fspath(self.sheet),) if isinstance(self.sheet, str) else ()
+
+    def _said(self) -> Iterator[tuple[str, Any]]:
+        """The options that differ from their defaults."""
+        for name, option in self.options().items():
+            value = getattr(self, name)
+            if value != option.default:
+                yield name, value
+
+
+SolidJob.__doc__ = f"{SolidJob.__doc__}\n" + "\n".join(
+    f"    - `{name}`: {option.help}" for name, option in SolidJob.options().items()
+)

@@ -1,0 +1,84 @@
+"""Solids that fill a slab: pieces, each a closed mesh with its colour, and what is said and proved of them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Final, Literal, get_args
+
+import numpy as np
+
+from voronoi_tiles.base.arguments import path_name
+from voronoi_tiles.base.arrays import Floats
+from voronoi_tiles.base.errors import ArgumentError
+from voronoi_tiles.base.files import refuse_overwriting, writing
+from voronoi_tiles.base.text import counted
+from voronoi_tiles.fabrication.exporting import format_of
+from voronoi_tiles.solid.pieces import SolidPiece
+from voronoi_tiles.solid.stl import write_stl
+from voronoi_tiles.solid.threemf import write_threemf
+
+SolidFormat = Literal["3mf", "stl"]
+
+SOLID_FORMATS: Final[tuple[SolidFormat, ...]] = get_args(SolidFormat)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SolidModel:
+    """Pieces that lie on the plane z = 0, in millimetres, and all that files say of them.
+
+    `colours` are "#rrggbb"; where `grouped`, all pieces of a colour are one object of a file. `recipe` is what they can
+    be made from again, `proof` what was proved of them, in the types of JSON, and `proved` the same in a line; `notes`
+    say in sentences what they have lost. `files` are those that they were made from, which are not overwritten.
+    """
+
+    title: str
+    pieces: tuple[SolidPiece, ...]
+    colours: tuple[str, ...]
+    recipe: Mapping[str, str]
+    proof: Mapping[str, Any]
+    proved: str
+    grouped: bool = False
+    notes: tuple[str, ...] = ()
+    files: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return f"<SolidModel: {self.summary()}>"
+
+    @property
+    def bounds(self) -> Floats:
+        """The lowest and the highest corner of the box around all pieces: float64 (2, 3), millimetres."""
+        points = np.concatenate([piece.mesh.vertices for piece in self.pieces])
+        return np.stack((points.min(axis=0), points.max(axis=0)))
+
+    @property
+    def volume(self) -> float:
+        """The volume of all pieces in cubic millimetres."""
+        return float(np.sum([piece.mesh.volume for piece in self.pieces]))
+
+    def save(self, path: str | os.PathLike[str], file_format: SolidFormat | None = None) -> None:
+        """Write a file, whole or not at all: 3MF or STL, by its suffix or as said.
+
+        Raises OutputError, also where it was made from this file, and ArgumentError for another format.
+        """
+        name = path_name("path", path)
+        form = format_of(name, SOLID_FORMATS) if file_format is None else file_format
+        if form not in SOLID_FORMATS:
+            raise ArgumentError(f"no solid can be written as {form!r}", remedy=f"Use {' or '.join(SOLID_FORMATS)}.")
+        refuse_overwriting([name], self.files)
+        with writing(name) as file:
+            if form == "stl":
+                write_stl(self.pieces, self.title, file)
+            else:
+                write_threemf(self.pieces, self.title, self.colours, self.recipe, file, grouped=self.grouped)
+
+    def summary(self) -> str:
+        """Say in a line what they come to."""
+        x, y, z = (self.bounds[1] - self.bounds[0]).tolist()
+        triangles = sum(len(piece.mesh.triangles) for piece in self.pieces)
+        colours = f" in {counted(len(self.colours), 'colour')}" if self.grouped else ""
+        return (
+            f"{counted(len(self.pieces), 'solid')}{colours}, {x:.5g} x {y:.5g} x {z:.5g} mm, "
+            f"{self.volume / 1000:.4g} cm\N{SUPERSCRIPT THREE}, {triangles:,} triangles"
+        )
