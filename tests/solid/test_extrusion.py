@@ -18,6 +18,7 @@ from voronoi_tiles import GROUPS, Design, JobError, ProofError, SolidJob, Triang
 from voronoi_tiles.solid import extrusion
 from voronoi_tiles.solid.extrusion_proof import prove_prisms
 from voronoi_tiles.solid.prism import Face, Prism
+from voronoi_tiles.solid.slab import Slab
 
 
 def judged(mesh: TriangleMesh) -> Any:
@@ -246,7 +247,7 @@ def test_a_tile_that_is_eaten_is_refused(
 def test_the_proof_sees_what_is_wrong(fault: Callable[[Any], Any], job: SolidJob, message: str) -> None:
     """Outlines that are not the tiles', by the least."""
     tiles = tiling("p4")
-    slab = extrusion.Slab.of(tiles.design, tiles.tessellation, job)
+    slab = Slab.of(tiles.design, tiles.tessellation, job)
     prisms = slab.prisms()
     prove_prisms(prisms, slab.lines, job)
     wrong = [replace(prism, outer=prism.outer._replace(points=fault(prism.outer.points))) for prism in prisms]
@@ -257,6 +258,6 @@ def test_the_proof_sees_what_is_wrong(fault: Callable[[Any], Any], job: SolidJob
 def test_the_proof_sees_a_slab_that_is_not_filled() -> None:
     """A height that is off by a billionth."""
     tiles = tiling("p4")
-    slab = extrusion.Slab.of(tiles.design, tiles.tessellation, SolidJob())
+    slab = Slab.of(tiles.design, tiles.tessellation, SolidJob())
     with pytest.raises(ProofError, match="volume of the solids"):
         prove_prisms(slab.prisms(), slab.lines, SolidJob(height=3.000000003))

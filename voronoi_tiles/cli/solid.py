@@ -39,21 +39,29 @@ _SUFFIXES = (".3mf", ".stl", ".png")
 )
 @with_scale
 @with_solid_job
+@click.option(
+    "--size", type=click.IntRange(1, 4000), metavar="N", help="The longer side of a picture in pixels [default: 1200]."
+)
 @click.option("-q", "--quiet", is_flag=True, help="Report only what fails.")
-def solid(design: str, output: str, file_format: SolidFormat | None, job: SolidJob, quiet: bool) -> None:
+def solid(
+    design: str, output: str, file_format: SolidFormat | None, job: SolidJob, size: int | None, quiet: bool
+) -> None:
     """Write the tiles of a design as solids, proved: one of each, or a sheet of them.
 
     3MF holds an object for each piece, with its colour, and what it was made from; STL all of them in one, without
-    colours. Neighbours share every point of their walls: printed pieces need a clearance, 0.2mm, to go together.
+    colours. Neighbours share every point of their walls: printed pieces need a clearance, 0.2mm, to go together. A
+    picture shows a tile and its neighbours, pulled apart, or the sheet.
     """
-    from voronoi_tiles.solid.extrusion import extrude
+    from voronoi_tiles.solid.extrusion import extrude, surrounded
 
     if output == "-" and file_format is None:
         raise click.UsageError("On standard output the format is not clear: add --format 3mf, stl or png.")
     refuse_output(design, output, (f".{file_format}",) if file_format else _SUFFIXES)
     with reporting(design):
-        made = extrude(tessellate(design, quiet=quiet), job)
-        made.save(output, file_format)
+        tiling = tessellate(design, quiet=quiet)
+        drawn = output.lower().endswith(".png") or file_format == "png"
+        made = surrounded(tiling, job) if drawn and job.sheet is None else extrude(tiling, job)
+        made.save(output, file_format, size=size)
     if quiet:
         return
     for note in made.notes:

@@ -14,12 +14,14 @@ from voronoi_tiles.base.arrays import Floats
 from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.files import refuse_overwriting, writing
 from voronoi_tiles.base.text import counted
+from voronoi_tiles.base.version import __version__
 from voronoi_tiles.fabrication.exporting import format_of
+from voronoi_tiles.formats.png import PngStream, Sink
 from voronoi_tiles.solid.pieces import SolidPiece
 from voronoi_tiles.solid.stl import write_stl
 from voronoi_tiles.solid.threemf import write_threemf
 
-SolidFormat = Literal["3mf", "stl"]
+SolidFormat = Literal["3mf", "stl", "png"]
 
 SOLID_FORMATS: Final[tuple[SolidFormat, ...]] = get_args(SolidFormat)
 
@@ -57,8 +59,12 @@ class SolidModel:
         """The volume of all pieces in cubic millimetres."""
         return float(np.sum([piece.mesh.volume for piece in self.pieces]))
 
-    def save(self, path: str | os.PathLike[str], file_format: SolidFormat | None = None) -> None:
-        """Write a file, whole or not at all: 3MF or STL, by its suffix or as said.
+    def save(
+        self, path: str | os.PathLike[str], file_format: SolidFormat | None = None, *, size: int | None = None
+    ) -> None:
+        """Write a file, whole or not at all: 3MF, STL, or a picture as PNG, by its suffix or as said.
+
+        The longer side of a picture has `size` pixels, None for 1200.
 
         Raises OutputError, also where it was made from this file, and ArgumentError for another format.
         """
@@ -68,10 +74,22 @@ class SolidModel:
             raise ArgumentError(f"no solid can be written as {form!r}", remedy=f"Use {' or '.join(SOLID_FORMATS)}.")
         refuse_overwriting([name], self.files)
         with writing(name) as file:
-            if form == "stl":
-                write_stl(self.pieces, self.title, file)
-            else:
-                write_threemf(self.pieces, self.title, self.colours, self.recipe, file, grouped=self.grouped)
+            match form:
+                case "stl":
+                    write_stl(self.pieces, self.title, file)
+                case "3mf":
+                    write_threemf(self.pieces, self.title, self.colours, self.recipe, file, grouped=self.grouped)
+                case "png":
+                    self._draw(file, size)
+
+    def _draw(self, file: Sink, size: int | None) -> None:
+        """Write a shaded picture."""
+        from voronoi_tiles.solid.solid_picture import SIZE, picture
+
+        pixels = picture(self.pieces, self.colours, SIZE if size is None else size)
+        text = {"Title": self.title, "Software": f"voronoi-tiles {__version__}"}
+        with PngStream(file, pixels.shape[1], pixels.shape[0], text=text) as png:
+            png.write(pixels)
 
     def summary(self) -> str:
         """Say in a line what they come to."""

@@ -1,0 +1,72 @@
+"""The command `solid`: files, what is said of them, and what is refused with one message and nothing written."""
+
+from __future__ import annotations
+
+import io
+import json
+import zipfile
+from pathlib import Path
+
+import pytest
+from helpers.outlines import CommandLine
+
+from voronoi_tiles.designs.starters import starter_text
+from voronoi_tiles.formats.recipe import recipe_of
+
+
+@pytest.fixture
+def here(tmp_path: Path) -> Path:
+    """A folder with a design."""
+    (tmp_path / "bird.toml").write_text(starter_text("p4"), encoding="utf-8")
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", ["a.3mf", "a.stl", "a.png"])
+def test_a_file_is_written_and_said(name: str, here: Path, voronoi_tiles: CommandLine) -> None:
+    """What there is in it, and what was proved; the same bytes on standard output, and nothing is said with --quiet."""
+    call = ("solid", "bird.toml", "--height", "4mm", "--clearance", "0.2mm", "--size", "90")
+    done = voronoi_tiles(*call, "-o", name, cwd=here)
+    assert (done.returncode, done.stdout) == (0, "")
+    written, proved = done.stderr.splitlines()
+    assert written.startswith(f"wrote {name}: ")
+    assert "x 4 mm" in written
+    assert proved.startswith("proved: closed; volumes within ")
+    assert proved.endswith("mm apart")
+    again = voronoi_tiles(*call, "-o", f"b{Path(name).suffix}", "--quiet", cwd=here)
+    assert (again.returncode, again.stderr) == (0, "")
+    assert (here / f"b{Path(name).suffix}").read_bytes() == (here / name).read_bytes()
+
+
+def test_the_recipe_says_what_was_asked(here: Path, voronoi_tiles: CommandLine) -> None:
+    """Scaled as well: the design is that which was made."""
+    call = ("solid", "bird.toml", "-o", "a.3mf", "--tile-width", "50mm", "--chamfer", "0.5", "--sheet", "200x200mm")
+    assert voronoi_tiles(*call, "--colors", "fewest", cwd=here).returncode == 0
+    data = (here / "a.3mf").read_bytes()
+    assert json.loads(recipe_of(data)["solid"]) == {"chamfer": 0.5, "sheet": [200.0, 200.0], "colours": "fewest"}
+    with zipfile.ZipFile(io.BytesIO(data)) as package:
+        assert package.namelist() == ["[Content_Types].xml", "_rels/.rels", "3D/3dmodel.model"]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("-o", "a.step"), "Error: a.step is no name of such a file: give it the suffix .3mf or .stl or .png."),
+        (("-o", "a.3mf", "--height", "0"), "Error: --height 0 mm cannot be. Give a length from 0.01 to 100,000 mm."),
+        (("-o", "a.3mf", "--clearance", "80mm"), "Error: bird.toml: --clearance 80mm is too much: a piece vanishes at"),
+        (("-o", "a.3mf", "--chamfer", "2mm"), "Error: two rims with --chamfer 2mm leave nothing of a --height of 3 mm"),
+        (("-o", "a.3mf", "--sheet", "5x5mm"), "Error: bird.toml: no whole tile fits on the sheet"),
+        (("-o", "none/a.3mf"), "Error: bird.toml: cannot write none/a.3mf: "),
+        (("-o", "-"), "Error: On standard output the format is not clear: add --format 3mf, stl or png."),
+        (("-o", "bird.toml", "--format", "stl"), "Error: bird.toml is no name of such a file"),
+        (("-o", "/dev/full", "--format", "stl"), "Error: bird.toml: cannot write /dev/full: No space left on device."),
+    ],
+)
+def test_what_cannot_be_is_refused(
+    options: tuple[str, ...], message: str, here: Path, voronoi_tiles: CommandLine
+) -> None:
+    """One message, exit code 2, nothing written."""
+    done = voronoi_tiles("solid", "bird.toml", *options, cwd=here)
+    assert done.returncode == 2
+    assert done.stderr.startswith(message)
+    assert done.stderr.count("\n") == 1
+    assert [path.name for path in here.iterdir()] == ["bird.toml"]
