@@ -70,3 +70,33 @@ def test_what_cannot_be_is_refused(
     assert done.stderr.startswith(message)
     assert done.stderr.count("\n") == 1
     assert [path.name for path in here.iterdir()] == ["bird.toml"]
+
+
+def test_a_report_is_printed(here: Path, voronoi_tiles: CommandLine) -> None:
+    """As a table, and as JSON, with the density that is given."""
+    call = ("solid", "bird.toml", "-o", "a.stl", "--height", "10mm")
+    table = voronoi_tiles(*call, "--report", cwd=here)
+    assert table.returncode == 0
+    assert "9 cm³" in table.stdout
+    assert "11.16 g, solid, at 1.24 g/cm³" in table.stdout
+    figures = json.loads(voronoi_tiles(*call, "--json", "--density", "2", "--quiet", cwd=here).stdout)
+    assert figures["volume"] == pytest.approx(9000.0)
+    assert figures["mass"] == pytest.approx(18.0)
+    assert figures["proof"]["closed"] is True
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("-o", "a.stl", "--density", "2"), "--density is for the mass"),
+        (("-o", "-", "--format", "stl", "--json"), "The report goes to standard output"),
+    ],
+)
+def test_a_report_that_has_no_place_is_refused(
+    options: tuple[str, ...], message: str, here: Path, voronoi_tiles: CommandLine
+) -> None:
+    """Exit code 2, nothing written."""
+    done = voronoi_tiles("solid", "bird.toml", *options, cwd=here)
+    assert (done.returncode, done.stdout) == (2, "")
+    assert message in done.stderr
+    assert [path.name for path in here.iterdir()] == ["bird.toml"]

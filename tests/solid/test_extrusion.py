@@ -87,7 +87,7 @@ def test_a_clearance_parts_neighbours(name: str) -> None:
     assert len(parts) >= len(solid.pieces)
     one, other = np.triu_indices(len(parts), 1)
     apart = shapely.distance(parts[one], parts[other])
-    assert apart.min() == pytest.approx(0.3, abs=0.02)
+    assert 0.3 <= apart.min() <= 0.32
     tile = tiling(name)[0]
     piece = next(piece for piece in solid.pieces if piece.site == tile.name)
     outline = tile.to_shapely(accuracy=0.001 / tiling(name).design.unit_mm)
@@ -240,9 +240,10 @@ def test_a_tile_that_is_eaten_is_refused(
         (lambda z: z * 1.001, SolidJob(), "do not share the point"),
         (lambda z: np.where(np.arange(len(z)) == 3, z + 1e-12, z), SolidJob(), "do not share the point"),
         (lambda z: z * 1.05, SolidJob(clearance=0.2), "apart"),
+        (lambda z: z * 1.0005, SolidJob(clearance=0.2), "apart"),
         (lambda z: z * 0.99, SolidJob(clearance=0.2), "cubic millimetres"),
     ],
-    ids=["too large", "a point beside its place", "too near", "too small"],
+    ids=["too large", "a point beside its place", "too near", "a little too near", "too small"],
 )
 def test_the_proof_sees_what_is_wrong(fault: Callable[[Any], Any], job: SolidJob, message: str) -> None:
     """Outlines that are not the tiles', by the least."""

@@ -79,9 +79,10 @@ def test_a_box_shows_three_faces_lines_and_a_shadow() -> None:
     assert grey.sum() > 500
 
 
-def test_the_neighbours_are_shown_apart() -> None:
-    """One tile and all six around it in three colours; none covers another."""
-    model = surrounded(tiling("p3"), SolidJob(height=4))
+@pytest.mark.parametrize("name", ["p3", "pgg-crane"])
+def test_the_neighbours_are_shown_apart(name: str) -> None:
+    """One tile and all around it in three colours; none covers another, though they hook into each other."""
+    model = surrounded(tiling(name), SolidJob(height=4))
     assert len(model.pieces) > 4
     assert len(model.colours) == 3
     boxes = [shapely.union_all(shapely.polygons(piece.mesh.corners[:, :, :2])) for piece in model.pieces]

@@ -130,6 +130,37 @@ def report_text(figures: dict[str, Any]) -> str:
     return page.text()
 
 
+def solid_text(figures: dict[str, Any]) -> str:
+    """Write the figures of solids (solid.solid_report) as tables."""
+    page = _TextTable()
+    page.head(
+        {
+            "volume": f"{figures['volume'] / 1000:.4g} cm³",
+            "mass": f"{figures['mass']:.4g} g, solid, at {figures['density']:g} g/cm³",
+        }
+    )
+    page.table(
+        "Solids",
+        ["site", ">count", ">size mm", ">volume cm³", ">mass g", ">neck mm", ">overhang", ">steepest", "print it"],
+        [
+            (
+                row["site"],
+                f"{row['count']:,}",
+                " x ".join(f"{side:.4g}" for side in row["size"]),
+                f"{row['volume'] / 1000:.4g}",
+                f"{row['mass']:.3g}",
+                "-" if row["neck"] is None else f"{row['neck']:.3g}",
+                f"{row['overhang']:.1%}",
+                f"{row['steepest']:.0f}°",
+                row["up"],
+            )
+            for row in figures["solids"]
+        ],
+    )
+    page.line("The neck is the narrowest at seven levels; overhang is the surface that leans out by more than 45°.")
+    return page.text()
+
+
 def check_text(document: dict[str, Any]) -> str:
     """Write what `check --json` prints as tables."""
     page = _TextTable()

@@ -46,7 +46,8 @@ def extrude(tiling: Tiling, job: SolidJob | None = None) -> SolidModel:
 def surrounded(tiling: Tiling, job: SolidJob) -> SolidModel:
     """What shows in a picture how solids go together: one of them and its neighbours, pulled apart; as `extrude`."""
     slab = Slab.of(tiling.design, tiling.tessellation, replace(job, sheet=None, gap=None)).around()
-    return _model(slab, job.flat.scheme)
+    made = _model(slab, job.flat.scheme)
+    return replace(made, notes=(*made.notes, "neighbours and the room between them are for the picture alone"))
 
 
 def _model(slab: Slab, scheme: str | int) -> SolidModel:

@@ -21,6 +21,9 @@ from voronoi_tiles.vector.complex.period import Period
 VOLUME_TOLERANCE: Final = 1e-12
 """How far the volume of tiles that fill a slab may be from the slab's; relative: what rounding leaves."""
 
+_ROUNDING: Final = 1e-9
+"""By how much less than the clearance neighbours may be apart; relative."""
+
 
 @dataclass(frozen=True)
 class PrismProof:
@@ -65,7 +68,7 @@ def prove_prisms(prisms: Sequence[Prism], period: Period, job: SolidJob) -> Pris
     filled = job.clearance == 0.0
     shared = _shared(prisms, period) if filled else None
     apart = None if filled else _apart(prisms, period)
-    if apart is not None and apart < job.clearance - 2 * job.accuracy:
+    if apart is not None and apart < job.clearance * (1 - _ROUNDING):
         raise ProofError(f"neighbours are {apart:.4g} mm apart, and not the clearance of {job.clearance:g} mm")
     if filled and not job.chamfer:
         slab = period.lattice.det * job.height

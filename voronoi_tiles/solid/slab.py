@@ -17,6 +17,7 @@ from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.kerf import SHORTEST_MM, Compensation, changed
 from voronoi_tiles.fabrication.layout import Layout, PlacedTiles, lay_out
 from voronoi_tiles.fabrication.sheets import read_sheet
+from voronoi_tiles.fabrication.spacing import Stretch
 from voronoi_tiles.fabrication.tile_colouring import neighbour_pairs
 from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.conversion import to_lines
@@ -29,8 +30,11 @@ from voronoi_tiles.solid.solid_job import SolidJob
 from voronoi_tiles.vector.complex.period import Period
 from voronoi_tiles.vector.tessellation import Tessellation
 
-_PULL: Final = 0.3
-"""By how much of the distance between them tiles are pulled apart for a picture."""
+_PULL: Final = 0.07
+"""How far tiles are pulled apart for a picture; a share of a tile's longer side."""
+
+_APART: Final = 1.3
+"""By how much their places are spread where that does not part them; a factor."""
 
 _ARCS: Final = 0.25
 _SHORT: Final = 0.05
@@ -89,19 +93,29 @@ class Slab:
             asked = _Inset(job.flat, budget, width, (name, given))
             return replace(layout.tiles, compensation=asked, _rings={}) if given > 0.0 else None
 
-        half = job.clearance / 2
+        half = job.clearance / 2 + (budget.whole if job.clearance > 0.0 else 0.0)
         return cls(job, layout, lines, inset("clearance", half), inset("chamfer", half + job.chamfer))
 
     def around(self) -> Slab:
-        """The first tile and all that share an edge with it, pulled apart, in the place of those of the job."""
+        """The first tile and all that share an edge with it, pulled apart, in the place of those of the job.
+
+        One that lies within another stays there.
+        """
         pairs = neighbour_pairs(self.layout.period)
         first, second = pairs[pairs[:, 0] == 0, 1:], pairs[pairs[:, 1] == 0]
         beside = np.concatenate([[[0, 0, 0]], first, np.column_stack((second[:, 0], -second[:, 2:]))])
         rows = np.unique(beside, axis=0)
         tile, step = rows[:, 0], rows[:, 1:]
-        centre = self.layout.period.at(self.layout.tiles.centres()[tile], step)
-        home = centre[np.flatnonzero((rows == 0).all(axis=1))[0]]
-        copies = PlacedTiles(tile, step, np.ones(len(tile), np.bool_), _PULL * (centre - home))
+        tiles = self.layout.tiles
+        centre = tiles.period.at(tiles.centres()[tile], step)
+        box = tiles.period.own_boxes[0]
+        gap = _PULL * float((box[2:] - box[:2]).max())
+        try:
+            stretch = tiles.spacing(self.layout.budget.whole).stretch(gap)
+        except ValueError:
+            stretch = Stretch(_APART, 0j)
+        away = centre - centre[(rows == 0).all(axis=1)]
+        copies = PlacedTiles(tile, step, np.ones(len(tile), np.bool_), stretch(away) - away)
         return replace(self, layout=replace(self.layout, copies=copies))
 
     def prisms(self) -> list[Prism]:
@@ -159,8 +173,11 @@ def _face(lines: Paths, area: float, forward: Bools | None = None) -> Face:
 
 
 def _budget(job: SolidJob) -> AccuracyBudget:
-    """How the accuracy is spent: chords only, or arcs that are drawn in exactly, without short segments, as chords."""
-    whole = job.accuracy
+    """How the accuracy is spent: chords only, or arcs that are drawn in exactly, without short segments, as chords.
+
+    Of what is drawn in for a clearance, half of it is drawn in as well: so nothing is left that is nearer.
+    """
+    whole = job.accuracy / 2 if job.clearance > 0.0 else job.accuracy
     if not job.insets:
         return AccuracyBudget(whole, arcs=0.0, short=0.0, chords=whole, cubics=0.0)
     return AccuracyBudget(whole, arcs=_ARCS * whole, short=_SHORT * whole, chords=_CHORDS * whole, cubics=0.0)
