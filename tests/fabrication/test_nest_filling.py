@@ -8,6 +8,8 @@ import shapely
 
 from voronoi_tiles.base.arrays import Complexes, plane
 from voronoi_tiles.fabrication.convex_parts import convex_parts, overlaps
+from voronoi_tiles.fabrication.nest_filling import fill
+from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces
 
 BAY = np.array([0, 10, 10 + 10j, 6 + 10j, 6 + 8j, 8 + 8j, 8 + 2j, 2 + 2j, 2 + 8j, 5 + 8j, 5 + 10j, 10j])
 """A room with a door that is narrower than it; corners of it lie on one line."""
@@ -51,5 +53,82 @@ def test_lines_that_stay_are_overlapped_as_well() -> None:
     """A side of a hole is a polygon of two corners: a square of 2 overlaps one of 10 in a rectangle of 12 x 2."""
     line, square = np.array([[0, 10]]), np.array([[0, 2, 2 + 2j, 2j]])
     (region,) = overlaps(line, square, EVERYWHERE)
-    assert region.equals(shapely.box(-2, -2, 10, 0))
+    assert region.symmetric_difference(shapely.box(-2, -2, 10, 0)).area < 1e-6
     assert not overlaps(line, square, (20.0, 20.0, 30.0, 30.0))
+
+
+SQUARE = np.array([-5 - 5j, 5 - 5j, 5 + 5j, -5 + 5j])
+ELL = np.array([0, 12, 12 + 4j, 4 + 4j, 4 + 12j, 12j]) - (4 + 4j)
+NONE = NestPlaces(np.zeros(0, np.intp), np.zeros(0), np.zeros(0, np.complex128))
+OFFCUT = shapely.union_all(
+    [
+        shapely.Point(30, 30).buffer(29).difference(shapely.Point(36, 33).buffer(7)),
+        shapely.box(70, 0, 84, 13),
+        shapely.box(70, 40, 75, 90),
+    ]
+)
+"""What is left of a sheet: a disc with a hole in it, a rest with room for one, and one with room for none."""
+
+
+def shapes(items: list[NestItem], places: NestPlaces) -> list[shapely.Polygon]:
+    """Pieces where they lie, by shapely."""
+    found = []
+    for k, turn, shift in zip(*(part.tolist() for part in places), strict=True):
+        turned = shapely.affinity.rotate(polygon(items[k].ring), turn, origin=(0, 0))
+        found.append(shapely.affinity.translate(turned, shift.real, shift.imag))
+    return found
+
+
+def overlap(pieces: list[shapely.Polygon]) -> float:
+    """The largest area that two pieces have in common."""
+    one, two = np.triu_indices(len(pieces), 1)
+    return float(shapely.area(shapely.intersection(np.array(pieces)[one], np.array(pieces)[two])).max())
+
+
+def test_a_region_with_holes_and_parts_is_filled_until_nothing_fits() -> None:
+    """By shapely all pieces lie in it and none on another; of 2,000 places drawn at random none is free."""
+    items = [NestItem(SQUARE, 0.5, (0.0, 30.0)), NestItem(ELL, 0.5, (0.0, 90.0, 180.0, 270.0))]
+    places = fill(items, OFFCUT, NONE)
+    pieces = shapes(items, places)
+    assert overlap(pieces) < 1e-6
+    assert max(piece.difference(OFFCUT).area for piece in pieces) < 1e-6
+    counts = np.bincount(places.item)
+    assert abs(counts[0] - counts[1]) <= 2
+    assert sum(piece.bounds[0] > 60 for piece in pieces) == 1
+    free = OFFCUT.difference(shapely.union_all(pieces)).buffer(1e-6)
+    random = np.random.default_rng(7)
+    for k in range(2):
+        count = 1000
+        turn, z = random.choice(items[k].turns or (), count), random.uniform(0, 90, (2 * count, 2)).view(complex)[:, 0]
+        tried = NestPlaces(np.full(count, k), turn, z[:count])
+        assert not any(free.contains(piece) for piece in shapes(items, tried))
+
+
+def test_pieces_are_laid_beside_those_that_lie_there_the_lowest_place_first() -> None:
+    """Squares of 10 beside one on a strip of 45 x 10: two to its right; then a row above them."""
+    items = [NestItem(SQUARE, 1.0, (0.0,))]
+    laid = NestPlaces(np.array([0]), np.zeros(1), np.array([12 + 5.005j]))
+    places = fill(items, shapely.box(0, 0, 45, 10.01), laid)
+    assert np.round(places.shift, 3).tolist() == [22 + 5j, 32 + 5j]
+    places = fill(items, shapely.box(0, 0, 45, 21), laid)
+    assert np.round(places.shift[:2].imag, 3).tolist() == [5, 5]
+    assert len(places.item) == 2 + 3
+    assert not len(fill(items, shapely.box(0, 0, 45, 9.9), NONE).item)
+
+
+def test_no_more_are_laid_than_asked_for_and_the_same_ones_again() -> None:
+    """So many of each item at most; a search that no clock ends is repeatable."""
+    items = [NestItem(SQUARE, 0.3, None), NestItem(ELL, 0.7, None)]
+    places, again = (fill(items, shapely.box(0, 0, 40, 40), NONE, demand=np.array([2, 1])) for _ in range(2))
+    assert np.bincount(places.item).tolist() == [2, 1]
+    for one, other in zip(places, again, strict=True):
+        assert one.tobytes() == other.tobytes()
+
+
+def test_outlines_may_come_nearer_to_the_edge_than_polygons_to_each_other() -> None:
+    """Squares of 10 that keep 2 from each other, and nothing from the edge: two in a strip of 22, and none too many."""
+    items = [NestItem(SQUARE * 1.2, 1.0, (0.0,))]
+    places = fill(items, shapely.box(0, 0, 22.01, 10.01), NONE, outlines=[SQUARE])
+    assert len(places.item) == 2
+    assert abs(places.shift[1] - places.shift[0]) >= 12
+    assert len(fill(items, shapely.box(0, 0, 21.9, 10.01), NONE, outlines=[SQUARE]).item) == 1

@@ -7,11 +7,14 @@ simple polygons, 1983, for joining them: at most four times as many parts as the
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, plane
+
+_LARGER: Final = 1e-8
+"""By how much sums are larger than they are, a share, lest rounding leaves cracks between those of neighbours."""
 
 
 def convex_parts(ring: Complexes) -> Complexes:
@@ -93,6 +96,8 @@ def overlaps(stays: Complexes, moves: Complexes, within: tuple[float, float, flo
     both = np.concatenate((sides[stay], other_sides[move]), axis=1)
     order = np.argsort(np.mod(np.angle(both), 2 * np.pi), axis=1, kind="stable")
     around = (corner[stay] + other_corner[move])[:, None] + np.cumsum(np.take_along_axis(both, order, axis=1), axis=1)
+    middle = around.mean(axis=1)[:, None]
+    around = middle + (1.0 + _LARGER) * (around - middle)
     return list(shapely.polygons(plane(around.ravel()).reshape(*around.shape, 2)))
 
 
