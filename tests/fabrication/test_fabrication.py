@@ -36,7 +36,7 @@ from svgelements import Path as SvgPath
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.job_report import report_figures
 from voronoi_tiles.fabrication.layout import FRAME
-from voronoi_tiles.fabrication.product import Product, make_colours
+from voronoi_tiles.fabrication.product import Product, make_several
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
 
 
@@ -334,7 +334,7 @@ def test_colours_are_proper_and_the_fewest(name: str) -> None:
 def test_files_have_all_pieces_once() -> None:
     """One drawing for each colour: together they are the drawing with layers."""
     tiles, job = tiling("pg-wave"), Job(sheet=(170.0, 150.0), kerf=0.3, colours="files", labels="number")
-    at_once = make_colours(tiles.design, tiles.tessellation, job)
+    at_once = make_several(tiles.design, tiles.tessellation, job)
     assert [name for name, _ in at_once] == [str(k + 1) for k in range(len(at_once))]
     parts = [tiles.make(replace(job, only_colour=number)) for number in range(len(at_once))]
     for part, (_, same) in zip(parts, at_once, strict=True):
@@ -347,7 +347,7 @@ def test_files_have_all_pieces_once() -> None:
         assert np.array_equal(np.sort_complex(layer.paths.start), start)
     assert sum(len(work(part, "engrave").start) for part in parts) > 0
     tiles = squares()
-    name, frame = make_colours(tiles.design, tiles.tessellation, Job(sheet=(90.0, 90.0), fit="frame", colours="files"))[
+    name, frame = make_several(tiles.design, tiles.tessellation, Job(sheet=(90.0, 90.0), fit="frame", colours="files"))[
         -1
     ]
     assert name == "frame"

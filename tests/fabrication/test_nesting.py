@@ -26,7 +26,8 @@ from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.layout import Layout, Piece
 from voronoi_tiles.fabrication.nest_patterns import no_fit, piece_patterns
 from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces, most_pieces
-from voronoi_tiles.fabrication.nesting import misplaced, nest, placed
+from voronoi_tiles.fabrication.nested_pieces import misplaced, placed
+from voronoi_tiles.fabrication.nested_sheets import Nesting
 from voronoi_tiles.fabrication.product import _Plan
 from voronoi_tiles.formats.recipe import recipe_of
 
@@ -107,7 +108,7 @@ def test_with_a_grain_pieces_lie_as_in_the_picture_or_upside_down() -> None:
     """Each piece is turned against one of the picture by 0 or 180 degrees, and is so of each orientation there is."""
     tiles = tiling("p4-hook")
     picture = layout_of(tiles, **JOB)
-    laid = nest(picture, Job(**NESTED, grain=True), search=False)
+    laid, _ = Nesting.of(picture, Job(**NESTED, grain=True)).sheet(search=False)
     turns = Counter(round(piece.turn) % 180 for piece in laid.pieces)
     own = {round(np.degrees(np.angle(picture.tiles.page.after(motion)[0]))) % 180 for motion in picture.period.motion}
     assert set(turns) == own == {0, 90}
@@ -365,3 +366,91 @@ def test_what_changes_nothing_about_nesting_is_said(job: dict[str, Any], said: s
     """Options of a search that is not made, and `auto` where it has nothing to do."""
     assert [note for note in hooks().make(Job(**{**JOB, **job})).notes if said in note]
     assert not [note for note in hooks().make(Job(**JOB)).notes if "nest" in note or "changes nothing" in note]
+
+
+PAIR = """schema = 1
+group = "p1"
+cell = { a = 40, b = 30, angle = 80 }
+[[site]]
+name = "bird"
+strokes = [{ segment = [[5, 4], [16, 20]] }]
+[[site]]
+name = "moth"
+strokes = [{ point = [32, 20] }]
+"""
+"""Two sites, of which different numbers are wanted."""
+
+
+@cache
+def pair() -> Tiling:
+    """The tiling of PAIR."""
+    return Design.loads(PAIR).tessellate()
+
+
+def test_so_many_pieces_of_each_site_go_on_as_many_sheets_as_they_take(tmp_path: Path) -> None:
+    """Files are numbered, hold what was asked for, each apart and on its sheet, and are made again by `layout`."""
+    job: dict[str, Any] = {**JOB, "layout": "auto", "count": {"bird": 8, "moth": 20}, "sheets": 4}
+    written = pair().export(tmp_path / "all.svg", job=Job(**job))
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["all-1.svg", "all-2.svg"]
+    products = [product for _, product in written if product is not None]
+    sites = np.concatenate([product.pieces.site for product in products])
+    assert np.bincount(sites).tolist() == [8, 20]
+    for path, product in written:
+        assert product is not None
+        shapes = contour_shapes(cuts(product))
+        one, two = np.triu_indices(len(shapes), 1)
+        assert shapely.distance(np.array(shapes)[one], np.array(shapes)[two]).min() >= 1 - 1e-4
+        assert shapely.total_bounds(shapes).min() >= 5 - 1e-6
+        again = tmp_path / "again.svg"
+        pair().export(again, job=Job(**JOB, layout=path))
+        assert again.read_bytes() == Path(path).read_bytes()
+
+
+def test_a_count_that_does_not_fit_is_refused_with_what_does(tmp_path: Path) -> None:
+    """How many fit, and how many sheets all would take, which then do; nothing is left of it."""
+    job: dict[str, Any] = {**JOB, "layout": "auto", "count": "bird=8,moth=20"}
+    with pytest.raises(
+        JobError, match=r"`count`: \d+ of 28 pieces fit on 1 sheet, and all would take 2\. Use `sheets=2`"
+    ):
+        pair().export(tmp_path / "all.svg", job=Job(**job))
+    assert not list(tmp_path.iterdir())
+    with pytest.raises(JobError, match=r"no site is called 'owl'. Its sites are bird, moth"):
+        pair().make(Job(**{**job, "count": "owl=8"}))
+
+
+def test_as_many_as_asked_for_and_no_more_are_nested() -> None:
+    """On one sheet, which is one drawing; those that are turned over have their share; none of another site."""
+    made = hooks().make(Job(**JOB, layout="auto", count=6))
+    assert (made.pieces.count, int(made.pieces.turned_over.sum())) == (6, 3)
+    assert pair().make(Job(**JOB, layout="auto", count="moth=3")).pieces.site.tolist() == [1, 1, 1]
+
+
+@pytest.mark.parametrize("count", ["x", "", "bird=-1", "bird=0", "bird=1,bird=2", "bird=10001", True, {"bird": 1.5}])
+def test_counts_that_cannot_be_are_refused(count: object) -> None:
+    """With what can be given instead."""
+    with pytest.raises(JobError, match=r"Give a number for every site, 40, or for some, bird=40,moth=12"):
+        Job(**JOB, layout="nested", count=count)
+
+
+@pytest.mark.parametrize(
+    ("job", "message"),
+    [
+        ({"sheets": 3}, "`sheets` are for a `count` of pieces"),
+        ({"count": 3}, "`layout='tessellated'` lays others"),
+        ({"count": 3, "layout": "all-1.svg"}, "`layout='all-1.svg'` lays others"),
+        ({"count": 3, "layout": "auto", "fit": "clip"}, "nests whole tiles"),
+    ],
+)
+def test_counts_of_what_is_not_nested_are_refused(job: dict[str, Any], message: str) -> None:
+    """Whatever is asked for is not passed over."""
+    with pytest.raises(JobError, match=message):
+        Job(**{**JOB, **job})
+
+
+def test_several_sheets_are_no_single_drawing() -> None:
+    """They need a file's name to begin with."""
+    job = Job(**JOB, layout="auto", count="bird=8,moth=20", sheets=2)
+    with pytest.raises(JobError, match="a file for each sheet is several drawings"):
+        pair().make(job)
+    with pytest.raises(JobError, match="`sheets`: several files need a name"):
+        pair().export("-", job=job, file_format="svg")

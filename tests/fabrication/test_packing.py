@@ -19,13 +19,13 @@ from voronoi_tiles import Design, Tiling
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.packing import pack_pieces
-from voronoi_tiles.fabrication.product import Product, make_colours
+from voronoi_tiles.fabrication.product import Product, make_several
 from voronoi_tiles.preflight import preflight
 
 
 def packed(tiles: Tiling, **job: Any) -> list[tuple[str, Product]]:
     """The sheets of a job that packs, each with its name."""
-    return make_colours(tiles.design, tiles.tessellation, Job(pack=True, **job))
+    return make_several(tiles.design, tiles.tessellation, Job(pack=True, **job))
 
 
 def nearest(shapes: list[Any]) -> float:
@@ -84,7 +84,7 @@ def test_packed_sheets_have_all_pieces_apart_and_as_they_are(name: str, job: dic
         by_colour.setdefault(colour, Counter()).update(map(form, shapes))
     if "kerf" not in job:  # with one the picture is pulled apart where it is not packed
         plain = {key: value for key, value in job.items() if key not in {"stock", "gap"}}
-        together = make_colours(
+        together = make_several(
             tiles.design, tiles.tessellation, Job(sheet=sheet, into="files", edges="pieces", **plain)
         )
         wanted = {key: Counter(map(form, contour_shapes(cuts(product), 1e-3))) for key, product in together}
@@ -205,11 +205,11 @@ def test_a_frame_around_packed_tiles_is_reported_and_made_again() -> None:
     assert (figures["pieces"]["count"], figures["pieces"]["frame"]) == (25, 1)
     assert sum(row["pieces"] for row in figures["packing"]) == 25
     tiles = squares()
-    files = {name: product.drawing for name, product in make_colours(tiles.design, tiles.tessellation, job)}
+    files = {name: product.drawing for name, product in make_several(tiles.design, tiles.tessellation, job)}
     assert list(files)[-1] == "frame"
     for name, drawing in files.items():
         recipe = json.loads(drawing.recipe["job"])
-        again = make_colours(tiles.design, tiles.tessellation, Job(**recipe))
+        again = make_several(tiles.design, tiles.tessellation, Job(**recipe))
         assert [other for other, _ in again] == list(files)
         assert dict(again)[name].drawing.recipe == drawing.recipe
 

@@ -18,7 +18,7 @@ from voronoi_tiles.designs.starters import starter
 from voronoi_tiles.fabrication import tile_colouring
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.job_options import JobError
-from voronoi_tiles.fabrication.product import make_colours
+from voronoi_tiles.fabrication.product import make_several
 from voronoi_tiles.fabrication.tile_colouring import colour_tiles
 from voronoi_tiles.groups.periodic_colouring import colour_pairs, palette
 
@@ -138,7 +138,7 @@ def test_files_and_layers_of_any_scheme(colours: str) -> None:
     assert (Job(colours="files").scheme, Job(colours="files").split) == ("fewest", "files")
     assert (Job(colours="5", into="files").scheme, Job(colours=5, into="files").split) == (5, "files")
     tiles, job = tiling("pg-wave"), Job(sheet=(170.0, 150.0), kerf=0.3, colours="handedness", into="files")
-    products = make_colours(tiles.design, tiles.tessellation, job)
+    products = make_several(tiles.design, tiles.tessellation, job)
     assert [name for name, _ in products] == ["1", "2"]
     assert [set(product.pieces.turned_over.tolist()) for _, product in products] == [{False}, {True}]
     assert tiles.report(job)["colouring"] == "handedness"

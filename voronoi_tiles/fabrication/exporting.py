@@ -51,31 +51,31 @@ def write_products(
     evidence: Mapping[str, Any] | None,
     progress: Callable[[float, float], None] | None = None,
 ) -> tuple[Exported, ...]:
-    """Write the files of a job: one, or one for each colour, with its number before the suffix.
+    """Write the files of a job: one, or one for each colour or sheet, with its number before the suffix.
 
     What was proved and checked, `evidence`, goes into each; `progress` is told of a search for places. A job that
     cannot be done leaves nothing, and no file takes its place before all are written. Raises JobError, and OutputError
     where a file cannot be written, or the job reads it.
     """
-    from voronoi_tiles.fabrication.product import make, make_colours
+    from voronoi_tiles.fabrication.product import make, make_several
 
     if evidence is not None and job.pieces is not None and job.sheet is not None:
         raise JobError(
             "`pieces` scales the design, and the cross-check is of this one",
             remedy="Write the design at the scale that is found, and check that.",
         )
-    if job.split != "files":
+    if not job.several:
         products = {path: make(design, tessellation, job, file_format, progress)}
     elif path == STDOUT or is_special(path):
         raise JobError(
-            "`into='files'`: several files need a name that they can begin with",
+            f"`{'sheets' if job.sheets is not None else 'into'}`: several files need a name that they can begin with",
             remedy="Write to a file such as sheet.svg.",
         )
     else:
         place = Path(path)
         products = {
             str(place.with_name(f"{place.stem}-{name}{place.suffix}")): product
-            for name, product in make_colours(design, tessellation, job, file_format)
+            for name, product in make_several(design, tessellation, job, file_format, progress)
         }
     if evidence is not None:
         products = {name: product.with_evidence(evidence) for name, product in products.items()}

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, fields
 from typing import Any, Literal, cast, get_args
 
+from voronoi_tiles.fabrication.job_checks import refuse_contradictions
 from voronoi_tiles.fabrication.job_limits import (
     ACCURACY_MIN,
     ACCURACY_MM,
@@ -24,6 +25,7 @@ from voronoi_tiles.fabrication.job_options import (
     Length,
     Offset,
     Option,
+    Quantities,
     Rates,
     SheetSize,
     choice,
@@ -37,6 +39,7 @@ from voronoi_tiles.fabrication.job_options import (
     read_effort,
     read_layout,
     read_offset,
+    read_quantities,
     read_seed,
     read_sheet,
     read_size,
@@ -131,6 +134,20 @@ class Job:
         EFFORT_S, read_effort, "How long a search for places takes [default: 30].", kind="number", shown="SECONDS"
     )
     seed: Option[int | str, int] = Option(0, read_seed, "Where that search begins.", kind="number", shown="N")
+    count: Option[Quantities, str | None] = Option(
+        None,
+        read_quantities,
+        "Nest so many pieces of each site, bird=40,moth=12, or of every one [default: as many as fit].",
+        kind="text",
+        shown="N|SITE=N,...",
+    )
+    sheets: Option[int | str | None, int | None] = Option(
+        None,
+        read_count,
+        "Lay them on as many sheets as they take, and on so many at most, a file each [default: 1].",
+        kind="number",
+        shown="N",
+    )
     kerf: Length = length(
         0.0, "The width of the cut: contours keep half of it from the pieces, which then have their true size."
     )
@@ -210,13 +227,7 @@ class Job:
     def __post_init__(self) -> None:
         if self.frame is not None and self.fit == "whole":
             object.__setattr__(self, "fit", "frame")
-        self._check_sheet()
-        self._check_edges()
-        self._check_colours()
-        self._check_packing()
-        if self.nests and self.not_nestable is not None:
-            message, remedy = self.not_nestable
-            raise JobError(f"`layout='{self.layout}'` {message}", remedy=remedy)
+        refuse_contradictions(self)
 
     def __repr__(self) -> str:
         return f"Job({', '.join(f'{name}={value!r}' for name, value in self._said())})"
@@ -244,6 +255,11 @@ class Job:
         if self.colours in get_args(Into):
             return cast("Into", self.colours)
         return self.into or ("files" if self.pack else "layers")
+
+    @property
+    def several(self) -> bool:
+        """Whether there is a file for each of several colours or sheets."""
+        return self.split == "files" or self.sheets is not None
 
     @property
     def frame_width(self) -> float:
@@ -308,58 +324,6 @@ class Job:
             return "colours"
         return "layout" if self.nests else None
 
-    def _check_edges(self) -> None:
-        name = self.needs_pieces()
-        if self.edges == "once" and name is not None:
-            raise JobError(
-                f"`{name}` needs `edges='pieces'`: an edge that is cut once belongs to two of them",
-                remedy=f"Use that, or leave `{name}` out.",
-            )
-        touching = self.apart is None and not self.pack and not self.nests
-        if self.tabs > 0.0 and self.sheet is not None and self.cuts_pieces and touching:
-            raise JobError(
-                "`tabs` hold nothing where the contours of two pieces lie on each other",
-                remedy="Pull the pieces apart, `gap='1mm'`, or use `edges='once'`.",
-            )
-        if self.fit == "frame" and self.apart is not None:
-            raise JobError(
-                f"`{'gap' if self.gap else 'kerf'}` pulls the tiles apart, and `fit='frame'` leaves them no room",
-                remedy="Cut the frame without it, or use `fit='whole'`.",
-            )
-
-    def _check_colours(self) -> None:
-        if self.into is not None and self.split != self.into:
-            if self.colours == "none":
-                raise JobError("`into` is about colours, and there are none", remedy="Add `colours='fewest'`.")
-            raise JobError(
-                f"`colours='{self.colours}'` and `into='{self.into}'` contradict each other",
-                remedy="Use `colours='fewest'`.",
-            )
-
-    def _check_packing(self) -> None:
-        if not self.pack:
-            if self.stock is not None:
-                raise JobError("`stock` is what pieces are packed on, and none are", remedy="Add `pack=True`.")
-            return
-        for wrong, message, remedy in (
-            (
-                self.sheet is None and self.pieces is None,
-                "`pack` packs the tiles of a sheet, and there is none",
-                "Add `sheet='600x300mm'`.",
-            ),
-            (self.colours == "none", "`pack` packs each colour, and there are none", "Add `colours='fewest'`."),
-            (self.split == "layers", "`pack` makes files of colours, and no layers", "Use `into='files'`."),
-            (self.fit == "clip", "`pack` packs whole tiles, and `fit='clip'` cuts them", "Use `fit='whole'`."),
-            (self.gap == 0.0, "`pack` with a `gap` of 0 would cut where pieces touch twice", "Use `gap='1mm'`."),
-            (
-                not isinstance(self.sheet, tuple) and self.stock is None,
-                "`pack` needs sheets to pack on, and this one is a drawing, or not known",
-                "Add their size, `stock='600x300mm'`.",
-            ),
-        ):
-            if wrong:
-                raise JobError(message, remedy=remedy)
-
     @property
     def not_nestable(self) -> tuple[str, str] | None:
         """Why pieces cannot be nested, and what to do; None where they can."""
@@ -375,22 +339,6 @@ class Job:
             if wrong:
                 return message, remedy
         return None
-
-    def _check_sheet(self) -> None:
-        if self.frame is not None and self.fit == "clip":
-            raise JobError("`fit='clip'` leaves no `frame`", remedy="Use one of the two.")
-        if self.pieces is not None and self.fit == "clip":
-            raise JobError("`pieces` counts whole tiles, and `fit='clip'` cuts them", remedy="Use `fit='whole'`.")
-        if self.sheet is None:
-            for name in () if self.pieces is not None else ("frame", "fit", "offset", "marks"):
-                if getattr(self, name) != self.options()[name].default:
-                    raise JobError(f"`{name}` is about a sheet, and there is none", remedy="Add `sheet='600x300mm'`.")
-        elif not isinstance(self.sheet, str) and 2.0 * self.margin >= min(self.sheet):
-            width, height = self.sheet
-            raise JobError(
-                f"a `margin` of {self.margin:g} mm leaves nothing of a sheet of {width:g} x {height:g} mm",
-                remedy="Make the margin smaller, or the sheet larger.",
-            )
 
 
 Job.__doc__ = f"{Job.__doc__}\n" + "\n".join(f"    - `{name}`: {option.help}" for name, option in Job.options().items())

@@ -52,6 +52,7 @@ Kind = Literal["length", "angle", "word", "flag", "text", "number"]
 
 SheetSize: TypeAlias = tuple[float, float] | str | os.PathLike[str] | None
 Rates: TypeAlias = float | str | Mapping[str, float] | None
+Quantities: TypeAlias = int | str | Mapping[str, int] | None
 Offset: TypeAlias = complex | tuple[float | str, float | str] | str | None
 
 
@@ -261,6 +262,27 @@ def read_rates(name: str, value: Any) -> str | None:
             remedy=f"Give a number for cuts, 300, or several, cut=300,engrave=3000, of {', '.join(ROLES)}.",
         ) from error
     return text
+
+
+def read_quantities(name: str, value: Any) -> str | None:
+    """Read how many pieces there shall be of every site, or of some by their names; a text. Raises JobError."""
+    if value is None:
+        return None
+    rows = (
+        value.items() if isinstance(value, Mapping) else [part.rpartition("=")[::2] for part in str(value).split(",")]
+    )
+    try:
+        asked = [(str(site).strip(), int(str(count).strip())) for site, count in rows]
+    except ValueError:
+        asked = []
+    sites = [site for site, _ in asked]
+    known = len(set(sites)) == len(sites) and (all(sites) or len(sites) == 1)
+    if not (asked and known and all(0 <= count <= COUNT_MAX for _, count in asked) and any(n for _, n in asked)):
+        raise JobError(
+            f"`{name}` {shown(value)} cannot be",
+            remedy=f"Give a number for every site, 40, or for some, bird=40,moth=12, up to {COUNT_MAX:,}.",
+        )
+    return ",".join(f"{site}={count}" if site else str(count) for site, count in asked)
 
 
 def read_offset(name: str, value: Any) -> complex | None:

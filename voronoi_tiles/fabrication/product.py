@@ -145,23 +145,28 @@ def make(
     Raises JobError where the job cannot be done, DesignError where the preset or the sheet's drawing is broken.
     """
     form = _format(file_format)
-    if job.split == "files" and (job.only_colour is None or job.pack):
+    if job.several and (job.only_colour is None or job.pack):
+        what, other = ("sheet", "leave `sheets` out") if job.sheets is not None else ("colour", "use `into='layers'`")
         raise JobError(
-            "a file for each colour is several drawings, and one is asked for",
-            remedy="Export it to a file's name, or use `into='layers'`.",
+            f"a file for each {what} is several drawings, and one is asked for",
+            remedy=f"Export it to a file's name, or {other}.",
         )
     plan = _Plan.of(design, tessellation, job, form, progress)
     return plan.product(plan.layout.job)
 
 
-def make_colours(
-    design: Design, tessellation: Tessellation, job: Job, file_format: str = "svg"
+def make_several(
+    design: Design, tessellation: Tessellation, job: Job, file_format: str = "svg", progress: Progress | None = None
 ) -> list[tuple[str, Product]]:
-    """Make a drawing for each colour that a job has pieces of, and one for a frame; each with a name for its file.
+    """Make a drawing for each sheet, or for each colour that a job has pieces of and for a frame.
+
+    Each has a name for its file. `progress` is told of a search for places.
 
     Raises what `make` does.
     """
-    plan = _Plan.of(design, tessellation, job, _format(file_format))
+    plan = _Plan.of(design, tessellation, job, _format(file_format), progress)
+    if job.sheets is not None:
+        return [(str(k + 1), plan.on(sheet).product(sheet.job)) for k, sheet in enumerate(plan.sheets)]
     job = plan.layout.job
     if job.pack:
         return plan.packed(job)
@@ -176,7 +181,9 @@ def make_reported(design: Design, tessellation: Tessellation, job: Job) -> tuple
     plan = _Plan.of(design, tessellation, job, load_preset(job.preset).first_format)
     job = plan.layout.job
     if job.split != "files":
-        return plan.product(job), []
+        made = plan.product(job)
+        first = (f"these are the figures of the first of {len(plan.sheets)} sheets",) if len(plan.sheets) > 1 else ()
+        return replace(made, notes=made.notes + first), []
     rows = [
         {
             "colour": one.colour + 1,
@@ -199,6 +206,7 @@ class _Plan:
     preset: Preset
     curves: str
     layout: Layout
+    sheets: tuple[Layout, ...]
     colouring: TileColouring
     said: tuple[str, ...]
     hints: tuple[str, ...]
@@ -215,21 +223,25 @@ class _Plan:
         curves = file_curves(job, preset, form)
         if form == "gcode":
             preset.burns(["cut"], job.feed, job.power)  # before anything is computed for nothing
-        said: tuple[str, ...] = ()
         if job.pieces is None:
             budget = AccuracyBudget.of(job, curves, form)
             fit = curve_fit(job, curves, budget, design.unit_mm)
             lay = partial(lay_out, design, tessellation, budget=budget, fit=fit)
-            layout, said = arranged(lay, job, read_sheet(job, budget), progress)
+            sheets, said = arranged(lay, job, read_sheet(job, budget), progress)
         else:
             layout, found = sized(design, tessellation, job, curves, form)
-            said = (found,)
+            sheets, said = (layout,), (found,)
+        layout = sheets[0]
         colours = colour_tiles(layout.tessellation, job.scheme, layout.period)
         said += tuple(unnested(job))
         if job.split is not None and colours.count == 1:
             said += (f"by {job.scheme} all tiles are alike: there is one colour",)
         colouring, files = TileColouring(colours, layout.copies), tuple(files_read(design, job))
-        return cls(form, preset, curves, layout, colouring, said, hints_of(layout, job), files)
+        return cls(form, preset, curves, layout, sheets, colouring, said, hints_of(layout, job), files)
+
+    def on(self, sheet: Layout) -> _Plan:
+        """The same for another sheet of its tiles."""
+        return replace(self, layout=sheet, colouring=replace(self.colouring, copies=sheet.copies))
 
     def colours(self) -> list[tuple[int, str]]:
         """The colours that the page has pieces of, each with a name for its file; FRAME for the frame."""
@@ -245,8 +257,7 @@ class _Plan:
         found = []
         for one in pack_colours(self.layout, self.colouring):
             for number, layout in enumerate(one.sheets):
-                plan = replace(self, layout=layout, colouring=replace(self.colouring, copies=layout.copies))
-                product = plan.product(job)
+                product = self.on(layout).product(job)
                 if number == 0:
                     product = replace(product, notes=(one.said(), *product.notes))
                 found.append((f"colour{one.colour + 1}-{number + 1}", product))

@@ -12,7 +12,7 @@ const HEADINGS = [
     ["Sheet", ["sheet", "margin", "fit", "pieces"]],
     ["Cut", ["kerf", "edges", "gap", "tabs", "fillet"]],
     ["Target", ["preset", "curves", "accuracy", "dxf_version", "stroke", "feed", "power"]],
-    ["Place", ["rotate", "offset", "frame", "layout", "grain"]],
+    ["Place", ["rotate", "offset", "frame", "layout", "grain", "count", "sheets"]],
     ["Engrave", ["labels", "label_height", "art", "marks", "bar"]],
     ["Colours", ["colours", "into", "pack", "stock", "only_colour"]],
     ["More", []],
