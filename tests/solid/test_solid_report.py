@@ -9,8 +9,8 @@ from helpers.programs import PIECES
 
 from voronoi_tiles import ArgumentError, Design, ProofError, SolidJob, TriangleMesh, extrude
 from voronoi_tiles.paths.areas import ring_areas
+from voronoi_tiles.solid.cross_sections import section
 from voronoi_tiles.solid.prism import Face, Prism
-from voronoi_tiles.solid.sections import section
 from voronoi_tiles.solid.solid_report import narrowest_neck, overhang, solid_report
 
 PYRAMID = TriangleMesh(

@@ -10,8 +10,8 @@ from voronoi_tiles.base.arguments import number
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.preflight.chords import chords_of, counts_of
 from voronoi_tiles.preflight.necks import find_necks
+from voronoi_tiles.solid.cross_sections import section
 from voronoi_tiles.solid.mesh import TriangleMesh
-from voronoi_tiles.solid.sections import section
 from voronoi_tiles.solid.solid_model import SolidModel
 
 DENSITY: Final = 1.24
