@@ -158,6 +158,7 @@ gallery: $(INSTALLED_DOCS)
 
 diagrams: $(INSTALLED_DOCS)
 	$(VENV)/bin/python docs/generate/diagrams.py
+	$(VENV)/bin/python docs/generate/solids.py
 
 # Each wheel is built from the source distribution, so that this holds all; compiled here for platforms that are elsewhere.
 wheels: $(INSTALLED_DEV)

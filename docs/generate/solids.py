@@ -1,0 +1,31 @@
+"""The pictures of docs/solids.md, by the commands that stand there.
+
+python docs/generate/solids.py             writes docs/pictures/solid-*.png
+"""
+
+from __future__ import annotations
+
+from typing import Final
+
+from running import Command, run_all
+
+
+def _picture(name: str, design: str, *options: str) -> Command:
+    """The command that draws one."""
+    return Command(("voronoi-tiles", "solid"), design, f"docs/pictures/solid-{name}.png", (*options, "--size", "340"))
+
+
+PICTURES: Final = (
+    _picture("puzzle", "examples/p3-puzzle.toml", "--height", "10mm", "--chamfer", "0.6mm"),
+    _picture(
+        "bed",
+        "examples/solid/p4-two.toml",
+        *("--sheet", "160x160mm", "--height", "6mm", "--clearance", "0.3mm", "--chamfer", "0.5mm"),
+        *("--gap", "1.5mm", "--colours", "site"),
+    ),
+)
+"""In the order of the page."""
+
+
+if __name__ == "__main__":
+    run_all(PICTURES)
