@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from voronoi_tiles.designs.art import Art
     from voronoi_tiles.designs.design import Design
     from voronoi_tiles.designs.drawn_site import Site
+    from voronoi_tiles.designs.drawn_solid import Key, Solid
     from voronoi_tiles.designs.drawn_strokes import (
         Stroke,
         bezier,
@@ -95,6 +96,7 @@ __all__ = [
     "Isometry",
     "Job",
     "JobError",
+    "Key",
     "Lattice",
     "Layer",
     "LayerUse",
@@ -121,6 +123,7 @@ __all__ = [
     "Rendering",
     "Shape",
     "Site",
+    "Solid",
     "SolidJob",
     "SolidModel",
     "SolidPiece",
@@ -164,6 +167,7 @@ _HOMES = {
     "voronoi_tiles.designs.art": "Art",
     "voronoi_tiles.designs.design": "Design",
     "voronoi_tiles.designs.drawn_site": "Site",
+    "voronoi_tiles.designs.drawn_solid": "Key Solid",
     "voronoi_tiles.designs.drawn_strokes": (
         "Stroke bezier bspline catmull_rom circle drawing hermite path point polyline segment"
     ),

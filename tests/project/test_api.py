@@ -23,15 +23,16 @@ ROOT = Path(__file__).parents[2]
 
 NAMES = """
 Arc Art ArgumentError Burn CheckError CheckReport Design DesignError Dots Drawing DrawingError Exported Figure Finding
-Frame GROUPS Inventory Isometry Job JobError Lattice Layer LayerUse Limits LineArc Marks MissingLibraryError Neighbour
-NodedSite Operation Outline OutputError ParabolaArc Paths Placement PreflightReport Product ProofError ProofReport
-Provenance ReadDrawing RenderError RenderOptions Rendering Shape Site Stroke Tile TileCopy Tiling TouchingCopiesError
-UnknownNameError VoronoiTilesError WallpaperGroup __version__ bezier bspline catmull_rom circle coupon drawing hermite
-path placed point polyline preflight render segment starter starter_text
+Frame GROUPS Inventory Isometry Job JobError Key Lattice Layer LayerUse Limits LineArc Marks MissingLibraryError
+Neighbour NodedSite Operation Outline OutputError ParabolaArc Paths Placement PreflightReport Product ProofError
+ProofReport Provenance ReadDrawing RenderError RenderOptions Rendering Shape Site Solid Stroke Tile TileCopy Tiling
+TouchingCopiesError UnknownNameError VoronoiTilesError WallpaperGroup __version__ bezier bspline catmull_rom circle
+coupon drawing hermite path placed point polyline preflight render segment starter starter_text
 """
 
 INTERNAL = {
     "Tessellation": "the engine's own form of a tiling: what Tiling.tessellation gives, for the package's own use",
+    "CheckedSolid": "the geometry of a solid at its keys: what lofts are computed from; Design.solid is what was drawn",
     "Job": "its options are descriptors, and Option is their type to a class, not to a job",
 }
 """What public objects give that is no public name, and why."""

@@ -379,6 +379,8 @@ def keys_at(*path: str) -> list[str]:
         "group": "p1",
         "cell": {"a": 1, "b": 1, "angle": 90},
         "site": [{"strokes": [{"point": [0, 0]}], "art": {"file": "x.svg"}}],
+        "solid": {"height": 1},
+        "key": [{"z": 1, "strokes": [{"point": [0, 0]}]}],
     }
     table: dict[str, object] = design
     for name in path:
@@ -392,7 +394,9 @@ def keys_at(*path: str) -> list[str]:
     return found[1].split(", ")
 
 
-@pytest.mark.parametrize("path", [(), ("cell",), ("site",), ("site", "strokes"), ("site", "art")], ids=str)
+@pytest.mark.parametrize(
+    "path", [(), ("cell",), ("site",), ("site", "strokes"), ("site", "art"), ("solid",), ("key",)], ids=str
+)
 def test_every_key_is_documented(path: tuple[str, ...]) -> None:
     """Each key of a design file begins a row of a table of the reference."""
     keys = keys_at(*path)

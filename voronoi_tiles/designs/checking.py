@@ -8,13 +8,12 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from voronoi_tiles.base import values
-from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import Placement
 from voronoi_tiles.base.tolerance import ANGLE_MIN, CELL_ASPECT_MAX, CELL_MIN, FLATTENING_MM, SITE_EXTENT_MAX
@@ -25,6 +24,7 @@ from voronoi_tiles.designs.drawn_files import DrawnFiles
 from voronoi_tiles.designs.keys import PLACEMENT
 from voronoi_tiles.designs.load import STARTER
 from voronoi_tiles.designs.site import NodedSite, build_site
+from voronoi_tiles.designs.solid_checking import CheckedSolid, DrawnStroke, SiteDrawing, read_solid
 from voronoi_tiles.designs.strokes import ARC_SHARE, polylines
 from voronoi_tiles.groups.wallpaper import GROUPS, Lattice, WallpaperGroup
 
@@ -33,12 +33,15 @@ _FULL_SYMBOLS = {"p1m1": "pm", "p11m": "pm", "p1g1": "pg", "p11g": "pg", "c1m1":
 _FULL_SYMBOLS |= {"p2gg": "pgg", "c2mm": "cmm", "p4mm": "p4m", "p4gm": "p4g", "p6mm": "p6m", "p211": "p2", "p111": "p1"}
 
 
+_KEYS = ("schema", "group", "units", "scale", "cell", "site", "solid", "key")
+
+
 class CheckedDesign(NamedTuple):
     """What a checked design is.
 
     `noded` and `art`, placed as its site is, have an entry for each site. `drawn` is the design as it is written, as
     canonical JSON, and `source` the same with the paths of drawings in the place of their names, which are `drawings`.
-    `notes` are sentences on what of these is left out or guessed.
+    `notes` are sentences on what of these is left out or guessed. `standing` is the solid, None where there is none.
     """
 
     group: WallpaperGroup
@@ -50,11 +53,12 @@ class CheckedDesign(NamedTuple):
     drawn: str
     drawings: tuple[str, ...]
     notes: tuple[str, ...]
+    standing: CheckedSolid | None
 
 
 def checked(value: object, folder: str) -> CheckedDesign:
     """Check the table of a design, as TOML and JSON give it; its drawings are in `folder`. Raises DesignError."""
-    table = values.table(value, ("schema", "group", "units", "scale", "cell", "site"), STARTER)
+    table = values.table(value, _KEYS, STARTER)
     version = values.required(table, "schema", "Write schema = 1.")
     if isinstance(version, bool) or not isinstance(version, int) or version != 1:
         raise DesignError(f"schema {values.shown(version)} is not supported", key="schema", remedy="Write schema = 1.")
@@ -68,8 +72,9 @@ def checked(value: object, folder: str) -> CheckedDesign:
     listed = values.required(table, "site", "Write [[site]] and, below it, its strokes.")
     reading = _Reading(FLATTENING_MM / UNIT_MM[units], lattice, Placement(scale), DrawnFiles(folder, UNIT_MM[units]))
     sites = reading.sites(listed)
+    standing, keys = read_solid(table, scale, [site.drawing for site in sites])
     drawn = _text(table)
-    source = _text({**table, "site": [site.table for site in sites]}) if reading.files.names else drawn
+    source = _text({**table, "site": [site.table for site in sites], **keys}) if reading.files.names else drawn
     return CheckedDesign(
         group,
         lattice,
@@ -80,6 +85,7 @@ def checked(value: object, folder: str) -> CheckedDesign:
         drawn,
         tuple(dict.fromkeys(reading.files.names)),
         tuple(reading.files.notes),
+        standing,
     )
 
 
@@ -157,11 +163,15 @@ def _refuse_other(table: values.Table, name: str, fixed: float, what: str) -> No
 
 
 class _ReadSite(NamedTuple):
-    """A site that has been checked: its table, with paths in the place of drawings, its geometry and its art."""
+    """A site that has been checked: its table, with paths in the place of drawings, its geometry and its art.
+
+    `drawing` is what keys of a solid need of it.
+    """
 
     table: Mapping[str, Any]
     noded: NodedSite
     art: Art | None
+    drawing: SiteDrawing
 
 
 class _Reading(NamedTuple):
@@ -199,20 +209,13 @@ class _Reading(NamedTuple):
         by = self.scale @ schema.placement(table)
         remedy = "Write strokes = [{ segment = [[5, 3], [25, 11]] }]."
         listed = values.required(table, "strokes", remedy)
+
+        def read(listed: object) -> tuple[list[values.Table], tuple[DrawnStroke, ...]]:
+            return self._strokes(values.sequence(listed, remedy), accuracy, by)
+
         with values.within("strokes"):
-            listed = values.sequence(listed, remedy)
-            if not listed:
-                raise DesignError("there is no stroke", remedy=remedy)
-        lines: list[Complexes] = []
-        pieces: list[Complexes] = []
-        strokes = []
-        for k, item in enumerate(listed):
-            with values.within(f"strokes[{k}]"):
-                drawn, curved = schema.stroke(item, accuracy, by, self.files.path_data)
-            (pieces if curved else lines).append(drawn)
-            if "file" in item:
-                item = {"path": self.files.texts[-1], **_but(item, "file", "layer", "id")}  # noqa: PLW2901 - the same
-            strokes.append(item)
+            strokes, drawn = read(listed)
+        lines, pieces = ([points for points, curved in drawn if curved is bent] for bent in (False, True))
         if pieces:
             # What the step from arcs to cubics may have used is taken off.
             lines += polylines(np.concatenate(pieces), accuracy * (1.0 - ARC_SHARE))
@@ -224,7 +227,24 @@ class _Reading(NamedTuple):
             )
         with values.within("art"):
             art = _read_art(table["art"]) if "art" in table else None
-        return _ReadSite({**table, "strokes": strokes}, site, None if art is None else art.placed(by))
+        drawing = SiteDrawing(name, strokes, drawn, accuracy, read)
+        return _ReadSite({**table, "strokes": strokes}, site, None if art is None else art.placed(by), drawing)
+
+    def _strokes(
+        self, listed: Sequence[Any], accuracy: float, by: Placement
+    ) -> tuple[list[values.Table], tuple[DrawnStroke, ...]]:
+        """Read strokes and place them: their tables, with paths in the place of drawings, and what they draw."""
+        if not listed:
+            raise DesignError("there is no stroke", remedy="Write strokes = [{ segment = [[5, 3], [25, 11]] }].")
+        strokes: list[values.Table] = []
+        drawn = []
+        for k, item in enumerate(listed):
+            with values.within(f"[{k}]"):
+                drawn.append(schema.stroke(item, accuracy, by, self.files.path_data))
+            if "file" in item:
+                item = {"path": self.files.texts[-1], **_but(item, "file", "layer", "id")}  # noqa: PLW2901 - the same
+            strokes.append(item)
+        return strokes, tuple(drawn)
 
 
 def _but(table: values.Table, *keys: str) -> dict[str, Any]:

@@ -22,9 +22,11 @@ from voronoi_tiles.designs.checking import CheckedDesign, checked
 from voronoi_tiles.designs.coordinates import PointLike, pair
 from voronoi_tiles.designs.design_arguments import argument_of, cell_table, listed_sites, scale_table
 from voronoi_tiles.designs.drawn_site import Site, site_of
+from voronoi_tiles.designs.drawn_solid import Solid, solid_of, solid_tables
 from voronoi_tiles.designs.load import parse, read_table
 from voronoi_tiles.designs.schema import placement
 from voronoi_tiles.designs.site import NodedSite
+from voronoi_tiles.designs.solid_checking import CheckedSolid
 from voronoi_tiles.designs.toml_text import toml_text
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 
@@ -48,12 +50,13 @@ class Design:
     `cell` is the side along x; or (a, b) or (a, b, angle) where the group leaves them free, the angle from a to b in
     degrees; or a mapping {"a": 60, "b": 50, "angle": 75}. `sites` are Site objects, or one. Lengths are in `units`,
     "mm", "cm" or "in"; the origin is the group's, x runs along a, y up. Cell, strokes and art are times `scale`;
-    tolerances are not. `name` is what files say of the design, and drawings are looked for in `folder`.
+    tolerances are not. `solid` says how the strokes move above the drawing, None that the design is flat. `name` is
+    what files say of the design, and drawings are looked for in `folder`.
 
     Derived are the `lattice`; `noded`, the geometry of each site that tiles are computed from; `art`, the drawing of
-    each site where it is placed, or None; `notes`, sentences on what is left out of drawings; and `source`, the
-    design as JSON (ASCII, sorted keys), which files hold as their recipe and `loads` reads again: it has the paths of
-    drawings that are strokes in the place of their names.
+    each site where it is placed, or None; `standing`, the geometry of the solid, or None; `notes`, sentences on what
+    is left out of drawings; and `source`, the design as JSON (ASCII, sorted keys), which files hold as their recipe and
+    `loads` reads again: it has the paths of drawings that are strokes in the place of their names.
 
     Designs are equal, and hash alike, where the group, the cell, the units and the sites are equal, as they are placed
     and with what drawings hold, whatever their names and folders. Raises DesignError, which names the argument:
@@ -81,6 +84,7 @@ class Design:
     drawn: str
     drawings: tuple[str, ...]
     notes: tuple[str, ...]
+    standing: CheckedSolid | None
     name: str
     folder: str
     file: str
@@ -93,6 +97,7 @@ class Design:
         *,
         units: Units = "mm",
         scale: float = 1.0,
+        solid: Solid | None = None,
         name: str = "design",
         folder: str | os.PathLike[str] = "",
     ) -> None:
@@ -104,6 +109,7 @@ class Design:
             **scale_table(scale),
             "cell": cell_table(cell),
             "site": [site.table for site in listed_sites(sites)],
+            **solid_tables(solid),
         }
         try:
             parts = checked(table, folder)
@@ -130,7 +136,9 @@ class Design:
     def _content(self) -> tuple[object, ...]:
         by = Placement(self.scale)
         sites = tuple(site.placed(by) for site in self._sites_of(self.source))
-        return self.group.name, self.lattice, self.units, sites
+        solid = solid_of(json.loads(self.source))
+        solid = None if solid is None else solid.placed(by, self._sites_of(self.source), self.scale)
+        return self.group.name, self.lattice, self.units, sites, solid
 
     def _sites_of(self, text: str) -> tuple[Site, ...]:
         """The sites in a text of this design, `drawn` or `source`, each with its name."""
@@ -152,6 +160,11 @@ class Design:
     def sites(self) -> tuple[Site, ...]:
         """The sites as they are drawn, each with its name; `noded` has their geometry."""
         return self._sites_of(self.drawn)
+
+    @cached_property
+    def solid(self) -> Solid | None:
+        """How it stands, as it is drawn, None where it is flat; `standing` has its geometry."""
+        return solid_of(json.loads(self.drawn))
 
     @property
     def scale(self) -> float:
@@ -230,6 +243,7 @@ class Design:
             **scale_table(self.scale),
             "cell": self.cell,
             "site": [site.table for site in self.sites],
+            **solid_tables(self.solid),
         }
 
     def to_toml(self) -> str:
@@ -244,7 +258,7 @@ class Design:
         table = self.to_dict()
         name = path_name("path", path)
         folder = os.path.realpath(os.path.dirname(name))  # noqa: PTH120 - the name may be any
-        for site in table["site"]:
+        for site in (*table["site"], *table.get("key", ())):
             for item in (*site["strokes"], site.get("art", {})):
                 file = item.get("file")
                 if file is not None and not os.path.isabs(file):  # noqa: PTH117 - same
@@ -267,12 +281,13 @@ class Design:
         sites: Site | Iterable[Site] | None = None,
         units: Units | None = None,
         scale: float | None = None,
+        solid: Solid | None = None,
         name: str | None = None,
         folder: str | os.PathLike[str] | None = None,
     ) -> Design:
         """The design with some of its parts changed, checked again; None leaves a part as it is. Raises DesignError."""
         name = self.name if name is None else name
-        if all(part is None for part in (group, cell, sites, units, scale, folder)):
+        if all(part is None for part in (group, cell, sites, units, scale, solid, folder)):
             return _fill(Design.__new__(Design), self._parts, name, self.folder, self.file)
         made = Design(
             self.group if group is None else group,
@@ -280,6 +295,7 @@ class Design:
             self.sites if sites is None else sites,
             units=self.units if units is None else units,
             scale=self.scale if scale is None else scale,
+            solid=self.solid if solid is None else solid,
             folder=self.folder if folder is None else folder,
         )
         return _fill(made, made._parts, name, made.folder, self.file)
@@ -318,7 +334,7 @@ class Design:
     def _times(self, factor: float) -> Design:
         """The design scaled by a factor."""
         cell = {name: value if name == "angle" else value * factor for name, value in self.cell.items()}
-        return self.replace(cell=cell, sites=self._placed(Placement(factor)))
+        return self._replaced(Placement(factor), cell=cell, height=factor)
 
     def moved(
         self, *, mirror: bool = False, scale: float = 1.0, rotate: float = 0.0, translate: PointLike = 0j
@@ -332,7 +348,12 @@ class Design:
         by = placement({"mirror": mirror, "scale": scale, "rotate": rotate, "translate": pair(translate)})
         # The design's scale comes after what places a site.
         by = Placement(by.scale, by.rotate, by.translate / self.scale, by.mirror)
-        return self.replace(sites=self._placed(by))
+        return self._replaced(by)
+
+    def _replaced(self, by: Placement, *, cell: Cell | None = None, height: float = 1.0) -> Design:
+        """The design with its sites and what they become above moved, in this cell, and its height times a factor."""
+        solid = None if self.solid is None else self.solid.placed(by, self.sites, height)
+        return self.replace(cell=cell, sites=self._placed(by), solid=solid)
 
     def _placed(self, by: Placement) -> list[Site]:
         """All sites, moved after they have been placed; errors name the argument that a stroke was made of."""

@@ -51,7 +51,7 @@ def listed_sites(sites: object) -> list[Site]:
     return listed
 
 
-_OWN = re.compile(rf"(site\[\d+\]\.strokes\[\d+\])\.({'|'.join(get_args(StrokeKind))})\b(?:\[([01])\])?")
+_OWN = re.compile(rf"((?:site|key)\[\d+\]\.strokes\[\d+\])\.({'|'.join(get_args(StrokeKind))})\b(?:\[([01])\])?")
 
 
 def argument_of(key: str) -> str:
@@ -64,4 +64,4 @@ def argument_of(key: str) -> str:
             return f"{stroke}.{names[int(index)]}"
         return f"{stroke}.{names[0]}{'' if index is None else f'[{index}]'}"
 
-    return re.sub(r"^site\b", "sites", _OWN.sub(own, key))
+    return re.sub(r"^key\b", "solid.keys", re.sub(r"^site\b", "sites", _OWN.sub(own, key)))

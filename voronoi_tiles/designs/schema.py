@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Final
 
 import numpy as np
 
@@ -148,6 +149,9 @@ _KINDS: dict[str, tuple[Callable[[_StrokeKind], Complexes], tuple[str, ...], boo
     "path": (_path, (), True),
     "file": (_file, ("layer", "id"), True),
 }
+KINDS: Final = tuple(_KINDS)
+"""The kinds of strokes."""
+
 _KEYS = tuple(dict.fromkeys([*_KINDS, *(name for row in _KINDS.values() for name in row[1]), *PLACEMENT]))
 _EXAMPLE = "Write a stroke such as { segment = [[5, 3], [25, 11]] }."
 

@@ -168,7 +168,12 @@ def circle_polyline(center: complex, radius: float, accuracy: float) -> Complexe
         twelfths -= 1
     while _sagitta(radius, 12 * twelfths) > accuracy:
         twelfths += 1
-    unit = _unit_polygon(12 * twelfths)
+    return regular_polygon(center, radius, 12 * twelfths)
+
+
+def regular_polygon(center: complex, radius: float, sides: int) -> Complexes:
+    """A closed regular polygon, its first vertex, which is its last, at angle 0; `sides` is a multiple of 12."""
+    unit = _unit_polygon(sides)
     polygon = np.empty(len(unit) + 1, dtype=np.complex128)
     polygon[:-1] = center + radius * unit
     polygon[-1] = polygon[0]
@@ -237,7 +242,7 @@ def flatten(pieces: Complexes, accuracy: float) -> tuple[Complexes, NDArray[np.i
     ends, complex128 of shape (n, 2), in order along the pieces, and the number of chords of each piece,
     intp of shape (k,). All pieces are bisected together (de Casteljau at 1/2, whose rounding is the same
     from both ends: a reversed curve gives the reversed points) until each satisfies the bound of
-    `_is_flat`. Raises DesignError beyond PIECES_MAX.
+    `is_flat`. Raises DesignError beyond PIECES_MAX.
     """
     leaves = [pieces[:0, [0, 3]]]
     owners = [np.empty(0, dtype=np.intp)]
@@ -248,7 +253,7 @@ def flatten(pieces: Complexes, accuracy: float) -> tuple[Complexes, NDArray[np.i
     width = 1.0
     count = 0
     while len(pieces):
-        flat = _is_flat(pieces, accuracy)
+        flat = is_flat(pieces, accuracy)
         leaves.append(pieces[flat][:, [0, 3]])
         owners.append(owner[flat])
         places.append(place[flat])
@@ -266,7 +271,7 @@ def flatten(pieces: Complexes, accuracy: float) -> tuple[Complexes, NDArray[np.i
     return np.concatenate(leaves)[order], np.bincount(owner, minlength=total)
 
 
-def _is_flat(pieces: Complexes, accuracy: float) -> NDArray[np.bool_]:
+def is_flat(pieces: Complexes, accuracy: float) -> NDArray[np.bool_]:
     """Whether each piece and its chord are proven to be within `accuracy` of each other.
 
     With d1 = p1 - (2 p0 + p3) / 3 and d2 = p2 - (p0 + 2 p3) / 3 the curve leaves the evenly run chord by

@@ -33,6 +33,10 @@ def toml_text(design: Mapping[str, Any]) -> str:
         lines += ["", "[[site]]"]
         lines += [toml_pair(key, value) for key, value in site.items() if key != "strokes"]
         lines.append(toml_pair("strokes", site["strokes"]))
+    if "solid" in design:
+        lines += ["", "[solid]", *(toml_pair(key, value) for key, value in design["solid"].items())]
+    for key_drawing in design.get("key", ()):
+        lines += ["", "[[key]]", *(toml_pair(key, value) for key, value in key_drawing.items())]
     return "\n".join(lines) + "\n"
 
 

@@ -309,7 +309,7 @@ def _tolerance(table: Table) -> float | None:
 
 def _check_size(design: Table) -> None:
     """Refuse designs that would take too long. Raises DesignError."""
-    strokes = [stroke for _, site in _numbered(design, "site") for _, stroke in _numbered(site, "strokes")]
+    strokes = [stroke for _, site in _drawings(design) for _, stroke in _numbered(site, "strokes")]
     points = sum(_count_points(value) for stroke in strokes for value in stroke.values())
     for count, most, what in ((len(strokes), STROKES_MAX, "strokes"), (points, POINTS_MAX, "points")):
         if count > most:
@@ -336,14 +336,19 @@ def _numbered(table: Table, name: str) -> list[tuple[int, Table]]:
     return [(number, item) for number, item in items if isinstance(item, Mapping)]
 
 
+def _drawings(design: Table) -> list[tuple[str, Table]]:
+    """The tables that have strokes, sites and keys of a solid, each after its key."""
+    return [(f"{key}[{k}]", table) for key in ("site", "key") for k, table in _numbered(design, key)]
+
+
 def _named_files(design: Table) -> Iterator[tuple[str, str]]:
     """The files that strokes and art name, each after its key."""
-    for k, site in _numbered(design, "site"):
+    for place, site in _drawings(design):
         art = site.get("art")
         named = [(f"strokes[{i}].file", stroke.get("file")) for i, stroke in _numbered(site, "strokes")]
         for key, name in (*named, ("art.file", art.get("file") if isinstance(art, Mapping) else art)):
             if isinstance(name, str):
-                yield f"site[{k}].{key}", name
+                yield f"{place}.{key}", name
 
 
 def _files_of_job(job: Table) -> Iterator[tuple[str, str]]:

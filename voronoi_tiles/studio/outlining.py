@@ -53,6 +53,8 @@ class Outliner:
         and ProofError.
         """
         begun = time.perf_counter()
+        # What is above the drawing of the design does not change its tiles, and need not fit while that is drawn.
+        design = {key: value for key, value in design.items() if key not in ("solid", "key")}
         if rest:
             read, tiles = _tiles(design)
             tiles, _ = self._proved(read, tiles)
