@@ -1,0 +1,163 @@
+"""The strokes of a design as a function of height: interpolated between keys, scaled, turned and moved."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from math import radians
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Complexes, Floats
+from voronoi_tiles.base.errors import ArgumentError
+from voronoi_tiles.base.maps import Isometry, unit_at
+from voronoi_tiles.designs.design import Design
+from voronoi_tiles.designs.site import NodedSite, build_site
+from voronoi_tiles.designs.solid_checking import CheckedSolid, DrawnInHeight, DrawnStroke, like
+from voronoi_tiles.designs.strokes import ARC_SHARE, is_flat
+from voronoi_tiles.paths.paths import halves
+
+
+@dataclass(frozen=True, eq=False)
+class SiteMotion:
+    """The strokes of a site at the heights of its keys, flattened alike.
+
+    `lines` are its polylines, each complex128 (keys, n): the same parameters of curves at all heights, so that points
+    move along straight lines between keys. `heights` are those of the keys, float64 (keys,), ascending from 0.
+    """
+
+    name: str
+    heights: Floats
+    lines: tuple[Complexes, ...]
+
+    def drawn(self, z: float) -> list[Complexes]:
+        """The polylines at a height, before they are turned; beyond the last key they are as they are there."""
+        if len(self.heights) == 1:
+            return [line[0] for line in self.lines]
+        k = int(np.clip(np.searchsorted(self.heights, z, side="right") - 1, 0, len(self.heights) - 2))
+        low, high = self.heights[k : k + 2].tolist()
+        t = min((z - low) / (high - low), 1.0)
+        if t in (0.0, 1.0):
+            return [line[k + int(t)] for line in self.lines]
+        return [line[k] * (1.0 - t) + line[k + 1] * t for line in self.lines]
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """The strokes of all sites as a function of the height z, from 0 to `height`, in the design's units.
+
+    They are interpolated, then scaled and turned about a point, by a factor that runs from 1 and an angle that runs
+    from 0 to those at the top, and moved: all linear in z.
+    """
+
+    solid: CheckedSolid
+    moving: tuple[SiteMotion, ...]
+
+    @classmethod
+    def of(cls, design: Design) -> Motion:
+        """The motion of a design. Raises ArgumentError where it has no solid."""
+        solid = design.standing
+        if solid is None:
+            raise ArgumentError(
+                "the design is flat", remedy="Write [solid] and, below it, height = 20 and what moves on the way up."
+            )
+        finest = max(1.0, solid.scale)
+        moving = (
+            SiteMotion(site.name, np.array([key.z for key in drawn.keys]), _lines(drawn, finest))
+            for site, drawn in zip(design.noded, solid.sites, strict=True)
+        )
+        return cls(solid, tuple(moving))
+
+    @property
+    def height(self) -> float:
+        """The height of the solid."""
+        return self.solid.height
+
+    @cached_property
+    def layers(self) -> Floats:
+        """The heights that have exact tiles, ascending: equally spaced, and those of keys among them."""
+        equal = np.linspace(0.0, self.height, self.solid.layers)
+        keys = np.concatenate([site.heights for site in self.moving])
+        near = np.abs(equal[:, None] - keys).min(axis=1) < 1e-6 * self.height
+        kept = equal[~near | (equal == 0.0) | (equal == self.height)]
+        return np.unique(np.concatenate((kept, keys)))
+
+    def at(self, z: float) -> list[NodedSite]:
+        """The sites at a height."""
+        return [build_site(site.name, [self._moved(z, line) for line in site.drawn(z)]) for site in self.moving]
+
+    def points(self, z: float) -> list[Complexes]:
+        """The points of each site's polylines at a height: the same ones, in the same order, at all heights."""
+        return [self._moved(z, np.concatenate(site.drawn(z))) for site in self.moving]
+
+    def _moved(self, z: float, points: Complexes) -> Complexes:
+        """Points of the interpolated drawing where they are at a height."""
+        solid, t = self.solid, z / self.height
+        factor, degrees = 1.0 + (solid.scale - 1.0) * t, solid.turn * t
+        if degrees == 0.0:  # and no bit changes
+            return (
+                points
+                if factor == 1.0 and not solid.shift
+                else (points - solid.about) * factor + (solid.about + solid.shift * t)
+            )
+        turned = Isometry(unit_at(degrees), solid.about + solid.shift * t, conj=False)
+        return turned((points - solid.about) * factor)
+
+    def speed(self, low: float, high: float) -> float:
+        """No point moves faster anywhere between two heights: a length per unit of height."""
+        solid, fastest = self.solid, 0.0
+        inner = [z for site in self.moving for z in site.heights.tolist() if low < z < high]
+        stops = [low, *sorted(set(inner)), high]
+        grown = max(abs(1.0 + (solid.scale - 1.0) * z / self.height) for z in (low, high))
+        turning, growing = radians(abs(solid.turn)) / self.height, abs(solid.scale - 1.0) / self.height
+        for site in self.moving:
+            drawn = [np.concatenate(site.drawn(z)) for z in stops]
+            away = max(float(np.abs(points - solid.about).max()) for points in drawn)
+            along = max(
+                float(np.abs(after - before).max()) / (above - below)
+                for before, after, below, above in zip(drawn, drawn[1:], stops, stops[1:], strict=False)
+            )
+            fastest = max(fastest, grown * along + away * (growing + grown * turning))
+        return fastest + abs(solid.shift) / self.height
+
+
+def _lines(drawn: DrawnInHeight, grown: float) -> tuple[Complexes, ...]:
+    """The polylines of a site at all its keys, each complex128 (keys, n), in the order in which a design has them."""
+    strokes: list[Sequence[DrawnStroke]] = list(zip(*(key.strokes for key in drawn.keys), strict=True))
+    lines = [np.array(like(stroke)) for stroke in strokes if not stroke[0][1]]
+    bent = [np.stack([pieces for pieces, _ in stroke]) for stroke in strokes if stroke[0][1]]
+    if bent:
+        lines += _flattened(np.concatenate(bent, axis=1), drawn.accuracy * (1.0 - ARC_SHARE) / grown)
+    return tuple(lines)
+
+
+def _flattened(pieces: Complexes, accuracy: float) -> list[Complexes]:
+    """Curves at several heights, complex128 (keys, n, 4), flattened at the same parameters; (keys, m) for each run.
+
+    A part is halved until it is flat at all keys. Then it is so between them: how far a curve is from its chord is no
+    more than what is interpolated between its distances at the keys.
+    """
+    keys, count = pieces.shape[:2]
+    owner, place, width = np.arange(count), np.zeros(count), 1.0
+    begins, owners, places = [], [], []
+    rest = pieces
+    while rest.shape[1]:
+        flat = np.all([is_flat(rest[k], accuracy) for k in range(keys)], axis=0)
+        begins.append(rest[:, flat, 0])
+        owners.append(owner[flat])
+        places.append(place[flat])
+        rest, owner, place, width = rest[:, ~flat], owner[~flat], place[~flat], width / 2
+        split = halves(rest.reshape(-1, 4).T).reshape(4, 2, keys, -1)
+        rest = np.concatenate((split[:, 0], split[:, 1]), axis=2).transpose(1, 2, 0)
+        owner, place = np.concatenate((owner, owner)), np.concatenate((place, place + width))
+    owner = np.concatenate(owners)
+    order = np.lexsort((np.concatenate(places), owner))
+    begin, owner = np.concatenate(begins, axis=1)[:, order], owner[order]
+    # A run ends where the next piece starts elsewhere, in the drawing of the design.
+    ends = np.flatnonzero(np.append((pieces[0, 1:, 0] != pieces[0, :-1, 3]), True))
+    bounds = np.searchsorted(owner, np.append(-1, ends), side="right")
+    return [
+        np.concatenate((begin[:, low:high], pieces[:, end, 3:]), axis=1)
+        for low, high, end in zip(bounds[:-1].tolist(), bounds[1:].tolist(), ends.tolist(), strict=True)
+    ]
