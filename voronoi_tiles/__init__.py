@@ -68,6 +68,7 @@ if TYPE_CHECKING:
     from voronoi_tiles.solid.pieces import SolidPiece
     from voronoi_tiles.solid.solid_job import SolidJob
     from voronoi_tiles.solid.solid_model import SolidModel
+    from voronoi_tiles.solid.standing import stand
     from voronoi_tiles.tile import Tile, TileCopy
     from voronoi_tiles.tiling import Tiling
     from voronoi_tiles.vector.arcs import Arc, LineArc, Neighbour, ParabolaArc
@@ -152,6 +153,7 @@ __all__ = [
     "preflight",
     "render",
     "segment",
+    "stand",
     "starter",
     "starter_text",
 ]
@@ -196,6 +198,7 @@ _HOMES = {
     "voronoi_tiles.solid.solid_job": "SolidJob",
     "voronoi_tiles.solid.pieces": "SolidPiece",
     "voronoi_tiles.solid.solid_model": "SolidModel",
+    "voronoi_tiles.solid.standing": "stand",
     "voronoi_tiles.tile": "Tile TileCopy",
     "voronoi_tiles.tiling": "Tiling",
     "voronoi_tiles.vector.arcs": "Arc LineArc Neighbour ParabolaArc",

@@ -12,7 +12,7 @@ from running import Command, run_all
 
 def _picture(name: str, design: str, *options: str) -> Command:
     """The command that draws one."""
-    return Command(("voronoi-tiles", "solid"), design, f"docs/pictures/solid-{name}.png", (*options, "--size", "340"))
+    return Command(("voronoi-tiles", "solid"), design, f"docs/pictures/solid-{name}.png", (*options, "--size", "330"))
 
 
 PICTURES: Final = (

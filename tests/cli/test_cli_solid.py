@@ -23,11 +23,12 @@ def here(tmp_path: Path) -> Path:
 
 @pytest.mark.parametrize("name", ["a.3mf", "a.stl", "a.png"])
 def test_a_file_is_written_and_said(name: str, here: Path, voronoi_tiles: CommandLine) -> None:
-    """What there is in it, and what was proved; the same bytes on standard output, and nothing is said with --quiet."""
+    """What there is in it, and what was proved; the same bytes again, and nothing is said, with --quiet."""
     call = ("solid", "bird.toml", "--height", "4mm", "--clearance", "0.2mm", "--size", "90")
     done = voronoi_tiles(*call, "-o", name, cwd=here)
     assert (done.returncode, done.stdout) == (0, "")
-    written, proved = done.stderr.splitlines()
+    *notes, written, proved = done.stderr.splitlines()
+    assert notes == (["neighbours and the room between them are for the picture alone"] if name == "a.png" else [])
     assert written.startswith(f"wrote {name}: ")
     assert "x 4 mm" in written
     assert proved.startswith("proved: closed; volumes within ")
@@ -100,3 +101,17 @@ def test_a_report_that_has_no_place_is_refused(
     assert (done.returncode, done.stdout) == (2, "")
     assert message in done.stderr
     assert [path.name for path in here.iterdir()] == ["bird.toml"]
+
+
+def test_a_design_that_stands_is_lofted(here: Path, voronoi_tiles: CommandLine) -> None:
+    """Its height is its own; what only prisms have is refused."""
+    standing = starter_text("p4") + "\n[solid]\nheight = 12\nlayers = 3\nshift = [2, 1]\n"
+    (here / "standing.toml").write_text(standing, encoding="utf-8")
+    done = voronoi_tiles("solid", "standing.toml", "-o", "a.3mf", cwd=here)
+    assert done.returncode == 0, done.stderr
+    assert "x 12 mm, 10.8 cm³" in done.stderr
+    assert "3 levels within" in done.stderr
+    refused = voronoi_tiles("solid", "standing.toml", "-o", "b.3mf", "--clearance", "0.2mm", cwd=here)
+    assert refused.returncode == 2
+    assert refused.stderr.startswith("Error: standing.toml: --clearance is for prisms")
+    assert not (here / "b.3mf").exists()

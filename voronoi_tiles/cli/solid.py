@@ -9,12 +9,12 @@ import click
 from voronoi_tiles.cli.common import (
     PATH,
     as_options,
+    load,
     print_figures,
     refuse_output,
     reporting,
     say,
     say_written,
-    tessellate,
 )
 from voronoi_tiles.cli.options import with_scale, with_solid_job
 
@@ -64,7 +64,7 @@ def solid(
 
     3MF holds an object for each piece, with its colour, and what it was made from; STL all of them in one, without
     colours. Neighbours share every point of their walls: printed pieces need a clearance, 0.2mm, to go together. A
-    picture shows a tile and its neighbours, pulled apart, or the sheet.
+    picture shows a tile and its neighbours, pulled apart, or the sheet. A design with a [solid] is lofted.
     """
     from voronoi_tiles.cli.tables import solid_text
     from voronoi_tiles.solid.extrusion import extrude, surrounded
@@ -79,9 +79,14 @@ def solid(
         raise click.UsageError("The report goes to standard output: give the solids a file.")
     refuse_output(design, output, (f".{file_format}",) if file_format else _SUFFIXES)
     with reporting(design):
-        tiling = tessellate(design, quiet=quiet)
-        drawn = output.lower().endswith(".png") or file_format == "png"
-        made = surrounded(tiling, job) if drawn and job.sheet is None else extrude(tiling, job)
+        loaded = load(design, quiet=quiet)
+        around = (output.lower().endswith(".png") or file_format == "png") and job.sheet is None
+        if loaded.standing is not None:
+            from voronoi_tiles.solid.standing import stand
+
+            made = stand(loaded, job, around=around)
+        else:
+            made = (surrounded if around else extrude)(loaded.tessellate(), job)
         figures = solid_report(made, DENSITY if density is None else density) if reports else {}
         made.save(output, file_format, size=size)
     if not quiet:

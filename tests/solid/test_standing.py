@@ -1,0 +1,76 @@
+"""Designs that stand as models: their lofts, the copies around one, and what only prisms have."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+import pytest
+import shapely
+
+from voronoi_tiles import ArgumentError, Design, JobError, SolidJob, SolidModel, stand
+from voronoi_tiles.solid.cross_sections import section
+
+TWIST = """
+schema = 1
+group = "p4"
+cell = { a = 60 }
+site = [{ name = "bird", strokes = [{ segment = [[8, 10], [22, 17]] }] }]
+solid = { height = 20, layers = 5, turn = 40, about = [15, 14] }
+"""
+
+
+@pytest.fixture(scope="module")
+def around() -> SolidModel:
+    """One and the copies around it."""
+    return stand(Design.loads(TWIST), around=True)
+
+
+def test_a_design_that_stands_is_a_model() -> None:
+    """At the origin, with the volume of the cell's share, made again from its recipe."""
+    model = stand(Design.loads(TWIST))
+    (piece,) = model.pieces
+    assert piece.mesh.is_closed
+    assert piece.mesh.volume == pytest.approx(60 * 60 * 20 / 4, rel=1e-12)
+    assert model.bounds[0] == pytest.approx([0.0, 0.0, 0.0])
+    assert all(figure["passed"] for figure in model.proof["figures"])
+    again = stand(Design.loads(model.recipe["design"]), SolidJob(**json.loads(model.recipe["solid"])))
+    assert (again.pieces[0].mesh.vertices == piece.mesh.vertices).all()
+
+
+def test_copies_around_one_are_apart_and_of_other_colours(around: SolidModel) -> None:
+    """At all heights; they are the same solid."""
+    assert len(around.pieces) > 4
+    assert {round(piece.mesh.volume, 6) for piece in around.pieces} == {18000.0}
+    for z in (0.1, 7.3, 19.9):
+        rings = [section(piece.mesh, z) for piece in around.pieces]
+        shapes = [shapely.Polygon(np.column_stack((ring.start.real, ring.start.imag))) for ring in rings]
+        one, other = np.triu_indices(len(shapes), 1)
+        assert shapely.distance(np.array(shapes)[one], np.array(shapes)[other]).min() > 2.0
+    assert around.pieces[0].colour not in {piece.colour for piece in around.pieces[1:]}
+    assert around.notes == ("neighbours and the room between them are for the picture alone",)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"height": 5}, "`height` is that of [solid]"),
+        ({"clearance": 0.2}, "`clearance` is for prisms"),
+        ({"chamfer": 0.2}, "`chamfer` is for prisms"),
+        ({"sheet": "200x200mm"}, "`sheet` is for prisms"),
+        ({"colours": "fewest"}, "`colours` is for prisms"),
+    ],
+)
+def test_what_only_prisms_have_is_refused(options: dict[str, Any], message: str) -> None:
+    """Before anything is computed."""
+    with pytest.raises(JobError) as refusal:
+        stand(Design.loads(TWIST), SolidJob(**options))
+    assert str(refusal.value).startswith(message)
+    assert refusal.value.remedy
+
+
+def test_a_flat_design_does_not_stand() -> None:
+    """The message says what to write."""
+    with pytest.raises(ArgumentError, match=r"\[solid\]"):
+        stand(Design.loads(TWIST.split("solid =", maxsplit=1)[0]))

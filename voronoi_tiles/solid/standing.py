@@ -1,0 +1,143 @@
+"""Designs that stand: their lofts as models, alone or with the copies around one, pulled apart for a picture."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from voronoi_tiles.base.arguments import instance
+from voronoi_tiles.base.arrays import Floats
+from voronoi_tiles.designs.design import Design
+from voronoi_tiles.fabrication.exact import design_recipe
+from voronoi_tiles.fabrication.job import JobError
+from voronoi_tiles.groups.periodic_colouring import palette
+from voronoi_tiles.solid.cross_sections import section
+from voronoi_tiles.solid.faces import polygons
+from voronoi_tiles.solid.loft import ACCURACY_MM, Loft
+from voronoi_tiles.solid.mesh import TriangleMesh
+from voronoi_tiles.solid.pieces import SolidPiece
+from voronoi_tiles.solid.solid_job import SolidJob
+from voronoi_tiles.solid.solid_model import SolidModel
+from voronoi_tiles.solid.solid_proof import SolidProof, proved_loft
+from voronoi_tiles.vector.motion_codes import operation_of
+
+_SHARES: Final = (0.013, 0.257, 0.493, 0.751, 0.987)
+"""At these shares of the height it is seen which pieces touch, and whether they are apart: at no layer."""
+
+_APART: Final = 0.16
+"""How far pieces are pulled apart at least; a share of the longer side of one."""
+
+_PULLS: Final = tuple(0.1 * k for k in range(2, 31))
+"""By these shares of the distance between them it is tried, in turn."""
+
+_TOUCHING: Final = 1e-6
+"""Pieces that are nearer touch; a share of the longer side of one."""
+
+
+def stand(design: Design, job: SolidJob | None = None, *, around: bool = False) -> SolidModel:
+    """The solids of a design that stands, proved: one of each site, or one and the copies `around` it, pulled apart.
+
+    Raises ArgumentError for a design that is flat, JobError where a job asks for what only prisms have, LoftError where
+    copies meet at some height, ProofError where the result fails its proof.
+    """
+    job = SolidJob() if job is None else instance("job", job, SolidJob)
+    _refuse_prisms(job)
+    accuracy = ACCURACY_MM if job.accuracy == SolidJob.options()["accuracy"].default else job.accuracy
+    loft, proof = proved_loft(design, accuracy=accuracy)
+    names = [site.name for site in design.noded]
+    if around:
+        found = _around(loft)
+        meshes, colours = _pulled([mesh for _, mesh in found])
+        sites = [names[site] for site, _ in found]
+        notes: tuple[str, ...] = ("neighbours and the room between them are for the picture alone",)
+    else:
+        low = np.min([mesh.vertices.min(axis=0) for mesh in loft.meshes], axis=0)
+        meshes = [TriangleMesh(mesh.vertices - low, mesh.triangles) for mesh in loft.meshes]
+        sites, colours, notes = names, list(range(len(names))), ()
+    return SolidModel(
+        title=f"{design.name} ({design.group.name})",
+        pieces=tuple(
+            SolidPiece(site, site, colour, mesh) for site, colour, mesh in zip(sites, colours, meshes, strict=True)
+        ),
+        colours=tuple(f"#{bytes(shade).hex()}" for shade in palette(max(colours) + 1)),
+        recipe={**design_recipe(design), "solid": json.dumps(job.recipe(), sort_keys=True)},
+        proof={"figures": proof.document()},
+        proved=_said(loft, proof),
+        notes=notes,
+        files=tuple(design.files),
+    )
+
+
+def _refuse_prisms(job: SolidJob) -> None:
+    """Refuse what a loft does not have."""
+    for name in job.recipe():
+        if name == "height":
+            raise JobError("`height` is that of [solid], which the design has", remedy="Change it there.")
+        if name != "accuracy":
+            raise JobError(
+                f"`{name}` is for prisms, and the design has a [solid]",
+                remedy="Leave it out; a slicer keeps printed pieces apart by its compensation in x and y.",
+            )
+
+
+def _said(loft: Loft, proof: SolidProof) -> str:
+    """The proof in a line."""
+    return (
+        f"closed; volume = cell area x height (relative error {proof.volume:.1g}); walls are neighbours', bit for bit; "
+        f"{len(loft.levels)} levels within {proof.distance:.1g} of the exact tiles; between them copies keep apart"
+    )
+
+
+def _around(loft: Loft) -> list[tuple[int, TriangleMesh]]:
+    """The solid of the first site and all that touch it at some level: the number of the site, and the mesh."""
+    beside = {name for level in loft.levels for ring in level.core.rings[0] for name in ring}
+    copies = [(site, loft.image(site, operation_of(code))) for site, code in sorted(beside)]
+    return [(0, loft.meshes[0]), *copies]
+
+
+def _pulled(meshes: Sequence[TriangleMesh]) -> tuple[list[TriangleMesh], list[int]]:
+    """Meshes pulled away from the first of them, as little as parts them, and colours that differ where they touch."""
+    import shapely
+
+    low, high = float(meshes[0].vertices[:, 2].min()), float(meshes[0].vertices[:, 2].max())
+    levels = [low + share * (high - low) for share in _SHARES]
+    shapes = np.array([[_filled(mesh, z) for z in levels] for mesh in meshes], object)
+    centres = np.array([(mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0))[:2] / 2 for mesh in meshes])
+    size = float(np.ptp(meshes[0].vertices[:, :2], axis=0).max())
+    one, other = np.triu_indices(len(meshes), 1)
+    touching = (shapely.distance(shapes[one], shapes[other]) < _TOUCHING * size).any(axis=1)
+    away = centres - centres[0]
+    pull = 0.0
+    for pull in _PULLS:
+        moved = np.array([_moved(row, pull * by) for row, by in zip(shapes, away, strict=True)], object)
+        if (shapely.distance(moved[one], moved[other]) > _APART * size).all():
+            break
+    colours: list[int] = []
+    pairs = {pair for pair, meet in zip(zip(one.tolist(), other.tolist(), strict=True), touching, strict=True) if meet}
+    for k in range(len(meshes)):
+        taken = {colours[j] for j in range(k) if (j, k) in pairs}
+        colours.append(next(colour for colour in range(k + 1) if colour not in taken))
+    shifts = np.column_stack((pull * away, np.zeros(len(meshes))))
+    return [
+        TriangleMesh(mesh.vertices + shift, mesh.triangles) for mesh, shift in zip(meshes, shifts, strict=True)
+    ], colours
+
+
+def _moved(shapes: Any, by: Floats) -> list[Any]:
+    """Shapes moved."""
+    import shapely
+
+    return [shapely.transform(shape, lambda z: z + by) for shape in shapes]
+
+
+def _filled(mesh: TriangleMesh, z: float) -> Any:
+    """The section of a mesh as a shape."""
+    import shapely
+
+    rings = section(mesh, z)
+    plane = np.column_stack((rings.start.real, rings.start.imag))
+    parts = polygons(rings.start, rings.offsets)
+    return shapely.MultiPolygon([(plane[loops[0]], [plane[hole] for hole in loops[1:]]) for loops in parts])
