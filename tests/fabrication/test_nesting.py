@@ -16,11 +16,12 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from helpers.cutting import contour_shapes, cuts, squares
+from helpers.cutting import contour_shapes, cuts, flattened, squares, xy
 from helpers.examples import tiling
 
 from voronoi_tiles import Design, Tiling
-from voronoi_tiles.fabrication import nest_patterns, nesting
+from voronoi_tiles.fabrication import nest_patterns, nesting, packed_sheets
+from voronoi_tiles.fabrication.exporting import Exported
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.layout import Layout, Piece
@@ -232,8 +233,7 @@ def test_labels_and_art_turn_with_their_pieces(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("job", "message"),
     [
-        ({"sheet": None}, "needs a rectangular sheet"),
-        ({"sheet": "disc.svg"}, "needs a rectangular sheet"),
+        ({"sheet": None}, "needs a sheet"),
         ({"fit": "clip"}, "nests whole tiles"),
         ({"gap": 0.0}, "would cut where pieces touch twice"),
         ({"pieces": 9}, "as many `pieces` as fit"),
@@ -409,9 +409,7 @@ def test_so_many_pieces_of_each_site_go_on_as_many_sheets_as_they_take(tmp_path:
 def test_a_count_that_does_not_fit_is_refused_with_what_does(tmp_path: Path) -> None:
     """How many fit, and how many sheets all would take, which then do; nothing is left of it."""
     job: dict[str, Any] = {**JOB, "layout": "auto", "count": "bird=8,moth=20"}
-    with pytest.raises(
-        JobError, match=r"`count`: \d+ of 28 pieces fit on 1 sheet, and all would take 2\. Use `sheets=2`"
-    ):
+    with pytest.raises(JobError, match=r"\d+ of 28 pieces fit on 1 sheet, and all would take 2\. Use `sheets=2`"):
         pair().export(tmp_path / "all.svg", job=Job(**job))
     assert not list(tmp_path.iterdir())
     with pytest.raises(JobError, match=r"no site is called 'owl'. Its sites are bird, moth"):
@@ -423,6 +421,30 @@ def test_as_many_as_asked_for_and_no_more_are_nested() -> None:
     made = hooks().make(Job(**JOB, layout="auto", count=6))
     assert (made.pieces.count, int(made.pieces.turned_over.sum())) == (6, 3)
     assert pair().make(Job(**JOB, layout="auto", count="moth=3")).pieces.site.tolist() == [1, 1, 1]
+
+
+def test_each_wood_is_nested_on_sheets_of_its_own(tmp_path: Path) -> None:
+    """As many pieces of each colour and kind as rows have of it, on fewer sheets; each file lays its pieces again."""
+    job: dict[str, Any] = {"sheet": (200, 200), "stock": (160.0, 110.0), "margin": 5, "kerf": 0.2, "pack": True}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(packed_sheets, "has_search", lambda: False)
+        rows, nested = (
+            hooks().export(tmp_path / f"{name}.svg", job=Job(**job, colours="handedness", **more))
+            for name, more in (("rows", {}), ("wood", {"layout": "nested"}))
+        )
+        with pytest.raises(JobError, match=r"of 12 pieces fit on 1 sheet, and all would take 2"):
+            hooks().export(tmp_path / "one.svg", job=Job(**job, colours="handedness", layout="nested", sheets=1))
+
+    def of_wood(written: tuple[Exported, ...]) -> Counter[tuple[str, bool]]:
+        """How many pieces of each colour, turned over or not, there are."""
+        names = [(re.findall(r"colour(\d)", path)[0], one.pieces) for path, one in written if one is not None]
+        return Counter((colour, bool(over)) for colour, pieces in names for over in pieces.turned_over)
+
+    assert of_wood(rows) == of_wood(nested)
+    assert len(nested) <= len(rows)
+    path = nested[0].path
+    hooks().export(tmp_path / "again.svg", job=Job(sheet=(160.0, 110.0), margin=5, kerf=0.2, layout=path))
+    assert (tmp_path / "again.svg").read_bytes() == Path(path).read_bytes()
 
 
 @pytest.mark.parametrize("count", ["x", "", "bird=-1", "bird=0", "bird=1,bird=2", "bird=10001", True, {"bird": 1.5}])
@@ -438,6 +460,8 @@ def test_counts_that_cannot_be_are_refused(count: object) -> None:
         ({"sheets": 3}, "`sheets` are for a `count` of pieces"),
         ({"count": 3}, "`layout='tessellated'` lays others"),
         ({"count": 3, "layout": "all-1.svg"}, "`layout='all-1.svg'` lays others"),
+        ({"count": 3, "layout": "nested", "pack": True, "colours": "site"}, "`pack` packs those of a picture"),
+        ({"pieces": 3, "layout": "nested", "pack": True, "colours": "site"}, "Leave `pieces` out"),
         ({"count": 3, "layout": "auto", "fit": "clip"}, "nests whole tiles"),
     ],
 )
@@ -454,3 +478,79 @@ def test_several_sheets_are_no_single_drawing() -> None:
         pair().make(job)
     with pytest.raises(JobError, match="`sheets`: several files need a name"):
         pair().export("-", job=job, file_format="svg")
+
+
+OFFCUT = [[(2, 2), (118, 2), (118, 50), (70, 50), (70, 88), (2, 88)], [(40, 30), (52, 30), (52, 42), (40, 42)]]
+"""An angle of a sheet, and a hole in it: x and y up; millimetres."""
+
+
+def offcut(folder: Path) -> Path:
+    """A drawing of it."""
+    path = folder / "offcut.svg"
+    data = " ".join("M" + "L".join(f"{x} {90 - y}" for x, y in ring) + "Z" for ring in OFFCUT)
+    page = 'width="120mm" height="90mm" viewBox="0 0 120 90"'
+    path.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" {page}><path d="{data}"/></svg>')
+    return path
+
+
+def test_pieces_are_nested_on_an_offcut_with_a_hole(tmp_path: Path) -> None:
+    """By shapely all keep the margin from its contour and its hole, and the gap."""
+    job: dict[str, Any] = {"sheet": offcut(tmp_path), "margin": 3, "kerf": 0.2}
+    made = squares().make(Job(**job, layout="auto", count=7))
+    edge = shapely.Polygon(OFFCUT[0], OFFCUT[1:])
+    shapes = np.array(contour_shapes(cuts(made)))
+    assert len(shapes) == 7
+    assert edge.contains(shapes).all()
+    assert shapely.distance(edge.boundary, shapes).min() >= 3 - 1e-6
+    one, two = np.triu_indices(len(shapes), 1)
+    assert shapely.distance(shapes[one], shapes[two]).min() >= 1 - 1e-4
+    made.save(tmp_path / "first.svg")
+    squares().make(Job(**job, layout=tmp_path / "first.svg")).save(tmp_path / "again.svg")
+    assert (tmp_path / "again.svg").read_bytes() == (tmp_path / "first.svg").read_bytes()
+    with pytest.raises(JobError, match="would leave this job's sheet"):
+        squares().make(Job(**{**job, "margin": 3.2}, layout=tmp_path / "first.svg"))
+
+
+def test_a_piece_too_near_to_a_drawn_edge_is_seen(tmp_path: Path) -> None:
+    """By a hundredth of a millimetre at its contour, at a notch, or at the hole; or where it lies beyond the sheet."""
+    laid = layout_of(squares(), sheet=offcut(tmp_path), margin=3, kerf=0.2)
+    x, y, right, top = placed(laid, [Piece(0, False, 0.0, 0j)]).contours.paths.bounds
+    corner, other = complex(x, y), complex(right, top)
+    free = [5 + 5j - corner, 49 + 85j - complex(right, top), 37 + 25j - complex(right, y), 55 + 5j - corner]
+    near = [z + away for z, away in zip(free, (-0.01, 0.01j, 0.01, 27j + 15), strict=True)]
+    for place in (*free, 67 + 85j - other):
+        assert len(misplaced(placed(laid, [Piece(0, False, 0.0, place)]))) == 0, place
+    for place in (*near, 67.01 + 85j - other, 95 + 70j - corner, 46 + 36j - (corner + other) / 2, 300 + 300j):
+        assert misplaced(placed(laid, [Piece(0, False, 0.0, place)])).tolist() == [[0, 0]], place
+
+
+RING = """schema = 1
+group = "p1"
+cell = { a = 60, b = 60, angle = 90 }
+[[site]]
+name = "ring"
+strokes = [{ polyline = [[10, 10], [50, 10], [50, 50], [10, 50]], closed = true }]
+[[site]]
+name = "bit"
+strokes = [{ point = [24, 30] }]
+[[site]]
+name = "other"
+strokes = [{ point = [36, 30] }]
+[[site]]
+name = "rest"
+strokes = [{ point = [0, 0] }]
+"""
+"""A tile with a hole that holds two others."""
+
+
+def test_a_tile_is_nested_in_the_hole_of_another_and_cut_before_that_falls_out() -> None:
+    """On a sheet with no other room for it, a gap from all sides of the hole; without a hole it would not fit."""
+    tiles = Design.loads(RING).tessellate()
+    job: dict[str, Any] = {"sheet": (70.0, 70.0), "margin": 2.0, "kerf": 0.2, "layout": "auto"}
+    made = tiles.make(Job(**job, count="ring=1,bit=1"))
+    (inner,) = (layer.paths for layer in made.drawing.layers if layer.name == "inner")
+    bit, hole = (shapely.Polygon(xy(line)) for line in flattened(inner, 1e-4))
+    assert hole.contains(bit)
+    assert hole.exterior.distance(bit) >= 1 - 1e-4
+    with pytest.raises(JobError, match="2 of 3 pieces fit on 1 sheet"):
+        tiles.make(Job(**job, count="ring=1,bit=1,other=1"))

@@ -19,6 +19,7 @@ from voronoi_tiles.formats.burns import Role
 from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.contour_tabs import with_tabs
 from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.paths.winding import item_winding
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,8 +82,12 @@ def _tabbed(paths: Paths, width: float) -> Paths:
 
 
 def cut_pieces(contours: Contours, colouring: TileColouring, job: Job) -> list[Cut]:
-    """The contours of pieces, holes first, each colour on its own."""
-    outer = ring_areas(contours.paths) > 0
+    """The contours of pieces, holes first, each colour on its own.
+
+    Pieces that are nested in holes come before these, which fall out.
+    """
+    depth = _depths(contours.paths, nested=job.nests)
+    outer = depth == 0
     of = np.repeat(np.arange(len(contours.copy)), np.diff(contours.items))
     colour = colouring.of_copies(contours.copy)
     cuts = []
@@ -92,12 +97,25 @@ def cut_pieces(contours: Contours, colouring: TileColouring, job: Job) -> list[C
             picked = np.flatnonzero(chosen & in_group[of])
             if not len(picked):
                 continue
-            paths = toured(contours.paths.take(picked))
+            by_depth = [picked[depth[picked] == n] for n in np.unique(depth[picked])[::-1].tolist()]
+            paths = Paths.concatenate([toured(contours.paths.take(own)) for own in by_depth])
             if job.tabs > 0.0:
                 # The beam takes half a kerf from either end of a bridge.
                 paths = _tabbed(paths, job.tabs + job.kerf)
             cuts.append(Cut(role, suffix, group, paths))
     return cuts
+
+
+def _depths(rings: Paths, *, nested: bool) -> Ints:
+    """In how many other rings each lies: 0 around pieces, 1 around holes; more where pieces are `nested` in holes."""
+    hole = ring_areas(rings) <= 0
+    depth = hole.astype(np.intp)
+    if nested and hole.any():
+        holes = rings.take(np.flatnonzero(hole))
+        around = item_winding(holes, holes.offsets, rings.start[rings.offsets[:-1]]) != 0
+        around[np.arange(len(holes)), np.flatnonzero(hole)] = False
+        depth += 2 * around.sum(axis=0)
+    return depth
 
 
 def cut_shapes(contours: Contours, colouring: TileColouring, job: Job) -> list[Cut]:

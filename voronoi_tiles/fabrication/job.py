@@ -327,8 +327,10 @@ class Job:
     @property
     def not_nestable(self) -> tuple[str, str] | None:
         """Why pieces cannot be nested, and what to do; None where they can."""
+        if self.pack and self.layout == "nested":  # on the stock, those of each colour
+            return None if self.pieces is None else ("nests the pieces of a picture's size", "Leave `pieces` out.")
         for wrong, message, remedy in (
-            (not isinstance(self.sheet, tuple), "needs a rectangular sheet", "Give its size, `sheet='600x300mm'`."),
+            (self.sheet is None, "needs a sheet", "Give its size, `sheet='600x300mm'`, or a drawing of it."),
             (self.fit != "whole", f"nests whole tiles, and `fit='{self.fit}'` is more", "Use `fit='whole'`."),
             (self.gap == 0.0, "with a `gap` of 0 would cut where pieces touch twice", "Use `gap='1mm'`."),
             (self.pieces is not None, "lays as many `pieces` as fit", "Leave `pieces` out."),

@@ -98,7 +98,16 @@ def _check_packing(job: Job) -> None:
 def _check_count(job: Job) -> None:
     """Refuse a count of what is not nested."""
     for wrong, message, remedy in (
-        (job.count is None and job.sheets is not None, "`sheets` are for a `count` of pieces", "Add `count=40`."),
+        (
+            job.count is None and job.sheets is not None and not (job.pack and job.layout == "nested"),
+            "`sheets` are for a `count` of pieces, or for those of colours that are packed and nested",
+            "Add `count=40`, or `pack=True` and `layout='nested'`.",
+        ),
+        (
+            job.count is not None and job.pack,
+            "`count` is of pieces wherever they belong, and `pack` packs those of a picture",
+            "Use one of the two.",
+        ),
         (
             job.count is not None and job.layout not in ("nested", "auto"),
             f"`count` is of pieces that are nested, and `layout='{job.layout}'` lays others",

@@ -47,7 +47,7 @@ PIECES_MAX: Final = 4_000_000
 class Sheet:
     """The page and what of it is filled: `region` is None where one of each tile is made, and the page fits them.
 
-    `notes` say in sentences what is to be known of the drawing it was read from.
+    `outline` is what a drawing bounds, without a margin; `notes` say in sentences what is to be known of it.
     """
 
     width: float
@@ -55,6 +55,7 @@ class Sheet:
     region: Region | None
     centre: complex
     notes: tuple[str, ...] = ()
+    outline: Paths | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -325,9 +326,8 @@ def _stretch(tiles: DressedTiles, apart: float, accuracy: float) -> Stretch:
             f"a `gap` of {apart:g} mm is more than {FARTHEST:.0f} times the cell",
             remedy=f"Give at most {largest:g} mm.",
         )
-    spacing = tiles.spacing(accuracy)
     try:
-        return spacing.stretch(apart + 2 * accuracy)
+        return tiles.spacing(accuracy).stretch(apart + 2 * accuracy)
     except ValueError as error:
         raise JobError(str(error), remedy="Use `edges='once'`, or leave `sheet` out: pieces lie in a row.") from error
 

@@ -56,12 +56,13 @@ def fill(
     laid: NestPlaces,
     demand: Ints | None = None,
     outlines: Sequence[Complexes] | None = None,
+    even: float = 0.0,
 ) -> NestPlaces:
     """Further places for items in a region, a shapely polygon, or several, beside those that are `laid`.
 
     As many as fit, or at most as `demand` says (intp, one for each item); the next is always one of which there are
-    the fewest for its share, if it fits. No two of the items' polygons overlap; in the region are these or, if given,
-    their `outlines` about the same 0.
+    the fewest for its share, if it fits, and as long as each item then has a part `even` of its share at least. No two
+    of the items' polygons overlap; in the region are these or, if given, their `outlines` about the same 0.
     """
     import shapely
 
@@ -87,10 +88,15 @@ def fill(
             overlap[key] = shapely.union_all(overlaps(solids[stays.item].parts, parts, _EVERYWHERE))
         return _image(overlap[key], unit_at(stays.turn), shift)
 
+    def may_come(item: int) -> bool:
+        """Whether there may be one more of an item."""
+        more = counts + (np.arange(len(items)) == item)
+        return bool(left[item] > 0 and (more >= np.floor(even * share * more.sum())).all())
+
     found: list[tuple[int, float, complex]] = []
     while True:
         by_need = np.argsort((counts + 1) / share, kind="stable").tolist()
-        best = next(filter(None, (_lowest(postures, k) for k in by_need if left[k] > 0)), None)
+        best = next(filter(None, (_lowest(postures, k) for k in by_need if may_come(k))), None)
         if best is None:
             break
         posture, shift = best

@@ -14,6 +14,7 @@ from voronoi_tiles.fabrication.dressed_tiles import DressedTiles
 from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.nest_search import NestItem
 from voronoi_tiles.paths.conversion import to_lines
+from voronoi_tiles.vector.complex.period import Period
 from voronoi_tiles.vector.motions import compose, inverse, reverses_orientation
 
 _COARSE: Final = 0.06
@@ -41,6 +42,16 @@ class NestKind(NamedTuple):
     holes: tuple[Complexes, ...]
 
 
+def kind_keys(period: Period, *, grain: bool) -> list[tuple[int, ...]]:
+    """What tells the kinds of a period's tiles apart: site, and how each is turned over or, with a grain, turned."""
+    keys: list[tuple[int, ...]] = []
+    for site, motion in zip(period.site.tolist(), period.motion, strict=True):
+        linear = tuple(map(int, motion[:4]))
+        along = max(linear, tuple(-part for part in linear)) if grain else (int(reverses_orientation(motion)),)
+        keys.append((site, *along))
+    return keys
+
+
 def kinds_of(tiles: DressedTiles, gap: float, accuracy: float, *, grain: bool) -> list[NestKind]:
     """The kinds of pieces: those of a site are one, but those turned over, and with a grain, those turned otherwise.
 
@@ -48,10 +59,8 @@ def kinds_of(tiles: DressedTiles, gap: float, accuracy: float, *, grain: bool) -
     """
     period = tiles.period
     members: dict[tuple[int, ...], list[int]] = {}
-    for tile, (site, motion) in enumerate(zip(period.site.tolist(), period.motion, strict=True)):
-        linear = tuple(map(int, motion[:4]))
-        along = max(linear, tuple(-part for part in linear)) if grain else (reverses_orientation(motion),)
-        members.setdefault((site, *along), []).append(tile)
+    for tile, key in enumerate(kind_keys(period, grain=grain)):
+        members.setdefault(key, []).append(tile)
     kinds: list[NestKind] = []
     first: dict[int, int] = {}
     for (site, *_), own in members.items():

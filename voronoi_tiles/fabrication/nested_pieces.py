@@ -19,7 +19,9 @@ from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.layout import Layout, Piece, PlacedTiles
 from voronoi_tiles.fabrication.tile_placement import TilePlacement
 from voronoi_tiles.paths.near_items import ROUNDING, near_items
+from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.paths.segments import item_boxes
+from voronoi_tiles.paths.winding import item_winding
 from voronoi_tiles.vector.motions import reverses_orientation
 
 _ANGLE_DIGITS: Final = 7
@@ -96,10 +98,28 @@ def misplaced(layout: Layout) -> Ints:
     """
     contours, sheet, margin = layout.contours, layout.sheet, layout.job.margin
     pairs = near_items(contours.paths, contours.items, layout.job.side_by_side)
-    box = item_boxes(contours.paths, contours.items)
-    low, high = margin - ROUNDING, np.array([sheet.width, sheet.height]) - margin + ROUNDING
-    off = np.flatnonzero((box[:, :2] < low).any(axis=1) | (box[:, 2:] > high).any(axis=1))
+    if sheet.outline is None:
+        box = item_boxes(contours.paths, contours.items)
+        low, high = margin - ROUNDING, np.array([sheet.width, sheet.height]) - margin + ROUNDING
+        off = np.flatnonzero((box[:, :2] < low).any(axis=1) | (box[:, 2:] > high).any(axis=1))
+    else:
+        # All that is not the sheet is an item as well, in whose hole the pieces lie.
+        beyond = _beyond(Paths.concatenate([contours.paths, sheet.outline]), sheet.outline, margin)
+        paths = Paths.concatenate([contours.paths, beyond])
+        near = near_items(paths, np.append(contours.items, len(paths)), margin)
+        # A hole of the sheet may lie in a piece, far from its edge.
+        holes = sheet.outline.start[sheet.outline.offsets[:-1]]
+        around = item_winding(contours.paths, contours.paths.offsets[contours.items], holes) > 0
+        off = np.union1d(near[near[:, 1] == len(contours.items) - 1, 0], np.flatnonzero(around.any(axis=1)))
     return np.concatenate((pairs, np.column_stack((off, off))))
+
+
+def _beyond(everything: Paths, outline: Paths, margin: float) -> Paths:
+    """All that an outline leaves of a rectangle around everything, and more than a margin around that."""
+    x0, y0, x1, y1 = everything.bounds
+    low, high = complex(x0, y0) - (margin + 1.0) * (1 + 1j), complex(x1, y1) + (margin + 1.0) * (1 + 1j)
+    corners = [low, complex(high.real, low.imag), high, complex(low.real, high.imag)]
+    return Paths.concatenate([Paths.polylines([corners], closed=True), outline.reversed()])
 
 
 def piece_at(tiles: DressedTiles, tile: int, about: complex, turn: float, shift: complex) -> Piece:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Final
+from functools import cached_property
+from typing import Any, Final
 
 import numpy as np
 
@@ -17,77 +18,112 @@ from voronoi_tiles.fabrication.layout import Layout, Piece
 from voronoi_tiles.fabrication.nest_filling import fill
 from voronoi_tiles.fabrication.nest_kinds import NestKind, kinds_of, refuse_large
 from voronoi_tiles.fabrication.nest_patterns import lay_patterns
+from voronoi_tiles.fabrication.nest_places import NESTED_MAX
 from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces, Progress, counts_of, most_pieces
 from voronoi_tiles.fabrication.nested_pieces import misplaced, piece_at, placed
+from voronoi_tiles.fabrication.nested_regions import capped, joined, lay_in_holes, lay_in_region, region_within
 
-_SHEETS_MOST: Final = 1_000
-"""Sheets after which it is not found out how many more a count needs."""
+EVEN: Final = 0.8
+"""The least part of its share that each kind has where no demand says how many, and no search drops some."""
+
+SHEETS_MOST: Final = 1_000
+"""Most sheets that pieces are nested on; a count."""
 
 
 @dataclass(frozen=True, eq=False)
 class Nesting:
-    """The kinds of pieces that are nested, and a layout whose sheet they are laid on."""
+    """The kinds of pieces that are nested, a layout whose sheet they are laid on, and how many sheets at most."""
 
     layout: Layout
     job: Job
     kinds: list[NestKind]
+    most: int
 
     @classmethod
-    def of(cls, layout: Layout, job: Job) -> Nesting:
-        """The kinds of pieces of a layout. Raises JobError where one is larger than the sheet."""
+    def of(cls, layout: Layout, job: Job, most: int = 1) -> Nesting:
+        """The kinds of pieces of a layout."""
         kinds = kinds_of(layout.tiles, job.side_by_side, layout.budget.measured, grain=job.grain)
-        nesting = cls(layout, job, kinds)
-        refuse_large([kind.item for kind in kinds], nesting.room, job.side_by_side)
-        return nesting
+        return cls(layout, job, kinds, most)
+
+    @cached_property
+    def region(self) -> Any:
+        """Where pieces may lie on a sheet that is drawn, a shapely polygon; None on a rectangle."""
+        job, outline = self.job, self.layout.sheet.outline
+        return None if outline is None else region_within(outline, job.margin, self.layout.budget.measured)
 
     @property
     def room(self) -> tuple[float, float]:
         """The rectangle for polygons, which reach half a gap beyond pieces, and may do so beyond the margin."""
-        job, sheet = self.job, self.layout.sheet
-        more = job.side_by_side - 2 * job.margin
-        return sheet.width + more, sheet.height + more
+        gap, sheet = self.job.side_by_side, self.layout.sheet
+        if self.region is not None:
+            x0, y0, x1, y1 = self.region.bounds
+            return x1 - x0 + gap, y1 - y0 + gap
+        return sheet.width - 2 * self.job.margin + gap, sheet.height - 2 * self.job.margin + gap
 
     @property
     def corner(self) -> complex:
-        """Where that rectangle begins on the page."""
-        return (self.job.margin - self.job.side_by_side / 2) * (1 + 1j)
+        """Where that rectangle begins on the page; on a sheet that is drawn, places are those on the page."""
+        return 0j if self.region is not None else (self.job.margin - self.job.side_by_side / 2) * (1 + 1j)
 
     def sheet(
         self, demand: Ints | None = None, progress: Progress | None = None, *, search: bool
     ) -> tuple[Layout, Ints]:
         """A sheet with as many pieces as patterns, or with `search` that, find places for, and how many of each kind.
 
-        Not more than `demand` of each kind (intp), where that says how many.
+        Not more than `demand` of each kind (intp), where that says how many. Sheets that are drawn are not searched.
+        Raises JobError where a piece is larger than the sheet.
         """
+        import shapely
+
         items = [kind.item for kind in self.kinds]
-        if demand is None:
+        left = np.full(len(items), NESTED_MAX) if demand is None else demand
+        which = np.flatnonzero(left)
+        refuse_large([items[k] for k in which.tolist()], self.room, self.job.side_by_side)
+        if self.region is not None:
+            kinds = [
+                self.kinds[k]._replace(item=item) for k, item in zip(which, self._wanted(which, demand), strict=True)
+            ]
+            found = lay_in_region(kinds, self.region, left[which], EVEN if demand is None else 0.0)
+            found = found._replace(item=which[found.item])
+        elif demand is None:
             found = lay_patterns(items, self.room)
+            found = joined(found, fill(items, shapely.box(0.0, 0.0, *self.room), found, even=EVEN))
             if search:
                 found = most_pieces(items, self.room, found, self.job.effort, self.job.seed, progress)
         else:
             found = self._demanded(demand, progress, search=search)
         found = self._kept(found)
+        left = left - np.bincount(found.item, minlength=len(items))
+        found = self._kept(joined(found, lay_in_holes(self.kinds, found, left)))
         return self._laid(found), np.bincount(found.item, minlength=len(items))
 
+    def _wanted(self, which: Ints, demand: Ints | None) -> list[NestItem]:
+        """Some of the items, with the shares that a demand gives them."""
+        items = []
+        for k in which.tolist():
+            item = self.kinds[k].item
+            at = np.flatnonzero(which == item.like)
+            share = item.share if demand is None else int(demand[k]) / int(demand.sum())
+            items.append(item._replace(share=share, like=int(at[0]) if len(at) else None))
+        return items
+
     def _demanded(self, demand: Ints, progress: Progress | None, *, search: bool) -> NestPlaces:
-        """Places for at most so many of each kind, in these proportions."""
+        """Places on a rectangle for at most so many of each kind, in these proportions."""
         import shapely
 
         which = np.flatnonzero(demand)
-        items = [_alone(self.kinds[k].item, which, int(demand[k]) / int(demand.sum())) for k in which.tolist()]
+        items = self._wanted(which, demand)
 
-        def capped(places: NestPlaces) -> NestPlaces:
+        def filled(places: NestPlaces) -> NestPlaces:
             """Not more of each than there shall be; and more where there is room."""
-            own = [np.flatnonzero(places.item == k) for k in range(len(items))]
-            first = [one[np.argsort(places.shift.real[one], kind="stable")] for one in own]
-            some = places.take(np.concatenate([one[: demand[k]] for one, k in zip(first, which, strict=True)]))
+            some = capped(places, demand[which])
             left = demand[which] - np.bincount(some.item, minlength=len(items))
             return joined(some, fill(items, shapely.box(0.0, 0.0, *self.room), some, left))
 
-        found = capped(lay_patterns(items, self.room))
+        found = filled(lay_patterns(items, self.room))
         if search and len(found.item) < demand.sum():
             more = most_pieces(items, self.room, found, self.job.effort, self.job.seed, progress)
-            found = max(found, capped(more), key=lambda places: len(places.item))
+            found = max(found, filled(more), key=lambda places: len(places.item))
         return found._replace(item=which[found.item])
 
     def _laid(self, places: NestPlaces) -> Layout:
@@ -114,17 +150,15 @@ class Nesting:
         return places.take(np.flatnonzero(kept))
 
 
-def counted_sheets(
-    nesting: Nesting, wanted: Sequence[int], most: int, progress: Progress | None = None, *, search: bool
-) -> list[Layout]:
-    """So many pieces of each site, on as few sheets as are found, `most` at most. Raises JobError for more.
+def counted_sheets(nesting: Nesting, demand: Ints, progress: Progress | None = None, *, search: bool) -> list[Layout]:
+    """So many pieces of each kind (intp), on as few sheets as are found. Raises JobError where these are too many.
 
-    Of a site, each kind has its share. Sheets are alike as long as so many pieces are left.
+    Sheets are alike as long as so many pieces are left.
     """
-    left = _of_kinds(nesting, wanted)
+    left, most = demand, nesting.most
     sheets: list[Layout] = []
     fitted, count = 0, np.zeros(len(left), np.intp)
-    while left.any() and len(sheets) < _SHEETS_MOST:
+    while left.any() and len(sheets) < SHEETS_MOST:
         if not sheets or (count > left).any():
             layout, count = nesting.sheet(left, progress, search=search and len(sheets) < most)
         if not count.any():
@@ -133,17 +167,17 @@ def counted_sheets(
         left = left - count
         fitted += int(count.sum()) if len(sheets) <= most else 0
     if len(sheets) > most:
-        many = f"{len(sheets):,}" if not left.any() else f"more than {_SHEETS_MOST:,}"
+        many = f"{len(sheets):,}" if not left.any() else f"more than {SHEETS_MOST:,}"
         raise JobError(
-            f"`count`: {fitted:,} of {counted(sum(wanted), 'piece')} fit on {counted(most, 'sheet')}, and all would "
+            f"{fitted:,} of {counted(int(demand.sum()), 'piece')} fit on {counted(most, 'sheet')}, and all would "
             f"take {many}",
             remedy=f"Use `sheets={len(sheets)}`, a larger sheet, or a smaller margin or gap.",
         )
     return sheets
 
 
-def _of_kinds(nesting: Nesting, wanted: Sequence[int]) -> Ints:
-    """How many of each kind make so many of each site."""
+def demand_of_sites(nesting: Nesting, wanted: Sequence[int]) -> Ints:
+    """How many of each kind make so many of each site: of a site, each kind has its share."""
     kinds, of = nesting.kinds, nesting.layout.period.site
     site = np.array([int(of[kind.tile]) for kind in kinds])
     demand = np.zeros(len(kinds), np.intp)
@@ -165,17 +199,6 @@ def wanted_of(job: Job, names: Sequence[str]) -> list[int] | None:
         if name not in names:
             raise JobError(f"`count`: no site is called {shown(name)}", remedy=f"Its sites are {', '.join(names)}.")
     return [int(asked.get(name, 0)) for name in names]
-
-
-def _alone(item: NestItem, which: Ints, share: float) -> NestItem:
-    """An item with another share among some of all items."""
-    at = np.flatnonzero(which == item.like)
-    return item._replace(share=share, like=int(at[0]) if len(at) else None)
-
-
-def joined(one: NestPlaces, other: NestPlaces) -> NestPlaces:
-    """Places, and others."""
-    return NestPlaces(*(np.concatenate(parts) for parts in zip(one, other, strict=True)))
 
 
 def _rows(places: NestPlaces) -> list[tuple[int, float, complex]]:

@@ -19,7 +19,15 @@ from voronoi_tiles.fabrication.layout import Layout, Sheet
 from voronoi_tiles.fabrication.nest_places import NESTED_MAX, read_places
 from voronoi_tiles.fabrication.nest_search import Progress, has_search
 from voronoi_tiles.fabrication.nested_pieces import laid_again
-from voronoi_tiles.fabrication.nested_sheets import Nesting, counted_sheets, wanted_of
+from voronoi_tiles.fabrication.nested_sheets import (
+    EVEN,
+    SHEETS_MOST,
+    Nesting,
+    counted_sheets,
+    demand_of_sites,
+    wanted_of,
+)
+from voronoi_tiles.fabrication.packed_sheets import stock
 
 _UNSEARCHED: Final = (
     "spyrrow is not installed, so pieces were nested in patterns alone: with `pip install spyrrow` a search may find "
@@ -28,10 +36,14 @@ _UNSEARCHED: Final = (
 
 
 class Arranged(NamedTuple):
-    """The tiles of a job on its sheets, one in most cases, and what is to be said of them."""
+    """The tiles of a job on its sheets, one in most cases, and what is to be said of them.
+
+    By `nesting` the tiles of each colour are nested on sheets of their own.
+    """
 
     sheets: tuple[Layout, ...]
     said: tuple[str, ...] = ()
+    nesting: Nesting | None = None
 
 
 def arranged(lay: Callable[..., Layout], job: Job, sheet: Sheet, progress: Progress | None) -> Arranged:
@@ -44,21 +56,45 @@ def arranged(lay: Callable[..., Layout], job: Job, sheet: Sheet, progress: Progr
     pulled = job.layout == "auto" and job.apart and job.not_nestable is None
     if not (job.nests or job.count is not None or pulled):
         return Arranged((lay(job=plain, sheet=sheet),))
+    if job.pack:
+        return Arranged((lay(job=plain, sheet=sheet),), (), _of_stock(lay, job))
     if job.gap is None and not job.kerf:
         plain = replace(plain, gap=job.side_by_side)
     saved = None if job.layout in LAYOUTS else read_places(job.layout)
     if saved is not None and not saved.pieces:
         tessellated = lay(job=plain, sheet=sheet)
         return Arranged((tessellated,), saved.doubts(tessellated.design, job.layout))
-    # Nothing is to be filled: one tile stands for all of its kind.
-    base = lay(job=replace(plain, layout="nested"), sheet=Sheet(0.0, 0.0, None, 0j))
-    base = replace(base, sheet=sheet)
+    base = _base(lay, plain, sheet)
     if saved is not None:
         again = laid_again(base, saved.pieces, job.layout, grain=job.grain)
         return Arranged((again,), saved.doubts(base.design, job.layout))
     if job.count is not None:
         return _counted(base, job, progress)
     return _densest(base, partial(lay, job=plain, sheet=sheet), job, progress)
+
+
+def _base(lay: Callable[..., Layout], plain: Job, sheet: Sheet) -> Layout:
+    """A layout of pieces to be nested on a sheet: nothing is to be filled, one tile stands for all of its kind."""
+    return replace(lay(job=replace(plain, layout="nested"), sheet=Sheet(0.0, 0.0, None, 0j)), sheet=sheet)
+
+
+def _of_stock(lay: Callable[..., Layout], job: Job) -> Nesting:
+    """The pieces of a job as they are nested on sheets of the stock."""
+    page = stock(job)
+    one_sheet = replace(
+        job,
+        **dict.fromkeys(("frame", "offset", "into", "stock", "only_colour", "count", "sheets")),
+        sheet=(page.width, page.height),
+        fit="whole",
+        colours="none",
+        pack=False,
+        gap=job.side_by_side if job.gap is None and not job.kerf else job.gap,
+    )
+    base = _base(lay, replace(one_sheet, grain=False, effort=EFFORT_S, seed=0), page)
+    crowd = _crowd(base)
+    if crowd is not None:
+        raise crowd
+    return Nesting.of(base, one_sheet, job.sheets or SHEETS_MOST)
 
 
 def _counted(base: Layout, job: Job, progress: Progress | None) -> Arranged:
@@ -69,7 +105,8 @@ def _counted(base: Layout, job: Job, progress: Progress | None) -> Arranged:
     wanted = wanted_of(job, [site.name for site in base.design.noded])
     assert wanted is not None, "there is a count"
     search = job.layout == "nested" and has_search()
-    sheets = counted_sheets(Nesting.of(base, job), wanted, job.sheets or 1, progress, search=search)
+    nesting = Nesting.of(base, job, job.sheets or 1)
+    sheets = counted_sheets(nesting, demand_of_sites(nesting, wanted), progress, search=search)
     said = [f"{counted(len(sheets), 'sheet')}: {'; '.join(map(_counts, sheets))}"] if len(sheets) > 1 else []
     return Arranged(tuple(sheets), tuple(said))
 
@@ -99,6 +136,7 @@ def _densest(base: Layout, lay: Callable[[], Layout], job: Job, progress: Progre
         raise refusal
     if not count:
         raise JobError("no places were found for any piece", remedy="Give a longer `effort`, or a larger sheet.")
+    said += _uneven(nested)
     as_drawn = counted(0, "piece") if unnested is None else _counts(unnested)
     said.append(f"nested are {_counts(nested)}: as in the tessellation there would be {as_drawn}")
     return Arranged((nested,), tuple(said))
@@ -113,6 +151,19 @@ def _crowd(base: Layout) -> JobError | None:
         f"the sheet would hold about {about:,.0f} pieces, and {NESTED_MAX:,} are the most that are nested",
         remedy="Take a smaller sheet or a larger design, or `layout='tessellated'`.",
     )
+
+
+def _uneven(layout: Layout) -> list[str]:
+    """That a site has too few pieces for its share of the tessellation, which a search may bring about, in words."""
+    names = [site.name for site in layout.design.noded]
+    count, share = (
+        np.bincount(layout.period.site[which], minlength=len(names)) for which in (layout.copies.tile, slice(None))
+    )
+    few = count < np.floor(EVEN * share / share.sum() * count.sum())
+    return [
+        f"of {names[k]} there are {count[k]:,}, fewer than its share of the tessellation: `count` says how many of each"
+        for k in np.flatnonzero(few).tolist()
+    ]
 
 
 def _counts(layout: Layout) -> str:

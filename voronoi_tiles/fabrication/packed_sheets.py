@@ -1,4 +1,4 @@
-"""The tiles of each colour on sheets of their own, as they stand in the picture, but packed."""
+"""The tiles of each colour on sheets of their own: as they stand in the picture, but packed, or nested anew."""
 
 from __future__ import annotations
 
@@ -14,6 +14,9 @@ from voronoi_tiles.base.text import counted
 from voronoi_tiles.fabrication.engraving import piece_numbers
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.layout import Layout, PlacedTiles, Sheet
+from voronoi_tiles.fabrication.nest_kinds import kind_keys
+from voronoi_tiles.fabrication.nest_search import Progress, has_search
+from voronoi_tiles.fabrication.nested_sheets import Nesting, counted_sheets
 from voronoi_tiles.fabrication.packing import pack_pieces
 from voronoi_tiles.fabrication.region import Region
 from voronoi_tiles.fabrication.tile_colouring import TileColouring
@@ -45,7 +48,7 @@ class PackedColour:
 def pack_colours(layout: Layout, colouring: TileColouring) -> list[PackedColour]:
     """Pack the whole tiles of each colour. Raises JobError where a piece is larger than a sheet."""
     job = layout.job
-    page = _stock(job)
+    page = stock(job)
     room = (page.width - 2 * job.margin, page.height - 2 * job.margin)
     slack = _COARSE * job.side_by_side
     shapes = [_polygon(to_lines(rings, accuracy=slack)) for rings in layout.tiles.all_rings()]
@@ -72,7 +75,27 @@ def pack_colours(layout: Layout, colouring: TileColouring) -> list[PackedColour]
     return found
 
 
-def _stock(job: Job) -> Sheet:
+def nest_colours(
+    layout: Layout, colouring: TileColouring, nesting: Nesting, progress: Progress | None = None
+) -> list[PackedColour]:
+    """Nest the whole tiles of each colour. Raises JobError where a piece is larger than a sheet, or there are too few.
+
+    A piece may lie as any of its kind: those of a site that are all turned over, or none.
+    """
+    keys = kind_keys(layout.period, grain=nesting.job.grain)
+    kind = np.array([list(dict.fromkeys(keys)).index(key) for key in keys])
+    colour = colouring.of_copies(np.arange(len(layout.copies.tile)))
+    found = []
+    for number in np.unique(colour[layout.copies.whole]).tolist():
+        tile = layout.copies.tile[(colour == number) & layout.copies.whole]
+        demand = np.bincount(kind[tile], minlength=len(nesting.kinds))
+        sheets = counted_sheets(nesting, demand, progress, search=has_search())
+        page, area = nesting.layout.sheet, fsum(layout.tile_areas[tile].tolist())
+        found.append(PackedColour(number, tuple(sheets), area / (len(sheets) * page.width * page.height)))
+    return found
+
+
+def stock(job: Job) -> Sheet:
     """The sheet that pieces are packed on."""
     size = job.stock or job.sheet
     assert isinstance(size, tuple), "a job that packs says on what"

@@ -34,8 +34,9 @@ from voronoi_tiles.fabrication.job_options import LAYOUTS
 from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, lay_out
 from voronoi_tiles.fabrication.nest_places import places_text
 from voronoi_tiles.fabrication.nest_search import Progress
+from voronoi_tiles.fabrication.nested_sheets import Nesting
 from voronoi_tiles.fabrication.nesting import arranged
-from voronoi_tiles.fabrication.packed_sheets import pack_colours
+from voronoi_tiles.fabrication.packed_sheets import PackedColour, nest_colours, pack_colours
 from voronoi_tiles.fabrication.sheets import read_sheet
 from voronoi_tiles.fabrication.sizing import sized
 from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_tiles
@@ -165,11 +166,11 @@ def make_several(
     Raises what `make` does.
     """
     plan = _Plan.of(design, tessellation, job, _format(file_format), progress)
-    if job.sheets is not None:
+    if len(plan.sheets) > 1 or (job.sheets is not None and not job.pack):
         return [(str(k + 1), plan.on(sheet).product(sheet.job)) for k, sheet in enumerate(plan.sheets)]
     job = plan.layout.job
     if job.pack:
-        return plan.packed(job)
+        return plan.packed(job, progress)
     return [(name, plan.product(replace(job, only_colour=number))) for number, name in plan.colours()]
 
 
@@ -191,7 +192,7 @@ def make_reported(design: Design, tessellation: Tessellation, job: Job) -> tuple
             "sheets": len(one.sheets),
             "share": one.share,
         }
-        for one in (pack_colours(plan.layout, plan.colouring) if job.pack else ())
+        for one in (plan.woods() if job.pack else ())
     ]
     # What is laid out stays; a frame and a kerf go together only where tiles are packed.
     together = replace(job, colours=job.scheme, into="layers", pack=False, stock=None, fit="whole", frame=None)
@@ -207,6 +208,7 @@ class _Plan:
     curves: str
     layout: Layout
     sheets: tuple[Layout, ...]
+    nesting: Nesting | None
     colouring: TileColouring
     said: tuple[str, ...]
     hints: tuple[str, ...]
@@ -227,17 +229,17 @@ class _Plan:
             budget = AccuracyBudget.of(job, curves, form)
             fit = curve_fit(job, curves, budget, design.unit_mm)
             lay = partial(lay_out, design, tessellation, budget=budget, fit=fit)
-            sheets, said = arranged(lay, job, read_sheet(job, budget), progress)
+            sheets, said, nesting = arranged(lay, job, read_sheet(job, budget), progress)
         else:
             layout, found = sized(design, tessellation, job, curves, form)
-            sheets, said = (layout,), (found,)
+            sheets, said, nesting = (layout,), (found,), None
         layout = sheets[0]
         colours = colour_tiles(layout.tessellation, job.scheme, layout.period)
         said += tuple(unnested(job))
         if job.split is not None and colours.count == 1:
             said += (f"by {job.scheme} all tiles are alike: there is one colour",)
         colouring, files = TileColouring(colours, layout.copies), tuple(files_read(design, job))
-        return cls(form, preset, curves, layout, sheets, colouring, said, hints_of(layout, job), files)
+        return cls(form, preset, curves, layout, sheets, nesting, colouring, said, hints_of(layout, job), files)
 
     def on(self, sheet: Layout) -> _Plan:
         """The same for another sheet of its tiles."""
@@ -251,13 +253,19 @@ class _Plan:
             found.append(FRAME)
         return [(number, "frame" if number == FRAME else str(number + 1)) for number in found]
 
-    def packed(self, job: Job) -> list[tuple[str, Product]]:
+    def woods(self, progress: Progress | None = None) -> list[PackedColour]:
+        """The sheets of each colour."""
+        if self.nesting is None:
+            return pack_colours(self.layout, self.colouring)
+        return nest_colours(self.layout, self.colouring, self.nesting, progress)
+
+    def packed(self, job: Job, progress: Progress | None) -> list[tuple[str, Product]]:
         """The sheets that the colours are packed on, and the frame, each with a name for its file."""
         job = replace(job, only_colour=None)  # which the recipe of a frame has
         found = []
-        for one in pack_colours(self.layout, self.colouring):
+        for one in self.woods(progress):
             for number, layout in enumerate(one.sheets):
-                product = self.on(layout).product(job)
+                product = self.on(layout).product(job if self.nesting is None else layout.job)
                 if number == 0:
                     product = replace(product, notes=(one.said(), *product.notes))
                 found.append((f"colour{one.colour + 1}-{number + 1}", product))

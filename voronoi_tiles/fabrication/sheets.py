@@ -71,6 +71,7 @@ def _drawn_sheet(name: str, job: Job, budget: AccuracyBudget) -> Sheet:
         border = border.moved(1.0, -corner)
     else:
         width, height = drawing.width, drawing.height
+    whole = border
     margin = job.margin + job.kerf / 2
     if margin > 0.0:
         try:
@@ -83,7 +84,7 @@ def _drawn_sheet(name: str, job: Job, budget: AccuracyBudget) -> Sheet:
             raise JobError(f"a margin of {margin:g} mm leaves nothing of {name}", remedy="Use a smaller `margin`.")
     left, bottom, right, top = border.bounds
     notes = (*caveats(drawing, name), *_left_out(name, drawing, outline))
-    return Sheet(width, height, Region(border), complex(left + right, bottom + top) / 2, notes)
+    return Sheet(width, height, Region(border), complex(left + right, bottom + top) / 2, notes, whole)
 
 
 def _shown(drawing: ReadDrawing, place: complex) -> str:

@@ -1,0 +1,102 @@
+"""Pieces nested in what a drawing bounds, with its holes, and in the holes of other pieces."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any, Final
+
+import numpy as np
+
+from voronoi_tiles.base.arrays import Complexes, Ints, plane
+from voronoi_tiles.base.maps import unit_at
+from voronoi_tiles.fabrication.nest_filling import fill
+from voronoi_tiles.fabrication.nest_kinds import NestKind
+from voronoi_tiles.fabrication.nest_patterns import lay_patterns
+from voronoi_tiles.fabrication.nest_search import NestPlaces
+from voronoi_tiles.paths.areas import ring_areas
+from voronoi_tiles.paths.conversion import to_lines
+from voronoi_tiles.paths.paths import Paths
+
+_WIDER: Final = 1.25
+"""By how much a pattern is wider than the region that it is moved over, a factor."""
+
+_MOVES: Final = 8
+"""Steps by which it is moved, either way; a count."""
+
+
+def region_within(outline: Paths, margin: float, accuracy: float) -> Any:
+    """What is inside an outline and its holes by more than a margin: a shapely polygon, or several; millimetres."""
+    import shapely
+
+    lines = to_lines(outline, accuracy=accuracy)
+    rings = [shapely.Polygon(plane(lines.start[a:b])) for a, b in pairwise(lines.offsets.tolist())]
+    outer = ring_areas(outline) > 0
+    solid, holes = (
+        shapely.union_all([ring for ring, one in zip(rings, outer, strict=True) if one == k]) for k in (1, 0)
+    )
+    return solid.difference(holes).buffer(-(margin + accuracy))
+
+
+def lay_in_region(kinds: Sequence[NestKind], region: Any, demand: Ints, even: float) -> NestPlaces:
+    """Places in a region: those of a pattern moved over it as holds most, and what fits beside them.
+
+    Not more than `demand` of each kind (intp), and of each a part `even` of its share where there is room.
+    """
+    import shapely
+
+    items = [kind.item for kind in kinds]
+    x0, y0, x1, y1 = region.bounds
+    pattern = lay_patterns(items, (_WIDER * (x1 - x0), _WIDER * (y1 - y0)))
+    outlines = [shapely.Polygon(plane(ring)) for ring in _turned(pattern, [kind.outline for kind in kinds])]
+    best, move = np.zeros(0, np.intp), 0j
+    steps = np.linspace(0.0, _WIDER - 1.0, _MOVES)
+    for by in (steps[:, None] * (x1 - x0) + 1j * steps * (y1 - y0)).ravel().tolist():
+        away = by - (x0 + 1j * y0)
+        here = shapely.transform(region, lambda points, z=away: points + np.array([z.real, z.imag]))
+        shapely.prepare(here)
+        inside = np.flatnonzero(shapely.contains(here, outlines))
+        if len(inside) > len(best):
+            best, move = inside, x0 + 1j * y0 - by
+    laid = capped(pattern.take(best), demand)
+    laid = laid._replace(shift=laid.shift + move)
+    left = demand - np.bincount(laid.item, minlength=len(items))
+    return joined(laid, fill(items, region, laid, left, [kind.outline for kind in kinds], even))
+
+
+def lay_in_holes(kinds: Sequence[NestKind], laid: NestPlaces, demand: Ints) -> NestPlaces:
+    """Places in the holes of pieces that are laid, and in the holes of those; not more than `demand` of each kind."""
+    import shapely
+
+    items, outlines = [kind.item for kind in kinds], [kind.outline for kind in kinds]
+    found = laid.take(np.zeros(0, np.intp))
+    while True:
+        holes = []
+        for number in range(max((len(kind.holes) for kind in kinds), default=0)):
+            own = np.flatnonzero([len(kinds[k].holes) > number for k in laid.item.tolist()])
+            rings = [kind.holes[number] if len(kind.holes) > number else kind.outline for kind in kinds]
+            holes += [shapely.Polygon(plane(ring)) for ring in _turned(laid.take(own), rings)]
+        none = laid.take(np.zeros(0, np.intp))
+        left = demand - np.bincount(found.item, minlength=len(kinds))
+        if not holes or not left.any():
+            return found
+        laid = fill(items, shapely.MultiPolygon(holes), none, left, outlines)
+        found = joined(found, laid)
+
+
+def _turned(places: NestPlaces, rings: Sequence[Complexes]) -> list[Complexes]:
+    """The polygons of pieces where they lie; `rings` are those of the kinds."""
+    rows = zip(*(part.tolist() for part in places), strict=True)
+    return [rings[k] * unit_at(turn) + shift for k, turn, shift in rows]
+
+
+def capped(places: NestPlaces, demand: Ints) -> NestPlaces:
+    """Not more than so many of each kind, those on the left first."""
+    own = [np.flatnonzero(places.item == k) for k in range(len(demand))]
+    first = [one[np.argsort(places.shift.real[one], kind="stable")] for one in own]
+    return places.take(np.concatenate([one[:most] for one, most in zip(first, demand.tolist(), strict=True)]))
+
+
+def joined(one: NestPlaces, other: NestPlaces) -> NestPlaces:
+    """Places, and others."""
+    return NestPlaces(*(np.concatenate(parts) for parts in zip(one, other, strict=True)))
