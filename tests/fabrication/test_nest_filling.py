@@ -20,7 +20,7 @@ EVERYWHERE = (-1e9, -1e9, 1e9, 1e9)
 def star(seed: int, count: int) -> Complexes:
     """A polygon of corners at random distances around 0, deeply notched."""
     random = np.random.default_rng(seed)
-    return random.uniform(2, 10, count) * np.exp(2j * np.pi * np.arange(count) / count)
+    return np.asarray(random.uniform(2, 10, count) * np.exp(2j * np.pi * np.arange(count) / count))
 
 
 def polygon(ring: Complexes) -> shapely.Polygon:
@@ -127,7 +127,7 @@ def test_no_more_are_laid_than_asked_for_and_the_same_ones_again() -> None:
 
 def test_outlines_may_come_nearer_to_the_edge_than_polygons_to_each_other() -> None:
     """Squares of 10 that keep 2 from each other, and nothing from the edge: two in a strip of 22, and none too many."""
-    items = [NestItem(SQUARE * 1.2, 1.0, (0.0,))]
+    items = [NestItem(SQUARE + 0.2 * SQUARE, 1.0, (0.0,))]
     places = fill(items, shapely.box(0, 0, 22.01, 10.01), NONE, outlines=[SQUARE])
     assert len(places.item) == 2
     assert abs(places.shift[1] - places.shift[0]) >= 12

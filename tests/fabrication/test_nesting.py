@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import json
+import os
 import re
 from collections import Counter
 from collections.abc import Iterator
@@ -554,3 +555,20 @@ def test_a_tile_is_nested_in_the_hole_of_another_and_cut_before_that_falls_out()
     assert hole.exterior.distance(bit) >= 1 - 1e-4
     with pytest.raises(JobError, match="2 of 3 pieces fit on 1 sheet"):
         tiles.make(Job(**job, count="ring=1,bit=1,other=1"))
+
+
+def test_numbers_run_kind_by_kind(tmp_path: Path) -> None:
+    """Pieces that are turned over come after the others: within a kind they can change places."""
+    laid = layout_of(hooks(), **JOB, layout=saved(tmp_path), labels="number")
+    assert laid.numbers is not None
+    assert sorted(laid.numbers) == list(range(1, len(laid.pieces) + 1))
+    over = [laid.pieces[k].over for k in np.argsort(laid.numbers).tolist()]
+    assert over == sorted(over)
+    assert 0 < sum(over) < len(over)
+
+
+def test_a_pipe_is_no_file_with_places(tmp_path: Path) -> None:
+    """It may never end: that is said at once."""
+    os.mkfifo(tmp_path / "pipe.svg")
+    with pytest.raises(JobError, match=r"pipe.svg' is a pipe or a device"):
+        hooks().make(Job(**JOB, layout=tmp_path / "pipe.svg"))

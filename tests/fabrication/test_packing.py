@@ -218,7 +218,6 @@ def test_a_frame_around_packed_tiles_is_reported_and_made_again() -> None:
     ("job", "message"),
     [
         ({"sheet": None}, "there is none"),
-        ({"colours": "none"}, "packs each colour"),
         ({"colours": "layers"}, "makes files"),
         ({"into": "layers"}, "makes files"),
         ({"fit": "clip"}, "cuts them"),
@@ -246,3 +245,20 @@ def test_tiles_with_holes_are_packed() -> None:
     assert len(shapes) == 50
     for _, product in found:
         assert nearest(contour_shapes(cuts(product), 1e-3)) >= 1.0 - 2e-3
+
+
+def test_a_frame_with_a_kerf_is_cut_beside_its_pieces() -> None:
+    """Its opening is smaller by the kerf, and pieces are larger by it: both have their true size once they are cut."""
+    job = Job(sheet=(90.0, 90.0), margin=4, frame=3, kerf=0.3, pack=True)
+    files = make_several(squares().design, squares().tessellation, job)
+    assert [name for name, _ in files] == ["1", "frame"]
+    pieces, frame = (contour_shapes(cuts(product)) for _, product in files)
+    (around,) = frame
+    (opening,) = around.interiors
+    assert shapely.Polygon(opening).area == pytest.approx((3 * 20 - 0.3) ** 2, abs=0.01)
+    assert len(pieces) == 9
+    for piece in pieces:
+        x0, y0, x1, y1 = piece.bounds
+        assert (x1 - x0, y1 - y0) == pytest.approx((20.3, 20.3), abs=1e-6)
+    with pytest.raises(JobError, match=r"`pack=True`: pieces beside the frame, a file each"):
+        Job(sheet=(90.0, 90.0), frame=3, kerf=0.3)

@@ -69,7 +69,7 @@ def watch(
         "size": DEFAULT_SIZE if size is None else size,
         "region": region,
         "overlay": overlay,
-        "colours": "none" if job is None or job.split is None else job.scheme,
+        "colours": "none" if job is None or job.colours == "none" else job.scheme,
         "method": method,
         "renderer": renderer,
         "device": device,

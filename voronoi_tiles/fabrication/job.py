@@ -244,14 +244,19 @@ class Job:
 
     @property
     def scheme(self) -> str | int:
-        """What tiles have the same colour by: "fewest", "site", "handedness", "orientation", or a number of colours."""
+        """What tiles have the same colour by: "fewest", "site", "handedness", "orientation", or a number of colours.
+
+        "none" where all of one colour are packed.
+        """
+        if self.pack and self.colours == "none":
+            return "none"
         return "fewest" if self.colours in {"none", *get_args(Into)} else self.colours
 
     @property
     def split(self) -> Into | None:
-        """What there is one of for each colour: layers or files; None where tiles have no colours."""
+        """What there is one of for each colour: layers or files; None without colours, unless tiles are packed."""
         if self.colours == "none":
-            return None
+            return "files" if self.pack else None
         if self.colours in get_args(Into):
             return cast("Into", self.colours)
         return self.into or ("files" if self.pack else "layers")
@@ -322,6 +327,8 @@ class Job:
                 return name
         if self.colours != "none" or self.only_colour is not None:
             return "colours"
+        if self.pack:
+            return "pack"
         return "layout" if self.nests else None
 
     @property

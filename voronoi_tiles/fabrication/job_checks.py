@@ -54,7 +54,7 @@ def _check_edges(job: Job) -> None:
     if job.fit == "frame" and job.apart is not None:
         raise JobError(
             f"`{'gap' if job.gap else 'kerf'}` pulls the tiles apart, and `fit='frame'` leaves them no room",
-            remedy="Cut the frame without it, or use `fit='whole'`.",
+            remedy="Cut the frame without it, use `fit='whole'`, or `pack=True`: pieces beside the frame, a file each.",
         )
 
 
@@ -81,7 +81,6 @@ def _check_packing(job: Job) -> None:
             "`pack` packs the tiles of a sheet, and there is none",
             "Add `sheet='600x300mm'`.",
         ),
-        (job.colours == "none", "`pack` packs each colour, and there are none", "Add `colours='fewest'`."),
         (job.split == "layers", "`pack` makes files of colours, and no layers", "Use `into='files'`."),
         (job.fit == "clip", "`pack` packs whole tiles, and `fit='clip'` cuts them", "Use `fit='whole'`."),
         (job.gap == 0.0, "`pack` with a `gap` of 0 would cut where pieces touch twice", "Use `gap='1mm'`."),

@@ -8,6 +8,7 @@ from typing import Final, NamedTuple
 
 from voronoi_tiles.base.documents import read_bytes
 from voronoi_tiles.base.errors import why_not_opened
+from voronoi_tiles.base.files import is_special
 from voronoi_tiles.base.values import shown
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.job_options import SHEET_MAX, JobError
@@ -34,6 +35,8 @@ class SavedPlaces(NamedTuple):
 
 def read_places(name: str) -> SavedPlaces:
     """The places in the recipe of a file of ours. Raises JobError."""
+    if is_special(name):  # which may never end
+        raise JobError(f"`layout`: {shown(name)} is a pipe or a device", remedy="Name a file.")
     try:
         recipe = recipe_of(read_bytes(name, BYTES_MAX))
     except (OSError, ValueError) as error:

@@ -55,7 +55,10 @@ def laid_again(layout: Layout, pieces: Sequence[Piece], name: str, *, grain: boo
 
 
 def placed(layout: Layout, pieces: Sequence[Piece]) -> Layout:
-    """A layout with pieces at places."""
+    """A layout with pieces at places.
+
+    They are numbered kind by kind: those of a kind can change places, wherever they belong in the tessellation.
+    """
     tiles, stand_ins = layout.tiles, _stand_ins(layout)
     tile = np.array([stand_ins[piece.site, piece.over] for piece in pieces], np.intp)
     unit, shift = np.zeros((2, len(pieces)), np.complex128)
@@ -64,10 +67,14 @@ def placed(layout: Layout, pieces: Sequence[Piece]) -> Layout:
         unit[k] = unit_at(piece.turn) * (factor / abs(factor)).conjugate()
         shift[k] = piece.shift - unit[k] * place
     step, whole = np.zeros((len(tile), 2), np.intp), np.ones(len(tile), np.bool_)
+    numbers = np.zeros(len(pieces), np.intp)
+    by_kind = sorted(range(len(pieces)), key=lambda k: (*pieces[k][:2], -pieces[k].shift.imag, pieces[k].shift.real))
+    numbers[by_kind] = np.arange(len(pieces)) + 1
     return replace(
         layout,
         placement=TilePlacement(tile, step, whole),
         copies=PlacedTiles(tile, step, whole, shift, unit),
+        numbers=numbers,
         pieces=tuple(pieces),
     )
 

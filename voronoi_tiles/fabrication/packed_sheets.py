@@ -35,12 +35,18 @@ class PackedColour:
     colour: int
     sheets: tuple[Layout, ...]
     share: float
+    named: bool = True
+
+    def name(self, number: int) -> str:
+        """What the file of a sheet is called after: its number, from 0, and that of the colour, if there are any."""
+        return f"colour{self.colour + 1}-{number + 1}" if self.named else str(number + 1)
 
     def said(self) -> str:
         """What there is to say of it, a sentence."""
         tiles, sheets = sum(len(sheet.copies.tile) for sheet in self.sheets), len(self.sheets)
         return (
-            f"colour {self.colour + 1}: {counted(tiles, 'piece')} on {counted(sheets, 'sheet')}, "
+            (f"colour {self.colour + 1}: " if self.named else "")
+            + f"{counted(tiles, 'piece')} on {counted(sheets, 'sheet')}, "
             f"{self.share:.1%} of {'it' if sheets == 1 else 'them'}"
         )
 
@@ -71,7 +77,9 @@ def pack_colours(layout: Layout, colouring: TileColouring) -> list[PackedColour]
             for k in range(int(packed.sheet.max()) + 1)
         )
         area = fsum(layout.tile_areas[tile].tolist())
-        found.append(PackedColour(number, sheets, area / (len(sheets) * page.width * page.height)))
+        found.append(
+            PackedColour(number, sheets, area / (len(sheets) * page.width * page.height), job.colours != "none")
+        )
     return found
 
 
@@ -91,7 +99,8 @@ def nest_colours(
         demand = np.bincount(kind[tile], minlength=len(nesting.kinds))
         sheets = counted_sheets(nesting, demand, progress, search=has_search())
         page, area = nesting.layout.sheet, fsum(layout.tile_areas[tile].tolist())
-        found.append(PackedColour(number, tuple(sheets), area / (len(sheets) * page.width * page.height)))
+        share = area / (len(sheets) * page.width * page.height)
+        found.append(PackedColour(number, tuple(sheets), share, layout.job.colours != "none"))
     return found
 
 

@@ -195,7 +195,8 @@ def make_reported(design: Design, tessellation: Tessellation, job: Job) -> tuple
         for one in (plan.woods() if job.pack else ())
     ]
     # What is laid out stays; a frame and a kerf go together only where tiles are packed.
-    together = replace(job, colours=job.scheme, into="layers", pack=False, stock=None, fit="whole", frame=None)
+    colours, into = ("none", None) if job.colours == "none" else (job.scheme, "layers")
+    together = replace(job, colours=colours, into=into, pack=False, stock=None, fit="whole", frame=None)
     return plan.product(together), rows
 
 
@@ -236,7 +237,7 @@ class _Plan:
         layout = sheets[0]
         colours = colour_tiles(layout.tessellation, job.scheme, layout.period)
         said += tuple(unnested(job))
-        if job.split is not None and colours.count == 1:
+        if job.split is not None and job.colours != "none" and colours.count == 1:
             said += (f"by {job.scheme} all tiles are alike: there is one colour",)
         colouring, files = TileColouring(colours, layout.copies), tuple(files_read(design, job))
         return cls(form, preset, curves, layout, sheets, nesting, colouring, said, hints_of(layout, job), files)
@@ -268,7 +269,7 @@ class _Plan:
                 product = self.on(layout).product(job if self.nesting is None else layout.job)
                 if number == 0:
                     product = replace(product, notes=(one.said(), *product.notes))
-                found.append((f"colour{one.colour + 1}-{number + 1}", product))
+                found.append((one.name(number), product))
         frames = [
             (name, self.product(replace(job, only_colour=FRAME))) for colour, name in self.colours() if colour < 0
         ]
@@ -298,7 +299,7 @@ class _Plan:
             drawing=drawing,
             pieces=pieces,
             colours=colouring.count,
-            scheme=None if job.split is None else job.scheme,
+            scheme=None if job.colours == "none" else job.scheme,
             notes=tuple(dict.fromkeys((*said, *more))),
             curves=self.curves,
             accuracy=job.accuracy,

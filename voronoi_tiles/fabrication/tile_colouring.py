@@ -49,6 +49,7 @@ def colour_tiles(tessellation: Tessellation, scheme: str | int, period: Period |
     - "site": each site has a colour;
     - "handedness": tiles that are turned over have another colour than those as drawn. A tile that is its own mirror
       image is not turned over;
+    - "none": all are alike;
     - "orientation": tiles that are turned differently, or turned over, have different colours.
 
     Raises JobError for a number of colours that is too small, or too large.
@@ -59,6 +60,8 @@ def colour_tiles(tessellation: Tessellation, scheme: str | int, period: Period |
             pairs = neighbour_pairs(period)
             fewest = _fewest(tuple(map(tuple, pairs.tolist())), len(period.site))
             return fewest if isinstance(scheme, str) else _so_many(pairs, fewest, scheme)
+        case "none":
+            kinds = [0] * len(period.site)
         case "site":
             kinds = period.site.tolist()
         case "handedness":

@@ -94,7 +94,7 @@ def exported(design: Mapping[str, Any], job: Mapping[str, Any], name: str) -> tu
     with TemporaryDirectory(prefix="voronoi-tiles-") as folder:
         path = Path(folder) / f"{stem}.{form}"
         if form == "png":
-            tiling.render(path, colours=asked.scheme if asked.split else "none")
+            tiling.render(path, colours="none" if asked.colours == "none" else asked.scheme)
         else:
             tiling.export(path, job=options, file_format=form)
         return _one_file(stem, {path.name: path.read_bytes() for path in sorted(Path(folder).iterdir())})
