@@ -24,7 +24,8 @@ if TYPE_CHECKING:
     from voronoi_tiles.crosscheck.check_report import CheckReport
     from voronoi_tiles.designs.art import Art
     from voronoi_tiles.fabrication.exporting import Exported
-    from voronoi_tiles.fabrication.job import Edges, Job
+    from voronoi_tiles.fabrication.job import Job
+    from voronoi_tiles.fabrication.job_fields import Edges
     from voronoi_tiles.fabrication.product import Product
     from voronoi_tiles.pictures.rendered import Rendering
     from voronoi_tiles.pictures.rendering import RenderOptions

@@ -15,7 +15,8 @@ from helpers.sheets import xy
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.art_template import art_template
-from voronoi_tiles.fabrication.job import Fit, Job
+from voronoi_tiles.fabrication.job import Job
+from voronoi_tiles.fabrication.job_fields import Fit
 from voronoi_tiles.fabrication.lettering import lettering
 from voronoi_tiles.formats.writing import write_drawing
 from voronoi_tiles.tiling import Tiling

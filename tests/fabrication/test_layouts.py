@@ -29,7 +29,8 @@ from helpers.sheets import check_apart, shape
 
 from voronoi_tiles.base.text import counted
 from voronoi_tiles.designs.design import Design
-from voronoi_tiles.fabrication.job import Fit, Job
+from voronoi_tiles.fabrication.job import Job
+from voronoi_tiles.fabrication.job_fields import Fit
 from voronoi_tiles.fabrication.job_limits import FRAME_MM
 from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.product import Product

@@ -25,7 +25,7 @@ from helpers.cad import (
 
 from voronoi_tiles import Design, Job, Product
 from voronoi_tiles.base.arrays import Complexes
-from voronoi_tiles.fabrication.job import Curves
+from voronoi_tiles.fabrication.job_fields import Curves
 from voronoi_tiles.paths.paths import ARC, Paths
 
 ACCURACY = 0.005  # of a job, where it says nothing else; millimetres

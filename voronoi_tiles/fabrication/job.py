@@ -2,63 +2,18 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterator
-from dataclasses import dataclass, fields
-from typing import Any, Literal, cast, get_args
+from dataclasses import dataclass
+from typing import cast, get_args
 
-from voronoi_tiles.fabrication.job_checks import refuse_contradictions
-from voronoi_tiles.fabrication.job_limits import (
-    ACCURACY_MIN,
-    ACCURACY_MM,
-    APART_MM,
-    FRAME_MM,
-    LABEL_MIN,
-    STROKE_MIN,
-)
-from voronoi_tiles.fabrication.job_options import (
-    EFFORT_S,
-    SHEET_MIN,
-    Choice,
-    Flag,
-    JobError,
-    Length,
-    Offset,
-    Option,
-    Quantities,
-    Rates,
-    SheetSize,
-    choice,
-    flag,
-    length,
-    rates,
-    read_angle,
-    read_colour,
-    read_colours,
-    read_count,
-    read_effort,
-    read_layout,
-    read_offset,
-    read_quantities,
-    read_seed,
-    read_sheet,
-    read_size,
-    read_text,
-)
-from voronoi_tiles.formats.presets import DxfVersion
+from voronoi_tiles.fabrication.job_fields import Into, JobFields
+from voronoi_tiles.fabrication.job_limits import APART_MM, FRAME_MM
+from voronoi_tiles.fabrication.job_options import JobError
 
 __all__ = ["Job", "JobError"]
 
-Fit = Literal["whole", "clip", "frame"]
-Edges = Literal["once", "pieces"]
-Curves = Literal["exact", "arc", "cubic", "spline", "polyline"]
-ArtUse = Literal["whole", "clip", "none"]
-Labels = Literal["none", "number", "site"]
-Into = Literal["layers", "files"]
-
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class Job:
+class Job(JobFields):
     """What is to be made of a tiling; lengths are numbers of millimetres or texts with a unit, "0.15mm".
 
     Without a `sheet`, one of each tile is made, as a closed contour. The design's origin lies in the middle of the
@@ -76,166 +31,20 @@ class Job:
     two of them. Use that, or leave `kerf` out.
     """
 
-    sheet: Option[SheetSize, tuple[float, float] | str | None] = Option(
-        None,
-        read_sheet,
-        "Fill a sheet, 600x300mm, or what the paths of an SVG or DXF file bound [default: one of each tile].",
-        kind="text",
-        shown="WxH|FILE",
-    )
-    margin: Length = length(0.0, "What stays free inside the sheet's edge; without a sheet, around the tiles.")
-    fit: Choice[Fit] = choice(
-        "whole",
-        Fit,
-        "Whole tiles only, tiles clipped at the edge, or whole tiles and the frame around them [default: whole].",
-    )
-    frame: Option[float | str | None, float | None] = length(
-        None,
-        "The least width of the frame; means `fit='frame'` [default: 2mm].",
-        least=SHEET_MIN,
-        shown="WIDTH",
-    )
-    pieces: Option[int | str | None, int | None] = Option(
-        None,
-        read_count,
-        "So many whole tiles at least: the design is scaled to the largest at which the sheet holds them, or without a "
-        "sheet the smallest one is found [default: as many as fit].",
-        kind="number",
-        shown="N",
-    )
-    rotate: Option[float, float] = Option(
-        0.0, read_angle, "Turn the tiles counter-clockwise.", kind="angle", shown="DEGREES"
-    )
-    offset: Option[Offset, complex | None] = Option(
-        None,
-        read_offset,
-        "Move the design's origin from the middle of the sheet [default: to where most whole tiles fit, in its "
-        "middle, or not at all with `fit='clip'`].",
-        kind="text",
-        shown="X,Y",
-    )
-    edges: Choice[Edges | None] = choice(
-        None,
-        Edges,
-        "Cut every shared edge once, or every tile as a closed piece [default: once on a sheet, unless an option needs "
-        "pieces].",
-    )
-    gap: Option[float | str | None, float | None] = length(None, "Pull pieces apart until they keep this distance.")
-    layout: Option[str | os.PathLike[str], str] = Option(
-        "tessellated",
-        read_layout,
-        "Where pieces lie: as in the tessellation, nested anew on the sheet, nested without a search where that holds "
-        "more, or as in a file of ours [default: tessellated].",
-        kind="text",
-        shown="tessellated|nested|auto|FILE",
-    )
-    grain: Flag = flag("Turn nested pieces against the picture by half a turn or not at all: the wood's grain stays.")
-    effort: Option[float | str, float] = Option(
-        EFFORT_S, read_effort, "How long a search for places takes [default: 30].", kind="number", shown="SECONDS"
-    )
-    seed: Option[int | str, int] = Option(0, read_seed, "Where that search begins.", kind="number", shown="N")
-    count: Option[Quantities, str | None] = Option(
-        None,
-        read_quantities,
-        "Nest so many pieces of each site, bird=40,moth=12, or of every one [default: as many as fit].",
-        kind="text",
-        shown="N|SITE=N,...",
-    )
-    sheets: Option[int | str | None, int | None] = Option(
-        None,
-        read_count,
-        "Lay them on as many sheets as they take, and on so many at most, a file each [default: 1].",
-        kind="number",
-        shown="N",
-    )
-    kerf: Length = length(
-        0.0, "The width of the cut: contours keep half of it from the pieces, which then have their true size."
-    )
-    fillet: Length = length(0.0, "Round the corners of pieces.", shown="RADIUS")
-    tabs: Length = length(0.0, "Leave bridges of this width, two a piece or more.")
-    accuracy: Length = length(
-        ACCURACY_MM,
-        "How far approximated curves may be from the exact ones [default: 0.005mm].",
-        least=ACCURACY_MIN,
-        most=1.0,
-    )
-    curves: Choice[Curves | None] = choice(
-        None,
-        Curves,
-        "Exact curves, the fewest circular arcs or cubic curves, splines, or chords [default: as the preset says].",
-    )
-    dxf_version: Choice[DxfVersion] = choice(
-        "R2000",
-        DxfVersion,
-        "The version of DXF files; R12 is for the oldest readers, and has arcs or chords, no splines [default: R2000].",
-    )
-    preset: Option[str | os.PathLike[str], str] = Option(
-        "plain",
-        read_text,
-        "Colours, layers and curves for a target: plain, lightburn, redcut, ponoko, boxes, glowforge, cnc, meerk40t, "
-        "inkscape, blender, openscad, freecad, cadquery, build123d, jscad, trimesh, or a .toml file [default: plain].",
-        kind="text",
-        shown="NAME|FILE",
-    )
-    stroke: Option[float | str | None, float | None] = length(
-        None,
-        "The width of lines in SVG and PDF files, 0.3mm to see them on a screen; cutters may want the preset's "
-        "[default: as the preset says].",
-        least=STROKE_MIN,
-        most=10.0,
-        shown="WIDTH",
-    )
-    feed: Option[Rates, str | None] = rates(
-        "For G-code, how fast the laser moves: millimetres a minute for cuts, or for each kind of work, "
-        "cut=300,engrave=3000 [default: as the preset says].",
-        shown="MM/MIN",
-    )
-    power: Option[Rates, str | None] = rates(
-        "For G-code, how strong the laser is: the value of S for cuts, or for each kind of work, cut=800,engrave=150 "
-        "[default: as the preset says].",
-        shown="S",
-    )
-    labels: Choice[Labels] = choice("none", Labels, "Engrave a label on every piece.")
-    label_height: Length = length(3.0, "The height of labels, at most [default: 3mm].", least=LABEL_MIN, most=1000.0)
-    marks: Flag = flag("Engrave marks for aligning at the sheet's corners.")
-    bar: Flag = flag("Engrave a bar of 100 mm, to measure the scale by.")
-    colours: Option[str | int, str | int] = Option(
-        "none",
-        read_colours,
-        "Colour the tiles, a wood each: by N colours or the fewest, so that no neighbours are alike; by site, "
-        "handedness or orientation. `colours='layers'` and `colours='files'` are the fewest there.",
-        kind="text",
-        shown="N|fewest|site|handedness|orientation",
-    )
-    into: Choice[Into | None] = choice(
-        None, Into, "Put each colour on a layer, or in a file, of its own [default: layers]."
-    )
-    pack: Flag = flag(
-        "Lay the tiles of each colour side by side on sheets of their own, a file each; they are turned as in the "
-        "picture that fills the sheet."
-    )
-    stock: Option[SheetSize, tuple[float, float] | None] = Option(
-        None, read_size, "The size of the sheets for packing [default: that of the sheet].", kind="text", shown="WxH"
-    )
-    only_colour: Option[int | None, int | None] = Option(
-        None, read_colour, "Leave out all colours but this, from 0; -1 all but a frame.", kind="number"
-    )
-    art: Choice[ArtUse] = choice(
-        "whole", ArtUse, "The art of the design's sites: whole, clipped to the tiles, or left out [default: whole]."
-    )
-
     def __post_init__(self) -> None:
         if self.frame is not None and self.fit == "whole":
             object.__setattr__(self, "fit", "frame")
-        refuse_contradictions(self)
-
-    def __repr__(self) -> str:
-        return f"Job({', '.join(f'{name}={value!r}' for name, value in self._said())})"
-
-    @classmethod
-    def options(cls) -> dict[str, Option[Any, Any]]:
-        """The options by their names, in the order of the fields."""
-        return {field.name: vars(cls)[field.name] for field in fields(cls)}
+        for check in (
+            self._check_sheet,
+            self._check_edges,
+            self._check_colours,
+            self._check_packing,
+            self._check_count,
+        ):
+            check()
+        if (self.nests or self.count is not None) and self.not_nestable is not None:
+            message, remedy = self.not_nestable
+            raise JobError(f"`layout='{self.layout}'` {message}", remedy=remedy)
 
     @property
     def moves_contours(self) -> bool:
@@ -302,24 +111,6 @@ class Job:
             return self.edges == "pieces"
         return self.sheet is None or self.needs_pieces() is not None
 
-    def recipe(self) -> dict[str, Any]:
-        """What differs from the defaults, in the types of JSON."""
-        return {
-            name: [value.real, value.imag]
-            if isinstance(value, complex)
-            else list(value)
-            if isinstance(value, tuple)
-            else value
-            for name, value in self._said()
-        }
-
-    def _said(self) -> Iterator[tuple[str, Any]]:
-        """The options that differ from their defaults."""
-        for name, option in self.options().items():
-            value = getattr(self, name)
-            if value != option.default:
-                yield name, value
-
     def needs_pieces(self) -> str | None:
         """The name of an option that needs closed pieces, None where none does."""
         for name in ("kerf", "gap", "fillet"):
@@ -348,6 +139,100 @@ class Job:
             if wrong:
                 return message, remedy
         return None
+
+    def _check_sheet(self) -> None:
+        """Refuse what a sheet, or none, leaves no sense."""
+        if self.frame is not None and self.fit == "clip":
+            raise JobError("`fit='clip'` leaves no `frame`", remedy="Use one of the two.")
+        if self.pieces is not None and self.fit == "clip":
+            raise JobError("`pieces` counts whole tiles, and `fit='clip'` cuts them", remedy="Use `fit='whole'`.")
+        if self.sheet is None:
+            for name in () if self.pieces is not None else ("frame", "fit", "offset", "marks"):
+                if getattr(self, name) != self.options()[name].default:
+                    raise JobError(f"`{name}` is about a sheet, and there is none", remedy="Add `sheet='600x300mm'`.")
+        elif not isinstance(self.sheet, str) and 2.0 * self.margin >= min(self.sheet):
+            width, height = self.sheet
+            raise JobError(
+                f"a `margin` of {self.margin:g} mm leaves nothing of a sheet of {width:g} x {height:g} mm",
+                remedy="Make the margin smaller, or the sheet larger.",
+            )
+
+    def _check_edges(self) -> None:
+        """Refuse what edges that are cut once, or touch, do not allow."""
+        name = self.needs_pieces()
+        if self.edges == "once" and name is not None:
+            raise JobError(
+                f"`{name}` needs `edges='pieces'`: an edge that is cut once belongs to two of them",
+                remedy=f"Use that, or leave `{name}` out.",
+            )
+        touching = self.apart is None and not self.pack and not self.nests
+        if self.tabs > 0.0 and self.sheet is not None and self.cuts_pieces and touching:
+            raise JobError(
+                "`tabs` hold nothing where the contours of two pieces lie on each other",
+                remedy="Pull the pieces apart, `gap='1mm'`, or use `edges='once'`.",
+            )
+        if self.fit == "frame" and self.apart is not None:
+            raise JobError(
+                f"`{'gap' if self.gap else 'kerf'}` pulls the tiles apart, and `fit='frame'` leaves them no room",
+                remedy="Cut the frame without it, use `fit='whole'`, or `pack=True`: pieces beside the frame, a file "
+                "each.",
+            )
+
+    def _check_colours(self) -> None:
+        """Refuse what colours, or none, contradict."""
+        if self.into is not None and self.split != self.into:
+            if self.colours == "none":
+                raise JobError("`into` is about colours, and there are none", remedy="Add `colours='fewest'`.")
+            raise JobError(
+                f"`colours='{self.colours}'` and `into='{self.into}'` contradict each other",
+                remedy="Use `colours='fewest'`.",
+            )
+
+    def _check_packing(self) -> None:
+        """Refuse what cannot be packed, or be packed with."""
+        if not self.pack:
+            if self.stock is not None:
+                raise JobError("`stock` is what pieces are packed on, and none are", remedy="Add `pack=True`.")
+            return
+        for wrong, message, remedy in (
+            (
+                self.sheet is None and self.pieces is None,
+                "`pack` packs the tiles of a sheet, and there is none",
+                "Add `sheet='600x300mm'`.",
+            ),
+            (self.split == "layers", "`pack` makes files of colours, and no layers", "Use `into='files'`."),
+            (self.fit == "clip", "`pack` packs whole tiles, and `fit='clip'` cuts them", "Use `fit='whole'`."),
+            (self.gap == 0.0, "`pack` with a `gap` of 0 would cut where pieces touch twice", "Use `gap='1mm'`."),
+            (
+                not isinstance(self.sheet, tuple) and self.stock is None,
+                "`pack` needs sheets to pack on, and this one is a drawing, or not known",
+                "Add their size, `stock='600x300mm'`.",
+            ),
+        ):
+            if wrong:
+                raise JobError(message, remedy=remedy)
+
+    def _check_count(self) -> None:
+        """Refuse a count of what is not nested."""
+        for wrong, message, remedy in (
+            (
+                self.count is None and self.sheets is not None and not (self.pack and self.layout == "nested"),
+                "`sheets` are for a `count` of pieces, or for those of colours that are packed and nested",
+                "Add `count=40`, or `pack=True` and `layout='nested'`.",
+            ),
+            (
+                self.count is not None and self.pack,
+                "`count` is of pieces wherever they belong, and `pack` packs those of a picture",
+                "Use one of the two.",
+            ),
+            (
+                self.count is not None and self.layout not in ("nested", "auto"),
+                f"`count` is of pieces that are nested, and `layout='{self.layout}'` lays others",
+                "Use `layout='nested'`.",
+            ),
+        ):
+            if wrong:
+                raise JobError(message, remedy=remedy)
 
 
 Job.__doc__ = f"{Job.__doc__}\n" + "\n".join(f"    - `{name}`: {option.help}" for name, option in Job.options().items())
