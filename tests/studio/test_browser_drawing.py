@@ -92,6 +92,19 @@ def turn(vector: list[float]) -> float:
 # Tools
 
 
+def test_copies_of_strokes_are_drawn_wherever_these_are(page: Window) -> None:
+    """A stroke ten cells away has its copies in the window, faint, and none beside them."""
+    page.begin({**DESIGN, "site": [{"strokes": [{"segment": [[610, 10], [620, 22]]}]}]})
+    alpha = (
+        "([x, y]) => { const canvas = document.getElementById('overlay'); const box = canvas.getBoundingClientRect();"
+        " return canvas.getContext('2d').getImageData(x - box.left - 1, y - box.top - 1, 3, 3).data"
+        ".filter((_, k) => k % 4 === 3).reduce((one, other) => Math.max(one, other)); }"
+    )
+    on, beside = (page.page.evaluate(alpha, list(page.at(*at))) for at in ((15, 16), (20, 10)))
+    assert on > 40
+    assert beside == 0
+
+
 def test_pen_with_tangents(empty: Window) -> None:
     """What is dragged is half of a tangent's handles, a third of the tangent: the paper's Hermite curves."""
     empty.page.keyboard.press("p")

@@ -2,7 +2,6 @@
 /** Lattices of the plane: their cells, and the images of points under them. */
 
 import { apply, cross, dot, length, minus, plus, scaled } from "./plane.js";
-import { boxOf } from "./segments.js";
 
 /** @import { Box, Point, Similarity } from "./plane.js" */
 
@@ -32,26 +31,6 @@ export const fractional = ({ a, b }, z) => scaled([cross(z, b), cross(a, z)], 1 
 export function fold(lattice, z) {
     const [x, y] = fractional(lattice, z);
     return minus(z, cartesian(lattice, [Math.floor(x), Math.floor(y)]));
-}
-
-/**
- * The cells that can meet a box, by the integers i and j of their corners i a + j b.
- * @type {(lattice: Lattice, box: Box) => [number, number][]}
- */
-export function cellsIn(lattice, [x0, y0, x1, y1]) {
-    const corners = /** @type {Point[]} */ ([
-        [x0, y0],
-        [x1, y0],
-        [x0, y1],
-        [x1, y1],
-    ]);
-    const [left, bottom, right, top] = boxOf(corners.flatMap((corner) => fractional(lattice, corner)));
-    /** @type {[number, number][]} */
-    const cells = [];
-    for (let j = Math.floor(bottom); j <= top; j++) {
-        for (let i = Math.floor(left); i <= right; i++) cells.push([i, j]);
-    }
-    return cells;
 }
 
 /**

@@ -10,7 +10,7 @@ import { across, cartesian, cellArea, clip, imagesIn, marginOf } from "./lattice
 import { apply, length, nearestUnit, plus, scaled, unitAt } from "./plane.js";
 
 export { cosets } from "./copies.js";
-export { cellsIn, fold, orbitIn } from "./lattice.js";
+export { fold, orbitIn } from "./lattice.js";
 
 /** @import { Box, Point } from "./plane.js" */
 /** @typedef {import("./lattice.js").Lattice} Lattice */

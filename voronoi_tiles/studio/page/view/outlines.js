@@ -168,7 +168,7 @@ export function drawOutlines(context, camera, lattice, motions, tiles, style = {
  * @param {number} radius
  * @returns {Generator<Point>}
  */
-function* near({ p, q }, { centre, scale, size }, middle, radius) {
+export function* near({ p, q }, { centre, scale, size }, middle, radius) {
     const [across, up] = [size[0] / scale / 2 + radius, size[1] / scale / 2 + radius];
     const lattice = { a: p, b: q };
     const away = minus(centre, middle);

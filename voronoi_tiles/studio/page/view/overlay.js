@@ -2,19 +2,21 @@
 // What lies over the picture: the cell, symmetry elements, the grid, strokes and their nodes, and what a tool shows.
 
 import { Kept } from "../model/kept.js";
-import { minus, plus } from "../model/plane.js";
+import { reducedBasis } from "../gl/pattern.js";
+import { apply, minus, plus } from "../model/plane.js";
 import { isSameNode, isSameStroke } from "../model/design.js";
 import { cartesian } from "../model/lattice.js";
-import { cellsIn, elementsIn, regionOf } from "../model/symmetry.js";
-import { nodeRef, shownNodes } from "../scene.js";
+import { elementsIn, regionOf } from "../model/symmetry.js";
+import { boxOf, nodeRef, shownNodes } from "../scene.js";
 import { colours, line, path, ring } from "./marks.js";
+import { near } from "./outlines.js";
 import { roundedScale, screenPath } from "./paths.js";
 
 /** @import { Hands, Point } from "../tools/tool.js" */
 /** @import { Toolbox } from "../tools/toolbox.js" */
 /** @typedef {CanvasRenderingContext2D} Context */
 
-const COPIES_MAX = 600;
+const COPIES_MAX = 300;
 
 /**
  * A rotation centre of an order, as the International Tables draw it, added to a path.
@@ -131,25 +133,33 @@ const keptPaths = new Kept();
 const keptCopies = new Kept();
 
 /**
- * The copies of paths in a box; none where they are too many.
- * @param {Path2D[]} paths
+ * The copies of strokes in the window; none where they are too many.
+ * @param {import("../scene.js").Entry[]} entries
+ * @param {Path2D[]} paths of these
  * @param {import("../model/symmetry.js").Motion[]} motions
  * @param {import("../model/lattice.js").Lattice} lattice
- * @param {import("../model/plane.js").Box} box
+ * @param {import("./camera.js").Camera} camera
  */
-function copiesOf(paths, motions, lattice, box) {
-    const [once, cell, copies] = [new Path2D(), new Path2D(), new Path2D()];
-    const cells = cellsIn(lattice, box);
-    if (cells.length * motions.length > COPIES_MAX) {
+function copiesOf(entries, paths, motions, lattice, camera) {
+    const [once, copies] = [new Path2D(), new Path2D()];
+    const [basis, box] = [reducedBasis(lattice), boxOf(entries)];
+    if (!basis || !box) {
         return copies;
     }
     paths.forEach((path) => once.addPath(path));
-    for (const { a, b, conj } of motions) {
+    const [x0, y0, x1, y1] = box;
+    let count = 0;
+    for (const motion of motions) {
+        const { a, b, conj } = motion;
         const sign = conj ? -1 : 1;
-        cell.addPath(once, new DOMMatrix([a[0], a[1], -sign * a[1], sign * a[0], ...b]));
-    }
-    for (const at of cells) {
-        copies.addPath(cell, new DOMMatrix([1, 0, 0, 1, ...cartesian(lattice, at)]));
+        const middle = apply(motion, [(x0 + x1) / 2, (y0 + y1) / 2]);
+        for (const at of near(basis, camera, middle, Math.hypot(x1 - x0, y1 - y0) / 2)) {
+            if (count++ === COPIES_MAX) {
+                return new Path2D();
+            }
+            const [x, y] = plus(b, cartesian({ a: basis.p, b: basis.q }, at));
+            copies.addPath(once, new DOMMatrix([a[0], a[1], -sign * a[1], sign * a[0], x, y]));
+        }
     }
     return copies;
 }
@@ -180,7 +190,7 @@ function strokes(context, hands, motions, lattice, colour) {
         context.lineWidth = pixel;
         context.stroke(
             keptCopies.get([paths, motions, lattice, ...camera.box], () =>
-                copiesOf(paths, motions, lattice, camera.box),
+                copiesOf(all, paths, motions, lattice, camera),
             ),
         );
         context.globalAlpha = 1;
@@ -225,19 +235,19 @@ function nodes(context, hands, colour) {
     const [others, chosen] = [new Path2D(), new Path2D()];
     for (const node of shown) {
         const [x, y] = camera.toScreen(node.at);
-        const nodes = selection.nodes.some((ref) => isSameNode(ref, nodeRef(node))) ? chosen : others;
+        const marks = selection.nodes.some((ref) => isSameNode(ref, nodeRef(node))) ? chosen : others;
         if (node.role === "anchor" && !node.smooth) {
-            nodes.rect(x - 4, y - 4, 8, 8);
+            marks.rect(x - 4, y - 4, 8, 8);
         } else {
             const radius = node.role === "anchor" || node.role === "centre" ? 4.5 : 3.5;
-            nodes.moveTo(x + radius, y);
-            nodes.arc(x, y, radius, 0, 2 * Math.PI);
+            marks.moveTo(x + radius, y);
+            marks.arc(x, y, radius, 0, 2 * Math.PI);
         }
     }
-    for (const nodes of [others, chosen]) {
-        context.fillStyle = nodes === chosen ? colour.accent : colour.panel;
-        context.fill(nodes);
-        context.stroke(nodes);
+    for (const marks of [others, chosen]) {
+        context.fillStyle = marks === chosen ? colour.accent : colour.panel;
+        context.fill(marks);
+        context.stroke(marks);
     }
 }
 

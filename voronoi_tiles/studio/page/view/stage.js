@@ -68,7 +68,7 @@ export class Stage {
             overlay.before(canvas);
             return contextOf(canvas, alpha);
         };
-        // Tiles cover the window: nothing is mixed with what lies below them, a millisecond in each frame.
+        // Tiles cover the window: to mix them with what lies below would take a millisecond in each frame.
         this.#contexts = { overlay: contextOf(overlay), outlines: below("outlines"), tiles: below("tiles", false) };
         watchSize(overlay, ({ size, ratio, pixels }) => {
             Object.assign(this.camera, { size, ratio, pixels });
@@ -207,7 +207,7 @@ export class Stage {
     }
 
     /**
-     * A canvas to draw on, empty, in the size of the window.
+     * A canvas to draw on, in the size of the window, and empty, but for that of tiles, which cover it.
      * @param {CanvasRenderingContext2D} context
      */
     #cleared(context) {
@@ -216,7 +216,9 @@ export class Stage {
             Object.assign(context.canvas, { width, height });
         }
         context.setTransform(1, 0, 0, 1, 0, 0);
-        context.clearRect(0, 0, width, height);
+        if (context !== this.#contexts.tiles) {
+            context.clearRect(0, 0, width, height);
+        }
         return context;
     }
 
@@ -236,10 +238,10 @@ export class Stage {
         const looks = outlines ? Object.values(outlines.style).flat() : [];
         const causes = [outlines?.copies, ...looks, state.trace, camera.scale, ...camera.centre, ...this.#pixels];
         this.#drawn.get(causes, () => {
-            const { outlines: clear, tiles } = this.#contexts;
-            const context = this.#cleared(outlines?.style.fill ? tiles : clear);
-            context.canvas.hidden = false;
-            (context === tiles ? clear : tiles).canvas.hidden = true;
+            const { outlines: lines, tiles } = this.#contexts;
+            tiles.canvas.hidden = !outlines?.style.fill;
+            lines.canvas.hidden = !tiles.canvas.hidden;
+            const context = this.#cleared(tiles.canvas.hidden ? lines : tiles);
             if (outlines?.style.fill) {
                 fillCopies(context, camera, outlines.copies, outlines.style);
             }
