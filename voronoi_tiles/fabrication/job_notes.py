@@ -44,6 +44,9 @@ def unnested(job: Job) -> list[str]:
         )
         if not works and getattr(job, name) != Job.options()[name].default
     ]
+    drawn = isinstance(job.sheet, str) and job.layout == "nested" and not job.pack
+    if drawn and any(getattr(job, name) != Job.options()[name].default for name in ("effort", "seed")):
+        said.append("a sheet that is drawn is nested without a search: `effort` and `seed` change nothing")
     if job.layout == "auto" and job.not_nestable is not None:
         said.append(f"pieces are not nested: `layout='auto'` {job.not_nestable[0]}")
     elif job.layout == "auto" and not job.apart:

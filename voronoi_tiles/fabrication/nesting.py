@@ -107,7 +107,8 @@ def _counted(base: Layout, job: Job, progress: Progress | None) -> Arranged:
     search = job.layout == "nested" and has_search()
     nesting = Nesting.of(base, job, job.sheets or 1)
     sheets = counted_sheets(nesting, demand_of_sites(nesting, wanted), progress, search=search)
-    said = [f"{counted(len(sheets), 'sheet')}: {'; '.join(map(_counts, sheets))}"] if len(sheets) > 1 else []
+    said = [] if search or job.layout == "auto" or isinstance(job.sheet, str) else [_UNSEARCHED]
+    said += [f"{counted(len(sheets), 'sheet')}: {'; '.join(map(_counts, sheets))}"] if len(sheets) > 1 else []
     return Arranged(tuple(sheets), tuple(said))
 
 
