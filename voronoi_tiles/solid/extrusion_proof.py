@@ -13,7 +13,7 @@ from voronoi_tiles.base.arrays import Complexes, plane
 from voronoi_tiles.base.errors import ProofError
 from voronoi_tiles.base.tolerance import EPSILON
 from voronoi_tiles.fabrication.tile_colouring import neighbour_pairs
-from voronoi_tiles.solid.faces import polygons
+from voronoi_tiles.solid.face_triangles import polygons
 from voronoi_tiles.solid.prism import Prism
 from voronoi_tiles.solid.solid_job import SolidJob
 from voronoi_tiles.vector.complex.period import Period

@@ -10,7 +10,7 @@ import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Ints, plane
 from voronoi_tiles.base.errors import ProofError
-from voronoi_tiles.solid.faces import following, polygons, signed_area, triangulated
+from voronoi_tiles.solid.face_triangles import following, polygons, signed_area, triangulated
 from voronoi_tiles.solid.mesh import TriangleMesh
 
 

@@ -53,7 +53,7 @@ _GROUND: Final = np.array([0.985, 0.982, 0.972])
 """The colour of the ground."""
 
 
-class _View(NamedTuple):
+class _Camera(NamedTuple):
     """An orthographic view: `axes` are right, down and toward the eye; pixels are `scale` ((x, y) - `corner`)."""
 
     axes: Floats
@@ -96,7 +96,7 @@ def picture(pieces: Sequence[SolidPiece], colours: Sequence[str], size: int = SI
     corners = np.concatenate([piece.mesh.corners for piece in pieces])
     owner = np.repeat(np.arange(len(pieces)), [len(piece.mesh.triangles) for piece in pieces])
     shadow = corners - _shadow_light() * (corners[:, :, 2:] - corners[:, :, 2].min()) / _shadow_light()[2]
-    view = _View.of(np.concatenate([corners, shadow]).reshape(-1, 3), size * _FINER)
+    view = _Camera.of(np.concatenate([corners, shadow]).reshape(-1, 3), size * _FINER)
     normals = np.concatenate([piece.mesh.normals for piece in pieces])
     front = np.flatnonzero(normals @ view.axes[2] > 0.0)
     at = view(corners[front])
@@ -158,7 +158,7 @@ def _edges(found: Ints, owner: Ints, normals: Floats) -> Bools:
     return lines
 
 
-def _blurred(mask: Bools, view: _View) -> Floats:
+def _blurred(mask: Bools, view: _Camera) -> Floats:
     """A mask with soft edges: three running means, which come near a Gaussian."""
     reach = max(round(_BLUR * max(view.width, view.height)), 1)
     soft = mask.astype(np.float64)

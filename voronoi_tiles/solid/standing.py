@@ -15,7 +15,7 @@ from voronoi_tiles.fabrication.exact import design_recipe
 from voronoi_tiles.fabrication.job import JobError
 from voronoi_tiles.groups.periodic_colouring import palette
 from voronoi_tiles.solid.cross_sections import section
-from voronoi_tiles.solid.faces import polygons
+from voronoi_tiles.solid.face_triangles import polygons
 from voronoi_tiles.solid.loft import ACCURACY_MM, Loft
 from voronoi_tiles.solid.mesh import TriangleMesh
 from voronoi_tiles.solid.pieces import SolidPiece

@@ -40,7 +40,7 @@ def _covered(corners: Floats, first: Ints, rows: Ints, width: int) -> tuple[Ints
     """The pixels that triangles cover: number of the pixel, triangle and depth, one row of each after the other."""
     triangle = np.repeat(np.arange(len(corners)), rows)
     row = ranges(first, rows)
-    y = row + 0.5
+    y = row.astype(np.float64) + 0.5
     low, high = np.full(len(row), np.inf), np.full(len(row), -np.inf)
     for k in range(3):
         a, b = corners[triangle, k], corners[triangle, (k + 1) % 3]
@@ -54,7 +54,7 @@ def _covered(corners: Floats, first: Ints, rows: Ints, width: int) -> tuple[Ints
     begin = np.where(count > 0, begin, 0).astype(np.intp)
     column, owner = ranges(begin, count), np.repeat(np.arange(len(row)), count)
     of = triangle[owner]
-    depth = _plane_at(corners, of, column + 0.5, y[owner])
+    depth = _plane_at(corners, of, column.astype(np.float64) + 0.5, y[owner])
     return row[owner] * width + column, of, depth
 
 
