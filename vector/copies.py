@@ -100,7 +100,7 @@ def place(action: Action, sites: Sequence[NodedSite]) -> tuple[list[Placed], Sit
     for k in _nearly_fixed(action, centroid, 4 * max(SAME_POINT * scale, *rounding)):
         stabilizers[k] = _stabilizer(action, own[k], sites[k].segments, rounding[k])
         if far[k]:
-            own[k] = _symmetrized(action, own[k], stabilizers[k])
+            own[k] = symmetrized(action, own[k], stabilizers[k])
     representatives = {stabilizer: _representatives(action, stabilizer) for stabilizer in set(stabilizers)}
     placed = [
         Placed(own[k], site.segments, shifts[k], stabilizers[k], representatives[stabilizers[k]])
@@ -137,7 +137,7 @@ def translation(placed: Placed, sign: int) -> Motion:
     return (*IDENTITY[:4], 2 * sign * placed.shift[0], 2 * sign * placed.shift[1])
 
 
-def _symmetrized(action: Action, nodes: Complexes, stabilizer: tuple[Motion, ...]) -> Complexes:
+def symmetrized(action: Action, nodes: Complexes, stabilizer: tuple[Motion, ...]) -> Complexes:
     """The nodes of a site that motions map nearly onto itself, made symmetric: each the mean of what is taken there."""
     images = [action.apply(motion, nodes) for motion in stabilizer]
     return np.asarray(np.mean([image[Neighbours(image).nearest(nodes)[1][:, 0]] for image in images], axis=0), complex)

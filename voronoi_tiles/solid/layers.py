@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import Final
 
 import numpy as np
 
@@ -14,11 +15,14 @@ from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 from voronoi_tiles.solid.loops import with_whole_loops
 from voronoi_tiles.vector.complex.quotient import Quotient
-from voronoi_tiles.vector.copies import translation
-from voronoi_tiles.vector.motion_codes import Codes, code_of, composed, encode, least_products
+from voronoi_tiles.vector.copies import symmetrized, translation
+from voronoi_tiles.vector.motion_codes import Codes, code_of, composed, encode, least_products, motion_of
 from voronoi_tiles.vector.motions import Action, Motion, compose
 from voronoi_tiles.vector.proof import ProofReport, proved_tiles
 from voronoi_tiles.vector.tessellation import TileRecord
+
+_ROUNDING: Final = 1e-9
+"""How far from being symmetric a site is at most that is made so; relative to the cell's size."""
 
 Name = tuple[int, int]
 """What lies beyond an edge: the number of a site, and the code of the motion that takes its drawn place there."""
@@ -47,8 +51,21 @@ class ExactLayer:
     tile_offsets: Ints
 
     @classmethod
-    def of(cls, z: float, sites: Sequence[NodedSite], group: WallpaperGroup, lattice: Lattice) -> ExactLayer:
-        """The layer of these sites. Raises TouchingCopiesError and ProofError, as for any design."""
+    def of(
+        cls,
+        z: float,
+        sites: Sequence[NodedSite],
+        group: WallpaperGroup,
+        lattice: Lattice,
+        stabilizers: Sequence[tuple[int, ...]] = (),
+    ) -> ExactLayer:
+        """The layer of these sites, which motions, the codes of which are given for each, map onto themselves.
+
+        Raises TouchingCopiesError and ProofError, as for any design.
+        """
+        if any(len(own) > 1 for own in stabilizers):
+            action = Action(group, lattice)
+            sites = [_symmetric(action, site, own) for site, own in zip(sites, stabilizers, strict=True)]
         records, proof = proved_tiles(sites, group, lattice)
         tessellation = records[0].tessellation
         quotient, placed = with_whole_loops(tessellation.quotient), tessellation.placed
@@ -110,6 +127,12 @@ class ExactLayer:
         bounds = self.ring_offsets.tolist()
         rings = [self.names[a:b] for a, b in pairwise(bounds)]
         return tuple(tuple(rings[a:b]) for a, b in pairwise(self.tile_offsets.tolist()))
+
+
+def _symmetric(action: Action, site: NodedSite, stabilizer: tuple[int, ...]) -> NodedSite:
+    """A site made symmetric that is so up to rounding, which is more where strokes cross at a small angle."""
+    nodes = symmetrized(action, site.nodes, tuple(map(motion_of, stabilizer)))
+    return replace(site, nodes=nodes) if np.abs(nodes - site.nodes).max() <= _ROUNDING * action.size else site
 
 
 def _stabilizer(record: TileRecord) -> tuple[int, ...]:

@@ -79,8 +79,9 @@ def lofted(design: Design, *, accuracy: float = ACCURACY_MM) -> Loft:
 
     @cache
     def layer_at(z: float) -> ExactLayer:
+        own = () if z == 0.0 else layer_at(0.0).stabilizers
         try:
-            return ExactLayer.of(z, motion.at(z), design.group, design.lattice)
+            return ExactLayer.of(z, motion.at(z), design.group, design.lattice, own)
         except TouchingCopiesError as error:
             raise LoftError(str(error).partition(". ")[0], z, remedy="Copies must keep apart at all heights.") from None
 
