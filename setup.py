@@ -29,6 +29,7 @@ SOURCES = [
     "voronoi_tiles/base/box_index.c",
     "voronoi_tiles/paths/biarc_bounds.c",
     "voronoi_tiles/paths/clearance.c",
+    "voronoi_tiles/paths/cubic_fit.c",
     "raster/block_lists.c",
     "vector/cells/cells.c",
     "vector/cells/hierarchy.c",

@@ -5,7 +5,10 @@ from __future__ import annotations
 import cmath
 import sys
 from dataclasses import replace
+from functools import partial
+from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -19,10 +22,14 @@ sys.path.append(str(Path(__file__).parents[2] / "bench"))
 
 import cubics
 
-from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.base.arrays import Complexes, Floats
+from voronoi_tiles.paths.biarc_bounds import Fit, fit
+from voronoi_tiles.paths.biarcs import to_arcs
 from voronoi_tiles.paths.cubic_bounds import FittedCubics, bounds
+from voronoi_tiles.paths.cubic_fit import CubicFit, PlacedStretches, fit_cubics
 from voronoi_tiles.paths.fewest_cubics import to_fewest_cubics
 from voronoi_tiles.paths.paths import CUBIC, LINE, QUAD, Paths
+from voronoi_tiles.paths.smooth_runs import SmoothRuns
 from voronoi_tiles.paths.stretch_parts import cut
 
 ACCURACY = 0.005
@@ -228,6 +235,124 @@ def test_what_is_straight_is_a_line() -> None:
     bent = chain((0j, 1 + 0j), (1 + 0j, 2 + 0j, 3 + 1j), (3 + 1j, 4 + 2j))
     assert fitted(bent).kind.tolist() == [CUBIC, CUBIC]
     assert to_fewest_cubics(bent, accuracy=ACCURACY).kind.tolist() == [LINE, CUBIC, LINE]
+
+
+@pytest.mark.parametrize("accuracy", [1e-3, 1e-5])
+@few_examples
+def test_there_are_no_more_than_exact_pieces(name: str, accuracy: float) -> None:
+    """However fine the accuracy: where cubic curves would be more, the pieces themselves are taken."""
+    old = exact_edges(name)
+    new = fitted(old, accuracy)
+    assert_joined(new)
+    assert np.all(new.counts <= old.counts)
+    for k in range(len(old)):
+        edge, other = old.take(np.array([k])), new.take(np.array([k]))
+        assert distance(edge, other, 0.01) <= accuracy * 1.001 + 4e-6
+
+
+def test_rounded_corners_keep_their_ends() -> None:
+    """Arcs of their radius that turn by more than a corner: beside them runs are as they would be alone."""
+    turn = 0.3
+    side = smooth_side(4, 6, 2.0)
+    centre = side.end[-1] + 0.075j * directions(side)[1][-1]
+    spin = cmath.rect(1.0, turn)
+    end, middle = (centre + (side.end[-1] - centre) * spin**part for part in (1.0, 0.5))
+    after = side.moved(spin, end - side.start[0] * spin)
+    pull = directions(side)[1][-1] * spin / directions(after)[0][0]
+    after = after.moved(pull, end - end * pull)
+    after.start[0] = end
+    corner = arc(complex(side.end[-1]), complex(middle), complex(end))
+    whole = Paths.concatenate([side, corner, after])
+    whole = replace(whole, offsets=np.array([0, len(whole.start)]), closed=np.zeros(1, np.bool_))
+    alone = [to_fewest_cubics(part, accuracy=ACCURACY, corner=CORNER) for part in (side, corner, after)]
+    kept = to_fewest_cubics(whole, accuracy=ACCURACY, corner=CORNER, rounded=(0.2, 0.075))
+    assert {side.end[-1], end} <= set(kept.start.tolist())
+    assert len(kept.kind) == sum(len(part.kind) for part in alone)
+    assert distance(whole, kept, 0.01) <= ACCURACY * 1.001
+    for other in ((), (0.2,)):
+        assert end not in to_fewest_cubics(whole, accuracy=ACCURACY, corner=CORNER, rounded=other).start.tolist()
+
+
+def test_small_joints_are_rounded_within_the_accuracy() -> None:
+    """Five degrees, between curves that came in pieces: smooth, and yet no point is farther than the accuracy."""
+    first, second = (0j, 5 + 1j, 10 + 0j), (0j, 5 + 1j, 10 + 1j)
+    leaving = (first[2] - first[1]) / second[1] * cmath.rect(1.0, np.deg2rad(5.0))
+    leaving /= abs(leaving)
+    second = first[2], first[2] + second[1] * leaving, first[2] + second[2] * leaving
+    whole = chain(first, second)
+    for accuracy in (0.02, 0.005, 0.0005):
+        pieces = chain(*(piece for curve in (first, second) for piece in in_pieces(curve, 8)))
+        new = to_fewest_cubics(pieces, accuracy=accuracy, corner=CORNER)
+        assert len(new.kind) < 16
+        assert_smooth(new, np.zeros(0, np.complex128))
+        assert accuracy / 100 < distance(whole, new, 0.001) <= accuracy * 1.001
+    assert second[0] in to_fewest_cubics(pieces, accuracy=0.005, corner=0.08).start.tolist()
+    # A joint of two curves stays where rounding it takes three.
+    assert to_fewest_cubics(whole, accuracy=0.0005, corner=CORNER).start.tolist() == pytest.approx(whole.start.tolist())
+
+
+def in_pieces(curve: tuple[complex, ...], count: int) -> list[tuple[complex, ...]]:
+    """A quadratic curve cut into pieces of equal steps."""
+    a, b, c = curve
+
+    def polar(u: float, v: float) -> complex:
+        """The polar form."""
+        return a * (1 - u) * (1 - v) + b * (u * (1 - v) + v * (1 - u)) + c * u * v
+
+    t = [k / count for k in range(count + 1)]
+    return [(polar(u, u), polar(u, v), polar(v, v)) for u, v in pairwise(t)]
+
+
+@pytest.mark.usefixtures("compiled")
+def test_the_kernel_has_the_bits_of_numpy(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Good fits and bad ones, long and short, even or not, with tangents of the run's own and of windows."""
+    rng = np.random.default_rng(11)
+    for seed in range(10):
+        runs = runs_of(smooth_side(seed, 1 + seed % 6, 2.0))
+        total = float(runs.total[0])
+        low, high = np.sort(rng.uniform(0.0, total, (2, 12)), axis=0)
+        low[:3], high[2:5] = 0.0, total
+        window = np.minimum(np.where(np.arange(12) % 2, total / 20, 0.0), np.minimum(low, total - high))
+        stretches = PlacedStretches(np.zeros(12, np.intp), low, high, window, window, rng.random(12) < 0.3)
+        found = []
+        for chosen in ("", "numpy"):
+            monkeypatch.setenv("VORONOI_TILES_KERNELS", chosen)
+            fit = fit_cubics(runs, stretches)
+            found.append([array.tobytes() for array in (*fit.curves, fit.bound)])
+        assert found[0] == found[1]
+
+
+def test_last_bits_move_no_break(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Errors that are a little off, more than processors differ, and any for straight stretches: the same bits."""
+    sides = []
+    for seed in range(4):
+        side = smooth_side(seed, 6, 2.0)
+        end, along = complex(side.end[-1]), complex(directions(side)[1][-1])
+        straight = [(end + k * along, end + (k + 0.5) * along, end + (k + 1) * along) for k in range(4)]
+        sides.append(chain(*zip(side.start, side.control[:, 0], side.end, strict=True), *straight))
+    old = Paths.concatenate(sides)
+    convert = partial(to_fewest_cubics, accuracy=ACCURACY), partial(to_arcs, accuracy=ACCURACY)
+    plain = [one(old) for one in convert]
+    rng = np.random.default_rng(3)
+
+    def shaken(bound: Floats) -> Floats:
+        """Errors, changed by some hundred millionths of themselves, and of the accuracy."""
+        return bound * (1 + rng.uniform(-1e-8, 1e-8, bound.shape)) + ACCURACY * rng.uniform(0, 1e-9, bound.shape)
+
+    def shaken_fits(runs: SmoothRuns, stretches: PlacedStretches) -> CubicFit:
+        """Cubic curves as they are."""
+        found = fit_cubics(runs, stretches)
+        return found._replace(bound=shaken(found.bound))
+
+    def shaken_arcs(*stretches: Any) -> Fit:
+        """Arcs as they are."""
+        found = fit(*stretches)
+        return found._replace(line=shaken(found.line), arc=shaken(found.arc), biarc=shaken(found.biarc))
+
+    monkeypatch.setattr("voronoi_tiles.paths.fewest_cubics.fit_cubics", shaken_fits)
+    monkeypatch.setattr("voronoi_tiles.paths.biarcs.fit", shaken_arcs)
+    for one, there in zip(convert, plain, strict=True):
+        assert same(one(old), there)
 
 
 @few_examples

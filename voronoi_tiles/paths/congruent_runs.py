@@ -61,7 +61,7 @@ def shapes(points: Complexes, offsets: Ints, tolerance: float) -> Iterator[list[
     apart = np.diff(length[order]) > 2 * tolerance * size[order[1:]]
     bounds = (0, *(np.flatnonzero(other | apart) + 1).tolist(), len(order))
     for low, high in pairwise(bounds):
-        block = order[low:high]
+        block = np.sort(order[low:high])  # the first is the first of all, whichever last bits make it the shorter
         rows = points[offsets[block][:, None] + np.arange(size[block[0]])]
         while len(block):
             found = []

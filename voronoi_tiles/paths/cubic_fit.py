@@ -7,6 +7,7 @@ from typing import Final, NamedTuple
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Floats, Ints
+from voronoi_tiles.base.kernels import FLOATS, INT, INTS, kernel
 from voronoi_tiles.paths.cubic_bounds import FittedCubics, bounds, derivatives, nearer_foot
 from voronoi_tiles.paths.smooth_runs import SmoothRuns, tangents
 from voronoi_tiles.paths.stretch_parts import StretchEnds, StretchParts, cut
@@ -33,8 +34,12 @@ _AROUND: Final = np.linspace(-1.0, 1.0, 2 * _SIDE + 1)
 _LEAST: Final = 0.02
 """The weight of the outermost points; that of the place is 1."""
 
-_UNITS: Final = 2.0**30
+_UNITS: Final = 2.0**44
 """Shares of a stretch's length are whole numbers of parts as small as this."""
+
+
+# What the compiled kernel takes, as in cubic_fit.c.
+_FITS = kernel("cubic_fits", INT, INTS, FLOATS, FLOATS, INTS, INT, *10 * [FLOATS])
 
 
 class CubicFit(NamedTuple):
@@ -77,7 +82,7 @@ def fit_cubics(runs: SmoothRuns, stretches: PlacedStretches) -> CubicFit:
     It has the ends of the stretch and the tangents of `tangents_at` there, so that curves of neighbouring stretches
     go on smoothly. The lengths of the two handles are such that the squares of the distances from the stretch, along
     the curve's normals, come to the least: steps of Gauss and Newton, with the feet of points found along the way.
-    Stretches that are even get a curve that is.
+    Stretches that are even get a curve that is. A compiled kernel and numpy give the same bits.
     """
     run, low, high, low_window, high_window, even = stretches
     parts, ends = cut(runs, run, low, high)
@@ -92,14 +97,43 @@ def fit_cubics(runs: SmoothRuns, stretches: PlacedStretches) -> CubicFit:
     before = (sums - sums[first][stretch]) / _UNITS
     # The samples are where parts begin and their middles.
     x, y = (np.stack((c[0], (c[0] + 3.0 * (c[1] + c[2]) + c[3]) / 8.0)) for c in (parts.x, parts.y))
-    t = np.stack((before, before + share / (2 * _UNITS)))
-    weight = share / _UNITS
-    near = far = total / 3.0
+    samples = _Samples(x, y, np.stack((before, before + share / (2 * _UNITS))), share / _UNITS)
+    return _fitted_compiled(given, parts, samples, even) or _fitted(given, parts, samples, even)
+
+
+class _Samples(NamedTuple):
+    """Points of the parts of stretches, two each, and parameters near their feet: all (2, m); their weight, (m,)."""
+
+    x: Floats
+    y: Floats
+    t: Floats
+    weight: Floats
+
+
+def _fitted_compiled(given: _Hermite, parts: StretchParts, samples: _Samples, even: Bools) -> CubicFit | None:
+    """What `_fitted` gives, with the same bits; None without the compiled kernels."""
+    compiled = _FITS()
+    if compiled is None:
+        return None
+    count = len(given.length)
+    near, far, bound = np.empty((3, count))
+    rules = np.array([_STEPS, _TIE, _SHORTEST, _LONGEST, _FARTHEST])
+    points = parts.x, parts.y, samples.weight, samples.x, samples.y, samples.t
+    ends = np.stack(given.ends)
+    shape = count, parts.first, ends, given.length, even.astype(np.int64), len(parts.stretch)
+    compiled(*shape, *points, rules, near, far, bound)
+    return CubicFit(given.curves(near, far), bound)
+
+
+def _fitted(given: _Hermite, parts: StretchParts, samples: _Samples, even: Bools) -> CubicFit:
+    """The curves with the best handles, and the bounds."""
+    t = samples.t
+    near = far = given.length / 3.0
     for step in range(_STEPS):
-        here = given.curves(near, far).of(stretch)
+        here = given.curves(near, far).of(parts.stretch)
         for _ in range(2 if step == 0 else 1):
-            t = nearer_foot(here, x, y, t)
-        near, far = _better_handles(given, stretch, first, weight, (x, y), t, here, near, far)
+            t = nearer_foot(here, samples.x, samples.y, t)
+        near, far = _better_handles(given, parts.stretch, samples._replace(t=t), here, near, far)
     both = (near + far) / 2
     near, far = np.where(even, both, near), np.where(even, both, far)
     curves = given.curves(near, far)
@@ -113,8 +147,10 @@ def tangents_at(runs: SmoothRuns, run: Ints, place: Floats, window: Floats) -> t
     as the window reaches to both sides: flattened strokes leave small joints and waves along a run, whose own tangents
     lead astray.
     """
-    x, y = _own_tangents(runs, run, place)
-    wide = np.flatnonzero(window > 0.0)
+    x, y = np.empty((2, len(run)))
+    own, wide = np.flatnonzero(window == 0.0), np.flatnonzero(window > 0.0)
+    if len(own):
+        x[own], y[own] = _own_tangents(runs, run[own], place[own])
     if len(wide):
         x[wide], y[wide] = _mean_tangents(runs, run[wide], place[wide], window[wide])
     return x, y
@@ -130,17 +166,33 @@ def _mean_tangents(runs: SmoothRuns, run: Ints, place: Floats, window: Floats) -
     length = np.concatenate((np.zeros((1, len(run))), np.cumsum(np.sqrt(dx * dx + dy * dy), axis=0)))
     length -= length[_SIDE]
     length /= np.maximum(length[-1], -length[0])
-    powers = [np.ones(length.shape), length, length * length, length**3]
-    weight = np.maximum(1.0 - powers[2], 0.0) + _LEAST
-    system = np.empty((len(run), 4, 4))
-    values = np.empty((len(run), 4, 2))
-    for i, one in enumerate(powers):
-        for j, other in enumerate(powers):
-            system[:, i, j] = np.sum(weight * one * other, axis=0)
-        values[:, i, 0], values[:, i, 1] = np.sum(weight * one * x, axis=0), np.sum(weight * one * y, axis=0)
-    tx, ty = np.linalg.solve(system, values)[:, 1].T
+    terms = [np.maximum(1.0 - length * length, 0.0) + _LEAST]
+    for _ in range(6):
+        terms.append(terms[-1] * length)
+    sums = [_sum(term) for term in terms]
+    rows = [[*sums[i : i + 4], _sum(terms[i] * x), _sum(terms[i] * y)] for i in range(4)]
+    tx, ty = _solved(rows)
     size = np.sqrt(tx * tx + ty * ty)
     return tx / size, ty / size
+
+
+def _sum(values: Floats) -> Floats:
+    """The sums of columns, added one row after the other, which `np.sum` does for some shapes only."""
+    return np.asarray(np.cumsum(values, axis=0)[-1])
+
+
+def _solved(rows: list[list[Floats]]) -> list[Floats]:
+    """The second unknowns of systems of four equations, positive definite; `rows` are those, right-hand sides last.
+
+    By elimination in a fixed order, of which every processor makes the same bits.
+    """
+    order = (0, 2, 3, 1)  # the one that is wanted last
+    rows = [[rows[i][j] for j in (*order, *range(4, len(rows[i])))] for i in order]
+    for k in range(3):
+        for i in range(k + 1, 4):
+            factor = rows[i][k] / rows[k][k]
+            rows[i] = [a - factor * b for a, b in zip(rows[i], rows[k], strict=True)]
+    return [value / rows[3][3] for value in rows[3][4:]]
 
 
 def _evened(x: Floats, y: Floats, ax: Floats, ay: Floats, bx: Floats, by: Floats, even: Bools) -> tuple[Floats, Floats]:
@@ -178,29 +230,22 @@ def _lengths(parts: StretchParts) -> Floats:
 
 
 def _better_handles(
-    given: _Hermite,
-    stretch: Ints,
-    first: Ints,
-    weight: Floats,
-    points: tuple[Floats, Floats],
-    t: Floats,
-    curve: FittedCubics,
-    near: Floats,
-    far: Floats,
+    given: _Hermite, stretch: Ints, samples: _Samples, curve: FittedCubics, near: Floats, far: Floats
 ) -> tuple[Floats, Floats]:
-    """Handles after one step of Gauss and Newton: `curve` is that of each part, `t` the feet of `points` on it."""
+    """Handles after one step of Gauss and Newton: `curve` is that of each part, with the feet of `samples` on it."""
+    t, weight = samples.t, samples.weight
     (px, ux, _), (py, uy, _) = derivatives(curve.x, t), derivatives(curve.y, t)
     speed = np.sqrt(ux * ux + uy * uy)
     speed = np.where(speed > 0.0, speed, 1.0)
     nx, ny = -uy / speed, ux / speed
-    off = (points[0] - px) * nx + (points[1] - py) * ny
+    off = (samples.x - px) * nx + (samples.y - py) * ny
     s, ends = 1.0 - t, given.ends
     by_near = 3.0 * s * s * t * (ends.ax[stretch] * nx + ends.ay[stretch] * ny)
     by_far = -3.0 * s * t * t * (ends.bx[stretch] * nx + ends.by[stretch] * ny)
 
     def over_all(values: Floats) -> Floats:
-        """The weighted sums over the samples of stretches."""
-        return np.add.reduceat(weight * (values[0] + values[1]), first)
+        """The weighted sums over the samples of stretches, added in their order."""
+        return np.asarray(np.bincount(stretch, weight * (values[0] + values[1])), np.float64)
 
     third = given.length / 3.0
     a, b = over_all(by_near * by_near) + _TIE, over_all(by_far * by_far) + _TIE

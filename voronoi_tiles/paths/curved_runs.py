@@ -21,6 +21,9 @@ CORNER: Final = 1e-6
 """Tangents that differ by more than this make a corner; radians. Rounding leaves some 1e-10 of a smooth joint between
 segments of a millionth of the drawing's size; a corner that is meant is far above."""
 
+_ALIKE: Final = 1e-9
+"""Coordinates that differ by less than this are alike; relative to the first and the last chord of a run."""
+
 
 class Drawn(NamedTuple):
     """What replaces runs, in order along each: the run, and segments as in Paths."""
@@ -192,10 +195,13 @@ def canonical_senses(cut: CutPaths) -> Bools:
     far = np.where(paths.kind[last] == CUBIC, paths.control[last, 1], paths.control[last, 0])
     turned = np.zeros(len(first), np.bool_)
     equal = ~turned
-    for a, b in ((paths.start[first], paths.end[last]), (near, far), (paths.end[first], paths.start[last])):
-        for u, v in ((a.real, b.real), (a.imag, b.imag)):
-            turned |= equal & (u > v)
-            equal &= u == v
+    # What differs in last bits alone is equal at first: these are not the same on all processors.
+    chord = np.abs(paths.end - paths.start)
+    for tolerance in (_ALIKE * (chord[first] + chord[last]), 0.0):
+        for a, b in ((paths.start[first], paths.end[last]), (near, far), (paths.end[first], paths.start[last])):
+            for u, v in ((a.real, b.real), (a.imag, b.imag)):
+                turned |= equal & (u > v + tolerance)
+                equal &= np.abs(u - v) <= tolerance
     return turned
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -21,11 +22,14 @@ from voronoi_tiles.paths.curved_runs import (
     replaced,
 )
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, Paths
-from voronoi_tiles.paths.segmentation import Stretches, even_stretches, longest_stretches
+from voronoi_tiles.paths.segmentation import Rivals, Stretches, even_stretches, longest_stretches
 from voronoi_tiles.paths.smooth_runs import SmoothRuns
 
 _ROUNDED: Final = 0.5
-"""An arc that turns by more than this is a rounded corner, as kerf and fillets make them, whose ends stay; radians."""
+"""An arc that turns by more than this is a rounded corner, whatever its radius; radians."""
+
+_SAME_RADIUS: Final = 1e-6
+"""How far a radius may be from one of those of rounded corners; relative to it."""
 
 _ROUND: Final = 0.01
 """How far the cubic curves that circular arcs are seen as may be from these; relative to the accuracy."""
@@ -37,24 +41,35 @@ accuracy."""
 _MANY: Final = 4
 """Where so many curves take the place of a run, other tangents are tried; a count."""
 
-_WINDOWS: Final = np.array([1 / 40, 1 / 20, 1 / 10])
+_WINDOWS: Final = np.array([1 / 160, 1 / 80, 1 / 40, 1 / 20, 1 / 10])
 """By how much of a run on either side tangents are found; relative to its length."""
+
+_GIVEN_UP: Final = np.iinfo(np.intp).max
+"""The number of curves of what is no longer looked at."""
 
 _ALIKE: Final = 1e-5
 """Runs whose points are so near to each other's images have one shape; relative to the accuracy. It is part of what is
 left to rounding."""
 
 
-def to_fewest_cubics(paths: Paths, *, accuracy: float, corner: float = CORNER, absorbed: float = 0.0) -> Paths:
+def to_fewest_cubics(
+    paths: Paths,
+    *,
+    accuracy: float,
+    corner: float = CORNER,
+    absorbed: float = 0.0,
+    rounded: Sequence[float] = (),
+) -> Paths:
     """Replace every QUAD, CUBIC and ARC by CUBICs within `accuracy`, by the fewest; all else stays as it is.
 
     The Hausdorff distance between old and new curves is at most `accuracy` (in the paths' unit) both ways; it is
     bounded, not sampled. Paths are cut into runs as by `cut_runs`: corners are where tangents differ by more than
     `corner` (radians), and stay, as the ends of rounded corners do; LINEs shorter than `absorbed` count as curved.
+    Rounded corners are ARCs of one of the radii `rounded` that turn by more than `corner`, and all that turn far.
     Along a run, one curve after the other takes the longest stretch that it follows within the accuracy, with the run's
     tangents at both ends: so the curves of a run join with continuous tangents. Where many are needed, tangents are
     tried too that are found by more of the run. Then the breaks are moved, at the same count, to spread the error
-    evenly. What is straight is a LINE.
+    evenly. Where that takes more curves than a run has, these stay, as CUBICs. What is straight is a LINE.
 
     Runs of one shape, wherever they lie, however turned, mirrored or run through, get the images of one fit: two that
     differ in their sense alone the same bits. A run that is its own image backwards is fitted from its middle on, and
@@ -64,7 +79,7 @@ def to_fewest_cubics(paths: Paths, *, accuracy: float, corner: float = CORNER, a
     """
     bound = usable(paths, accuracy)
     arcs = np.flatnonzero(paths.kind == ARC)
-    round_ = arcs[np.abs(paths.arc_radius_and_turn(arcs)[1]) > _ROUNDED]
+    round_ = arcs[_rounded_corners(*paths.arc_radius_and_turn(arcs), corner, rounded)]
     breaks = np.append(paths.start[round_], paths.end[round_])
     if len(arcs):
         paths = to_cubics(paths, accuracy=_ROUND * accuracy)
@@ -77,8 +92,8 @@ def to_fewest_cubics(paths: Paths, *, accuracy: float, corner: float = CORNER, a
     points, offsets = control_points(curves, first)
     found = list(shapes(points, offsets, _ALIKE * accuracy))
     models = np.array([images[0].runs[0] for images in found])
-    reversals = [reversal(points[offsets[k] : offsets[k + 1]], _ALIKE * accuracy) for k in models.tolist()]
-    splines = _splines(cut, models, turned[models], reversals, bound)
+    exact = [_Spline.of_points(points[offsets[k] : offsets[k + 1]]) for k in models.tolist()]
+    splines = _splines(cut, models, turned[models], exact, bound, _ALIKE * accuracy)
     images = [
         _image(one, spline, points[offsets[:-1]], points[offsets[1:] - 1], _FLAT * accuracy)
         for of_shape, spline in zip(found, splines, strict=True)
@@ -88,11 +103,24 @@ def to_fewest_cubics(paths: Paths, *, accuracy: float, corner: float = CORNER, a
     return replaced(cut, turned, every.of(np.argsort(every.run, kind="stable")))
 
 
+def _rounded_corners(radius: Floats, turn: Floats, corner: float, radii: Sequence[float]) -> Bools:
+    """Which arcs are rounded corners."""
+    known = np.zeros(len(radius), np.bool_)
+    for one in radii:
+        known |= np.abs(np.abs(radius) - one) <= _SAME_RADIUS * one
+    return np.asarray((np.abs(turn) > _ROUNDED) | (known & (np.abs(turn) > corner)))
+
+
 class _Spline(NamedTuple):
     """Cubic curves one after the other: their ends, complex128 (n + 1,), and their control points, (n, 2)."""
 
     nodes: Complexes
     control: Complexes
+
+    @classmethod
+    def of_points(cls, points: Complexes) -> _Spline:
+        """The curves whose ends and control points these are, in order."""
+        return cls(points[::3], np.column_stack((points[1::3], points[2::3])))
 
     def reversed(self) -> _Spline:
         """The same, run through backwards."""
@@ -159,9 +187,18 @@ class _Coverings(NamedTuple):
         return _Coverings(self.runs, self.run[rows], self.middle[rows], self.odd[rows], self.window[rows])
 
     def numbers(self, stretches: Stretches) -> Ints:
-        """How many curves each run has: a stretch one, and two where it is of a half, but for one in the middle."""
+        """How many curves each run has: a stretch one, and two where it is of a half, but for one in the middle.
+
+        What has no stretches was given up, and has too many.
+        """
         count = np.bincount(stretches.run, minlength=len(self.run))
-        return np.where(self.middle > 0.0, 2 * count - self.odd, count)
+        group = np.zeros(len(count), np.intp)
+        number = self.rivals(group, group).number(np.arange(len(count)), count)
+        return np.where(count > 0, number, _GIVEN_UP)
+
+    def rivals(self, group: Ints, best: Ints) -> Rivals:
+        """Which cover the same runs, as `longest_stretches` takes it."""
+        return Rivals(group, np.where(self.middle > 0.0, 2, 1), self.odd.astype(np.intp), best)
 
     @property
     def total(self) -> Floats:
@@ -194,22 +231,28 @@ def _opposite(runs: SmoothRuns, run: Ints, place: Floats) -> Floats:
 
 
 def _splines(
-    cut: CutPaths, chosen: Ints, turned: Bools, reversals: list[Isometry | None], bound: float
+    cut: CutPaths, chosen: Ints, turned: Bools, exact: list[_Spline], bound: float, alike: float
 ) -> list[_Spline]:
-    """What replaces some runs, each by the fewest curves; `reversals` maps those that have one onto themselves."""
+    """What replaces some runs, each by the fewest curves: those of `exact`, which it is, where there are none fewer.
+
+    Those that are their own images backwards, within `alike`, stay so.
+    """
     count = len(chosen)
+    reversals = [reversal(_points_of(spline), alike) for spline in exact]
     curves, first = oriented_runs(cut, np.tile(chosen, 2), np.concatenate((turned, ~turned)))
     runs = SmoothRuns.of_segments(*curves.coefficients(), first)
     symmetric = np.array([image is not None for image in reversals])
+    least = np.array([len(spline.control) for spline in exact]) + 1
     tried = _Coverings.of_runs(runs, np.arange(count), symmetric, np.zeros(count))
-    longest = longest_stretches(tried.total, bound, tried.errors, 6)
+    longest = longest_stretches(tried.total, bound, tried.errors, 6, tried.rivals(tried.run % count, least))
     number = tried.numbers(longest)
-    many = np.flatnonzero(np.minimum(number[:count], number[count:]) >= _MANY)
+    least = np.minimum(least, np.minimum(number[:count], number[count:]))
+    many = np.flatnonzero(least >= _MANY)
     if len(many):
         windows = (_WINDOWS[:, None] * runs.total[many]).ravel()
         others = np.tile(many, len(_WINDOWS))
         more = _Coverings.of_runs(runs, others, symmetric[others], windows)
-        stretches = longest_stretches(more.total, bound, more.errors, 6)
+        stretches = longest_stretches(more.total, bound, more.errors, 6, more.rivals(more.run % count, least))
         longest = Stretches(
             np.append(longest.run, stretches.run + len(tried.run)),
             np.append(longest.low, stretches.low),
@@ -219,12 +262,25 @@ def _splines(
         number = tried.numbers(longest)
     order = np.lexsort((np.arange(len(number)), number, tried.run % count))
     best = order[np.searchsorted((tried.run % count)[order], np.arange(count))]
-    return _drawn(tried.of(best), _of_rows(longest, best), reversals, bound)
+    fewer = np.flatnonzero(number[best] < _GIVEN_UP)
+    splines = exact.copy()
+    if len(fewer):
+        covered, images = tried.of(best[fewer]), [reversals[k] for k in fewer.tolist()]
+        drawn = _drawn(covered, _of_rows(longest, best[fewer]), images, bound)
+        for k, back, spline in zip(fewer.tolist(), (covered.run >= count).tolist(), drawn, strict=True):
+            splines[k] = spline.reversed() if back and reversals[k] is None else spline
+    return splines
+
+
+def _points_of(spline: _Spline) -> Complexes:
+    """All points of a spline in order."""
+    inner = np.column_stack((spline.nodes[:-1], spline.control)).ravel()
+    return np.append(inner, spline.nodes[-1])
 
 
 def _of_rows(stretches: Stretches, rows: Ints) -> Stretches:
     """The stretches of some rows, which get numbers from 0 on."""
-    offsets = np.searchsorted(stretches.run, np.arange(stretches.run[-1] + 2))
+    offsets = np.searchsorted(stretches.run, np.arange(rows.max() + 2))
     counts = np.diff(offsets)[rows]
     chosen = ranges(offsets[rows], counts)
     return Stretches(np.repeat(np.arange(len(rows)), counts), stretches.low[chosen], stretches.high[chosen])
@@ -248,8 +304,6 @@ def _drawn(covered: _Coverings, longest: Stretches, reversals: list[Isometry | N
         spline = _Spline(np.append(begin[own][:1], end[own]), control[own])
         if image is not None:
             spline = spline.doubled(image, odd=bool(covered.odd[k]))
-        elif covered.run[k] >= len(reversals):
-            spline = spline.reversed()
         splines.append(spline)
     return splines
 

@@ -26,8 +26,22 @@ _NARROW = 3e-3
 _AIM = 0.996
 """The part of the bound that the next trial aims at."""
 
+_NO_LESS = 1e-3
+"""Errors below this part of the bound are taken for as much: those of straight stretches are nothing but last bits, of
+which no trial may depend."""
+
 _ROUNDS = 3
 """How often breaks are moved to spread the error; each time brings the errors nearer by a factor of about ten."""
+
+_UNITS = 2.0**30
+"""Places are whole numbers of so many parts of a run."""
+
+_STEPS = 12
+"""Trials and moved breaks are at whole numbers of a power of two near 2^-12 of the stretch's length. Last bits, in
+which processors differ, move an error by some 1e-12, and so no trial, but once in many millions."""
+
+_BETWEEN = 0.382
+"""What is this far beyond a whole number, or less, is rounded down to it: nothing has a reason to be just there."""
 
 
 class Stretches(NamedTuple):
@@ -38,12 +52,40 @@ class Stretches(NamedTuple):
     high: Floats
 
 
+class Rivals(NamedTuple):
+    """Which rows are for one and the same run, of which only the one with the fewest curves is wanted.
+
+    Row k is for the run `group[k]`; a cover by n stretches is worth `factor[k]` n - `less[k]` curves. It is given up
+    when it cannot come below `best`, of each group, any more.
+    """
+
+    group: Ints
+    factor: Ints
+    less: Ints
+    best: Ints
+
+    def number(self, row: Ints, count: Ints) -> Ints:
+        """How many curves rows with so many stretches have."""
+        return np.asarray(self.factor[row] * count - self.less[row])
+
+    def covered(self, row: Ints, count: Ints) -> Rivals:
+        """After some rows were covered by so many stretches."""
+        best = self.best.copy()
+        np.minimum.at(best, self.group[row], self.number(row, count))
+        return self._replace(best=best)
+
+    def hopeful(self, row: Ints, count: Ints) -> Bools:
+        """Which rows could be the best if they were covered by so many stretches."""
+        return np.asarray(self.number(row, count) < self.best[self.group[row]])
+
+
 class _Search(NamedTuple):
     """Searches for longest stretches, one row for each run that is not covered yet.
 
     A stretch that starts at `begin` may end at `low` (where it begins, as long as nothing better is known) with the
     error `low_error`, in units of the bound, and not at `high` (infinite until known) with `high_error`. `trial` is
-    tried next, and `halve` says whether the last trial left more than half of what was between them.
+    tried next, and `halve` says whether the last trial left more than half of what was between them. Places are whole
+    numbers.
     """
 
     run: Ints
@@ -67,6 +109,7 @@ class _Search(NamedTuple):
 
     def tried(self, error: Floats) -> _Search:
         """What is known after the trials, with their errors."""
+        error = np.maximum(error, _NO_LESS)
         good = error <= 1.0
         low, high = np.where(good, self.trial, self.low), np.where(good, self.high, self.trial)
         return self._replace(
@@ -95,7 +138,16 @@ class _Search(NamedTuple):
         )
         between = np.where(self.halve & known, length + 0.5 * room, between)
         beyond = np.clip(up, 1.02 * length, 3.0 * length)
-        return self._replace(trial=self.begin + np.where(bounded, between, beyond))
+        length = np.where(known, length, self.high - self.begin)
+        trial = _rounded(np.where(bounded, between, beyond), length, _STEPS)
+        highest = np.minimum(self.high - 1.0, _UNITS)
+        return self._replace(trial=np.clip(self.begin + trial, self.low + 1.0, highest))
+
+
+def _rounded(values: Floats, length: Floats, steps: int) -> Floats:
+    """Values as whole numbers of a power of two: about 2^-steps of a length each, 1 or more."""
+    step = np.ldexp(1.0, np.maximum(np.frexp(length)[1] - steps, 0))
+    return np.asarray(np.floor(values / step + (1.0 - _BETWEEN)) * step)
 
 
 def _root(values: Floats, order: Order) -> Floats:
@@ -104,31 +156,44 @@ def _root(values: Floats, order: Order) -> Floats:
     return cube if order == 3 else np.sqrt(cube)
 
 
-def longest_stretches(total: Floats, bound: float, error_of: Error, order: Order) -> Stretches:
+def longest_stretches(
+    total: Floats, bound: float, error_of: Error, order: Order, rivals: Rivals | None = None
+) -> Stretches:
     """Cover runs by stretches whose error is within the bound, each as long as can be; all runs side by side.
 
-    `total` is the place where each run ends; the first is 0.
-    Errors grow with about the power `order` of the length.
+    `total` is the place where each run ends; the first is 0. Errors grow with about the power `order` of the length.
+    Of `rivals`, those that are given up have no stretches.
     """
-    search = _Search.beginning(np.arange(len(total)), np.zeros(len(total)), total)
+    unit, rows = total / _UNITS, len(total)
+    search = _Search.beginning(np.arange(rows), np.zeros(rows), np.full(rows, _UNITS))
     found: list[tuple[Ints, Floats, Floats]] = []
+    count, left = np.zeros(rows, np.intp), np.ones(rows, np.bool_)
     while len(search.run):
-        search = search.tried(error_of(search.run, search.begin, search.trial) / bound)
+        scale = unit[search.run]
+        search = search.tried(error_of(search.run, search.begin * scale, search.trial * scale) / bound)
         length = search.low - search.begin
         full = (search.low == search.trial) & (search.low_error >= _FULL)
-        done = full | (search.low >= total[search.run]) | (search.high - search.low <= _NARROW * length)
+        done = full | (search.low >= _UNITS) | (search.high - search.low <= np.maximum(_NARROW * length, 1.0))
         ready = search.where(done)
+        assert np.all(ready.low > ready.begin), "the accuracy is too fine"
         found.append((ready.run, ready.begin, ready.low))
+        count[ready.run] += 1
         # The next stretch begins where this one ends, and is tried at the same length.
-        after = _Search.beginning(ready.run, ready.low, ready.low + length[done])
+        after = _Search.beginning(ready.run, ready.low, np.minimum(ready.low + length[done], _UNITS))
         going = search.where(~done).aimed(order)
         search = _Search(*(np.concatenate(pair) for pair in zip(going, after, strict=True)))
-        end = total[search.run]
-        search = search._replace(trial=np.minimum(search.trial, end)).where(search.begin < end)
-        assert np.all((search.trial > search.low) & (search.trial < search.high)), "the accuracy is too fine"
+        search = search.where(search.begin < _UNITS)
+        if rivals is not None:
+            whole = ready.run[ready.low >= _UNITS]
+            rivals = rivals.covered(whole, count[whole])
+            hopeful = rivals.hopeful(search.run, count[search.run] + 1)
+            left[search.run[~hopeful]] = False
+            search = search.where(hopeful)
     run, begin, low = (np.concatenate(parts) for parts in zip(*found, strict=True))
     along = np.lexsort((begin, run))
-    return Stretches(run[along], begin[along], low[along])
+    along = along[left[run[along]]]
+    run = run[along]
+    return Stretches(run, begin[along] * unit[run], low[along] * unit[run])
 
 
 def even_stretches(total: Floats, stretches: Stretches, bound: float, error_of: Error, order: Order) -> Stretches:
@@ -162,6 +227,8 @@ def _moved(total: Floats, stretches: Stretches, error: Floats, first: Ints, orde
     target = whole * (number / count)
     at = last_up_to(before, offsets, run, target)
     share = (target - before[at]) / weight[at]
-    low = np.where(number == 0, 0.0, stretches.low[at] + share * (stretches.high[at] - stretches.low[at]))
+    unit = total[run] / _UNITS
+    begin, length = np.rint(stretches.low[at] / unit), np.rint((stretches.high - stretches.low)[at] / unit)
+    low = np.where(number == 0, 0.0, (begin + _rounded(share * length, length, _STEPS)) * unit)
     last = number == count - 1
     return Stretches(run, low, np.where(last, total[run], np.append(low[1:], 0.0)))
