@@ -18,9 +18,9 @@ _CHORDS: Final = 0.7
 """What chords may take, a part of the whole. They get most: their number grows with the root of it, that of arcs only
 with the third root."""
 
-_CUBICS: Final = 0.8
-"""What cubic curves may take where they replace arcs, a part of the whole. Their number grows with the sixth root of
-it, and that of the arcs is not seen."""
+_CUBICS: Final = 0.99
+"""What cubic curves may take, a part of the whole. Arcs that they replace are not seen: they may be many, so near to
+the exact curve that cubic curves fitted to them are as few as if they were fitted to that or to its exact offset."""
 
 _MEASURED: Final = 0.125
 """How far chords are from contours where the distance between these is measured, a part of the whole."""
@@ -34,10 +34,9 @@ class AccuracyBudget:
     sheets and of art where they are clipped. Kerf and fillets spend nothing: an offset of arcs is exact, and what lies
     within e of a curve lies at any distance from both within e again. Then short segments are left out, within `short`.
     Where the file holds polylines, chords within `chords` take the place of curves, and where it holds the fewest cubic
-    curves, these, within `cubics`: of the exact curves, or of the arcs. Errors add up: the four come to the whole, or
-    less. For G-code, whose numbers are coarse, the whole is what rounding leaves of the accuracy asked
-    for. Nothing else is approximated, but that the cubic curves of SVG and PDF are a nanometre off circular arcs, which
-    is the last digit of these files.
+    curves, these, within `cubics`. Errors add up: the four come to the whole, or less. For G-code, whose numbers are
+    coarse, the whole is what rounding leaves of the accuracy asked for. Nothing else is approximated, but that the
+    cubic curves of SVG and PDF are a nanometre off circular arcs, which is the last digit of these files.
     """
 
     whole: float

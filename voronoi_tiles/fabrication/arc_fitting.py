@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Final
-
-import numpy as np
 
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.paths.biarcs import to_arcs
 from voronoi_tiles.paths.conversion import to_lines
 from voronoi_tiles.paths.fewest_cubics import to_fewest_cubics
-from voronoi_tiles.paths.paths import ARC, Paths
+from voronoi_tiles.paths.paths import Paths
 
 JOINT: Final = 0.1
 """Angles below this are joints of a flattened curve, and no corners; radians: some six degrees."""
@@ -65,16 +63,18 @@ def edge_arcs(paths: Paths, *, accuracy: float, absorbed: float) -> Paths:
     return to_arcs(paths, accuracy=accuracy, corner=JOINT, absorbed=absorbed)
 
 
-def edge_cubics(paths: Paths, budget: AccuracyBudget, *, exact: bool) -> Paths:
+def corner_radii(job: Job) -> list[float]:
+    """The radii of the arcs that the job's fillet and kerf make of corners; millimetres."""
+    half = job.kerf / 2
+    if job.fillet == 0.0:
+        return [half] if half > 0.0 else []
+    return [radius for radius in (half, job.fillet + half, abs(job.fillet - half)) if radius > 0.0]
+
+
+def edge_cubics(paths: Paths, budget: AccuracyBudget, rounded: Sequence[float]) -> Paths:
     """The lines of a page as the fewest cubic curves within its budget; corners are as for `edge_arcs`.
 
-    Where the page has `exact` edges of tiles, paths without arcs have the whole accuracy.
+    Arcs of the radii `rounded` are corners too, whose ends stay.
     """
-    of_arcs = np.bincount(paths.owner, paths.kind == ARC, len(paths)) > 0
-    not_exact = of_arcs if exact else np.ones(len(paths), np.bool_)
-    whole, rest = np.flatnonzero(~not_exact), np.flatnonzero(not_exact)
-    new = [
-        to_fewest_cubics(paths.take(chosen), accuracy=accuracy, corner=JOINT, absorbed=ABSORBED * budget.whole)
-        for chosen, accuracy in ((whole, budget.whole), (rest, budget.cubics))
-    ]
-    return Paths.concatenate(new).take(np.argsort(np.concatenate((whole, rest))))
+    absorbed = ABSORBED * budget.whole
+    return to_fewest_cubics(paths, accuracy=budget.cubics, corner=JOINT, absorbed=absorbed, rounded=rounded)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
-from voronoi_tiles.fabrication.arc_fitting import edge_cubics
+from voronoi_tiles.fabrication.arc_fitting import corner_radii, edge_cubics
 from voronoi_tiles.fabrication.demands import refuse_misread
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.formats.cubics import CUBIC_ACCURACY_MM
@@ -43,7 +43,7 @@ def curve_converter(curves: str, job: Job, budget: AccuracyBudget) -> Callable[[
         case "arc":
             return lambda paths: to_arcs(paths, accuracy=budget.arcs)
         case "cubic":
-            return lambda paths: edge_cubics(paths, budget, exact=not job.moves_contours)
+            return lambda paths: edge_cubics(paths, budget, corner_radii(job))
         case "spline":
             return lambda paths: to_cubics(paths, accuracy=CUBIC_ACCURACY_MM)
         case _:
