@@ -127,7 +127,7 @@ def test_no_more_are_laid_than_asked_for_and_the_same_ones_again() -> None:
 
 def test_outlines_may_come_nearer_to_the_edge_than_polygons_to_each_other() -> None:
     """Squares of 10 that keep 2 from each other, and nothing from the edge: two in a strip of 22, and none too many."""
-    items = [NestItem(SQUARE + 0.2 * SQUARE, 1.0, (0.0,))]
+    items = [NestItem(np.asarray(SQUARE * 1.2, np.complex128), 1.0, (0.0,))]
     places = fill(items, shapely.box(0, 0, 22.01, 10.01), NONE, outlines=[SQUARE])
     assert len(places.item) == 2
     assert abs(places.shift[1] - places.shift[0]) >= 12

@@ -17,8 +17,9 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from helpers.cutting import contour_shapes, cuts, flattened, squares, xy
+from helpers.cutting import contour_shapes, cuts, squares
 from helpers.examples import tiling
+from helpers.sheets import flattened, xy
 
 from voronoi_tiles import Design, Tiling
 from voronoi_tiles.fabrication import nest_patterns, nesting, packed_sheets
@@ -446,7 +447,7 @@ def test_each_wood_is_nested_on_sheets_of_its_own(tmp_path: Path) -> None:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(packed_sheets, "has_search", lambda: False)
         rows, nested = (
-            hooks().export(tmp_path / f"{name}.svg", job=Job(**job, colours="handedness", **more))
+            hooks().export(tmp_path / f"{name}.svg", job=Job(**{**job, "colours": "handedness", **more}))
             for name, more in (("rows", {}), ("wood", {"layout": "nested"}))
         )
         with pytest.raises(JobError, match=r"of 12 pieces fit on 1 sheet, and all would take 2"):
@@ -465,7 +466,7 @@ def test_each_wood_is_nested_on_sheets_of_its_own(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("count", ["x", "", "bird=-1", "bird=0", "bird=1,bird=2", "bird=10001", True, {"bird": 1.5}])
-def test_counts_that_cannot_be_are_refused(count: object) -> None:
+def test_counts_that_cannot_be_are_refused(count: Any) -> None:
     """With what can be given instead."""
     with pytest.raises(JobError, match=r"Give a number for every site, 40, or for some, bird=40,moth=12"):
         Job(**JOB, layout="nested", count=count)

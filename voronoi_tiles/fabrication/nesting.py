@@ -83,7 +83,12 @@ def _of_stock(lay: Callable[..., Layout], job: Job) -> Nesting:
     page = stock(job)
     one_sheet = replace(
         job,
-        **dict.fromkeys(("frame", "offset", "into", "stock", "only_colour", "count", "sheets")),
+        frame=None,
+        offset=None,
+        into=None,
+        stock=None,
+        only_colour=None,
+        sheets=None,
         sheet=(page.width, page.height),
         fit="whole",
         colours="none",

@@ -195,8 +195,7 @@ def make_reported(design: Design, tessellation: Tessellation, job: Job) -> tuple
         for one in (plan.woods() if job.pack else ())
     ]
     # What is laid out stays; a frame and a kerf go together only where tiles are packed.
-    colours, into = ("none", None) if job.colours == "none" else (job.scheme, "layers")
-    together = replace(job, colours=colours, into=into, pack=False, stock=None, fit="whole", frame=None)
+    together = replace(job, colours=job.scheme, into=None, pack=False, stock=None, fit="whole", frame=None)
     return plan.product(together), rows
 
 
