@@ -22,12 +22,13 @@ from voronoi_tiles.cli.common import as_options
 ROOT = Path(__file__).parents[2]
 
 NAMES = """
-Arc Art ArgumentError Burn CheckError CheckReport Design DesignError Dots Drawing DrawingError Exported Figure Finding
+Arc ArgumentError Art Burn CheckError CheckReport Design DesignError Dots Drawing DrawingError Exported Figure Finding
 Frame GROUPS Inventory Isometry Job JobError Key Lattice Layer LayerUse Limits LineArc Marks MissingLibraryError
 Neighbour NodedSite Operation Outline OutputError ParabolaArc Paths Placement PreflightReport Product ProofError
-ProofReport Provenance ReadDrawing RenderError RenderOptions Rendering Shape Site Solid Stroke Tile TileCopy Tiling
-TouchingCopiesError UnknownNameError VoronoiTilesError WallpaperGroup __version__ bezier bspline catmull_rom circle
-coupon drawing hermite path placed point polyline preflight render segment starter starter_text
+ProofReport Provenance ReadDrawing RenderError RenderOptions Rendering Shape Site Solid SolidJob SolidModel SolidPiece
+Stroke Tile TileCopy Tiling TouchingCopiesError TriangleMesh UnknownNameError VoronoiTilesError WallpaperGroup
+__version__ bezier bspline catmull_rom circle coupon drawing extrude hermite path placed point polyline preflight
+render segment stand starter starter_text
 """
 
 INTERNAL = {
@@ -194,6 +195,12 @@ WRONG: list[Callable[[], object]] = [
     lambda: pair()[0].to_shapely(accuracy=0),
     lambda: pair()[0].outline.flatten(accuracy=float("nan")),
     lambda: pair().make((300, 200)),  # type: ignore[arg-type]
+    lambda: vt.SolidJob(height=0),
+    lambda: vt.extrude(pair(), vt.SolidJob(clearance=90)),
+    lambda: vt.extrude(pair(), {"height": 3}),  # type: ignore[arg-type]
+    lambda: vt.extrude(vt.starter("p4")),  # type: ignore[arg-type]
+    lambda: vt.extrude(pair()).save("a.step"),
+    lambda: vt.stand(vt.starter("p4")),
     lambda: pair().report({"kerf": 1}),  # type: ignore[arg-type]
     lambda: pair().export("a.svg", job=5),  # type: ignore[arg-type]
     lambda: pair().export("a\0.svg"),

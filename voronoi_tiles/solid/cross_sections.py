@@ -16,7 +16,8 @@ def section(mesh: TriangleMesh, z: float) -> Paths:
     """
     above = mesh.vertices[:, 2] > z
     over = above[mesh.triangles]
-    triangles, over = (rows[over.any(axis=1) & ~over.all(axis=1)] for rows in (mesh.triangles, over))
+    crossed = over.any(axis=1) & ~over.all(axis=1)
+    triangles, over = mesh.triangles[crossed], over[crossed]
     if not len(triangles):
         return Paths.empty()
     ahead = np.roll(over, -1, axis=1)

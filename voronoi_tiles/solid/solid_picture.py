@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from voronoi_tiles.base.arrays import Bools, Floats, Ints, counting, offsets_of
 from voronoi_tiles.base.errors import ArgumentError
+from voronoi_tiles.base.values import is_number
 from voronoi_tiles.solid.mesh import TriangleMesh
 from voronoi_tiles.solid.pieces import SolidPiece
 from voronoi_tiles.solid.visible import NOTHING, barycentric, seen
@@ -91,7 +92,7 @@ def picture(pieces: Sequence[SolidPiece], colours: Sequence[str], size: int = SI
 
     Raises ArgumentError for a size that cannot be.
     """
-    if isinstance(size, bool) or not isinstance(size, int) or not 1 <= size <= SIZE_MAX:
+    if not is_number(size) or size != int(size) or not 1 <= size <= SIZE_MAX:
         raise ArgumentError(f"`size` {size!r} cannot be", remedy=f"Give a number of pixels from 1 to {SIZE_MAX}.")
     corners = np.concatenate([piece.mesh.corners for piece in pieces])
     owner = np.repeat(np.arange(len(pieces)), [len(piece.mesh.triangles) for piece in pieces])
@@ -105,7 +106,7 @@ def picture(pieces: Sequence[SolidPiece], colours: Sequence[str], size: int = SI
     image *= 1.0 - _SHADOW * _blurred(seen(view(shadow[front]), view.width, view.height) != NOTHING, view)[:, :, None]
     y, x = np.nonzero(found != NOTHING)
     triangle = found[y, x]
-    weights = barycentric(at, triangle, x + 0.5, y + 0.5)
+    weights = barycentric(at, triangle, x.astype(np.float64) + 0.5, y.astype(np.float64) + 0.5)
     smooth = np.concatenate([_smoothed(piece.mesh) for piece in pieces])[front]
     normal = (weights[:, :, None] * smooth[triangle]).sum(axis=1)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)

@@ -73,8 +73,8 @@ def _head(facts: Mapping[str, str]) -> Iterator[str]:
 def _resources(pieces: Sequence[SolidPiece], colours: Sequence[str], *, grouped: bool) -> Iterator[str]:
     """The rest of it: colours, objects, and which of these are to be built."""
     yield f'<resources>\n<basematerials id="{_COLOURS}">'
-    for number, colour in enumerate(colours):
-        yield f'<base name="colour {number + 1}" displaycolor="{colour.upper()}"/>'
+    for number, shade in enumerate(colours, 1):
+        yield f'<base name="colour {number}" displaycolor="{shade.upper()}"/>'
     yield "</basematerials>\n"
     first = _COLOURS + 1
     for number, piece in enumerate(pieces, first):
