@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 import shapely
+from helpers.examples import FOLDER
 
-from voronoi_tiles import ArgumentError, Design, JobError, SolidJob, SolidModel, stand
+from voronoi_tiles import ArgumentError, Design, JobError, SolidJob, SolidModel, extrude, stand
 from voronoi_tiles.solid.cross_sections import section
 
 TWIST = """
@@ -68,6 +70,15 @@ def test_what_only_prisms_have_is_refused(options: dict[str, Any], message: str)
         stand(Design.loads(TWIST), SolidJob(**options))
     assert str(refusal.value).startswith(message)
     assert refusal.value.remedy
+
+
+@pytest.mark.parametrize("path", sorted(FOLDER.glob("solid/*.toml")), ids=lambda path: path.stem)
+def test_the_examples_are_solids(path: Path) -> None:
+    """Each is proved as it is."""
+    design = Design.load(path)
+    model = extrude(design.tessellate()) if design.standing is None else stand(design)
+    assert all(piece.mesh.is_closed for piece in model.pieces)
+    assert model.notes == ()
 
 
 def test_a_flat_design_does_not_stand() -> None:
