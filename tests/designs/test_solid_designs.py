@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -92,7 +93,7 @@ def test_scaling_a_design_scales_its_solid() -> None:
     assert design.standing is not None
     assert (twice.standing.height, twice.standing.about) == (40.0, 30 + 14j)
     assert twice.standing.sites[0].keys[1].z == 20.0
-    low, high = (d.standing.sites[0].keys[1].strokes[0][0] for d in (design, twice))
+    low, high = (solid.sites[0].keys[1].strokes[0][0] for solid in (design.standing, twice.standing))
     assert high.tolist() == (2 * low).tolist()
 
 
@@ -194,3 +195,20 @@ def test_drawings_of_keys_are_files_of_the_design(tmp_path: Path) -> None:
     below.mkdir()
     design.save(below / "e.toml")
     assert vt.Design.load(below / "e.toml") == design
+
+
+@pytest.mark.parametrize(
+    ("made", "said"),
+    [
+        (lambda: vt.Solid(20, about="here"), "about"),  # type: ignore[arg-type]
+        (lambda: vt.Solid(20, shift=(1, 2, 3)), "shift"),
+        (lambda: vt.Solid(20, keys=[3]), r"keys\[0\]: must be a Key, not 3"),  # type: ignore[list-item]
+        (lambda: vt.Solid(20, keys=3), "keys: must be keys, not 3"),  # type: ignore[arg-type]
+        (lambda: vt.Key(5, [7]), "strokes: must be a stroke, not 7"),  # type: ignore[list-item]
+        (lambda: vt.Design("p4", 60, vt.Site(vt.segment(5, 9)), solid=5), "solid: must be a Solid, not 5"),  # type: ignore[arg-type]
+    ],
+)
+def test_wrong_arguments_are_named(made: Callable[[], object], said: str) -> None:
+    """What is passed is refused with the argument's name, and nothing but a DesignError comes out."""
+    with pytest.raises(vt.DesignError, match=said):
+        made()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any, Final
 
 import numpy as np
@@ -71,9 +70,9 @@ def several_sites(rng: Random, lattice: vt.Lattice, group: vt.WallpaperGroup) ->
     return sites, {"keys": keys, **turn}
 
 
-def fixing(lattice: vt.Lattice, group: vt.WallpaperGroup, point: complex) -> list[Callable[[Complexes], Complexes]]:
+def fixing(lattice: vt.Lattice, group: vt.WallpaperGroup, point: complex) -> list[Isometry]:
     """The isometries of a group that leave a point where it is."""
-    found: list[Callable[[Complexes], Complexes]] = []
+    found = []
     for operation in group.operations:
         isometry = lattice.isometry(operation)
         for i in range(-2, 3):
@@ -97,7 +96,7 @@ def special_position(
     segments = int(rng.integers(1, 6))
     low, high = (_wave(rng, centre + base * rng.uniform(0, 0.5), base, segments) for _ in range(2))
     site = vt.Site([vt.polyline(move(low)) for move in own])
-    if rng.random() < 0.3 and not any(isinstance(move, Isometry) and move.conj for move in own):
+    if rng.random() < 0.3 and not any(move.conj for move in own):
         return [site], {"turn": float(rng.choice([30, 45, 60, 90])), "about": centre}
     return [site], {"keys": [vt.Key(HEIGHT, [vt.polyline(move(high)) for move in own])]}
 

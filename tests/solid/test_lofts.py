@@ -52,7 +52,7 @@ def overlap(loft: Loft, site: int) -> float:
     """What a solid has in common with those beside it, by manifold3d; relative to its volume, the most of all."""
     own = judged(loft.meshes[site])
     beside = [judged(loft.image(other, operation_of(code))) for other, code in neighbours(loft, site)]
-    return max((own ^ other).volume() for other in beside) / float(own.volume())
+    return max(float((own ^ other).volume()) for other in beside) / float(own.volume())
 
 
 # --- right ----------------------------------------------------------------------------------------------------
@@ -324,8 +324,8 @@ def test_random_solids_are_right_or_refused(kind: int) -> None:
         if seed % 6 == 0:
             assert max(overlap(loft, site) for site in range(len(loft.meshes))) <= 1e-9
     assert made > 2
-    for design, error in refused:
-        assert least_gap(design, error.z) < 1e-4 or " tile " in str(error)
+    for design, why in refused:
+        assert least_gap(design, why.z) < 1e-4 or " tile " in str(why)
 
 
 @pytest.mark.slow

@@ -14,6 +14,7 @@ from voronoi_tiles.designs.coordinates import PointLike, pair
 from voronoi_tiles.designs.drawn_site import Site
 from voronoi_tiles.designs.drawn_strokes import Stroke, stroke_of
 from voronoi_tiles.designs.keys import DEFAULTS
+from voronoi_tiles.designs.schema import point
 
 
 @dataclass(frozen=True, init=False, repr=False)
@@ -91,14 +92,20 @@ class Solid:
         about: PointLike = 0j,
         keys: Sequence[Key] = (),
     ) -> None:
-        """Describe a solid. Raises DesignError for what is no key; a design checks the rest."""
+        """Describe a solid. Raises DesignError for what is no key and no point; a design checks the rest."""
+        if isinstance(keys, str | Mapping) or not isinstance(keys, Iterable):
+            raise DesignError(f"must be keys, not {shown(keys)}", key="keys", remedy="Write keys=[Key(5, [...])].")
+        keys = list(keys)
         for k, key in enumerate(keys):
             if not isinstance(key, Key):
                 raise DesignError(f"must be a Key, not {shown(key)}", key=f"keys[{k}]", remedy="Write Key(5, [...]).")
-        points = (complex(*pair(point)) for point in (shift, about))
+        points = []
+        for name, value in (("shift", shift), ("about", about)):
+            with values.within(name):
+                points.append(point(pair(value)))
         names = ("height", "layers", "turn", "scale", "keys", "shift", "about")
-        for name, value in zip(names, (height, layers, turn, scale, tuple(keys), *points), strict=True):
-            object.__setattr__(self, name, value)
+        for name, given in zip(names, (height, layers, turn, scale, tuple(keys), *points), strict=True):
+            object.__setattr__(self, name, given)
 
     @property
     def table(self) -> dict[str, Any]:
@@ -144,5 +151,7 @@ def solid_tables(solid: Solid | None) -> dict[str, Any]:
     """The keys "solid" and "key" of a design's table, those that say something."""
     if solid is None:
         return {}
+    if not isinstance(solid, Solid):
+        raise DesignError(f"must be a Solid, not {shown(solid)}", key="solid", remedy="Write solid=Solid(20, turn=90).")
     keys = [key.table for key in solid.keys]
     return {"solid": solid.table, **({"key": keys} if keys else {})}

@@ -121,8 +121,8 @@ def _pairs(
                             continue
                         if _gap(box, corners + (s * action.lattice.a + t * action.lattice.b)) <= apart:
                             rows.append((i, j, code))
-    site, other, code = np.array(rows, np.int64).reshape(-1, 3).T
-    return _CopyPairs(site.astype(np.intp), other.astype(np.intp), code)
+    table = np.array(rows, np.int64).reshape(-1, 3)
+    return _CopyPairs(table[:, 0].astype(np.intp), table[:, 1].astype(np.intp), table[:, 2].copy())
 
 
 def _gap(one: Complexes, two: Complexes) -> float:
@@ -158,4 +158,4 @@ def _shapes(points: Complexes, sizes: Sequence[int]) -> np.ndarray:
         line = coordinates[:, at : at + size]
         parts.append(shapely.points(line[:, 0]) if size == 1 else shapely.linestrings(line))
         at += size
-    return parts[0] if len(parts) == 1 else shapely.geometrycollections(np.stack(parts, axis=1))
+    return np.asarray(parts[0] if len(parts) == 1 else shapely.geometrycollections(np.stack(parts, axis=1)))

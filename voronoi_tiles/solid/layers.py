@@ -105,7 +105,7 @@ class ExactLayer:
     def lengths(self) -> Floats:
         """The length of each edge, float64 (edges,)."""
         paths = self.quotient.paths()
-        return np.bincount(paths.owner, weights=paths.lengths, minlength=len(paths))
+        return np.asarray(np.bincount(paths.owner, weights=paths.lengths, minlength=len(paths)), np.float64)
 
     @cached_property
     def ring(self) -> Ints:
@@ -150,7 +150,7 @@ def _fixing(site: Ints, stabilizers: dict[int, tuple[int, ...]]) -> tuple[Ints, 
     """For each use the row of the stabilizer of the site beyond, -1 where it has none; the rows, filled up."""
     width = max(map(len, stabilizers.values()))
     row = np.full(int(site.max()) + 1, -1)
-    rows = []
+    rows: list[tuple[int, ...]] = []
     for site_number, codes in stabilizers.items():
         if site_number < len(row):
             row[site_number] = len(rows)

@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Ints, counts_of, offsets_of, ranges
+from voronoi_tiles.base.arrays import Bools, Ints, counts_of, offsets_of, ranges
 from voronoi_tiles.solid.vertices import joined_points
 from voronoi_tiles.vector.complex.quotient import Quotient
 from voronoi_tiles.vector.motion_codes import Codes, composed, inverted
@@ -26,9 +26,8 @@ def with_whole_loops(quotient: Quotient) -> Quotient:
     loops = [k for k, ring in enumerate(rings) if len(ring) > 1 and (faced[ring] == faced[ring[0]]).all()]
     if not loops:
         return quotient
-    edge, back = uses.edge.copy(), uses.backwards.copy()
-    motion = uses.motion.copy()
-    joined: dict[int, list[int]] = {}  # the first edge of a loop: the uses that are joined
+    edge, motion, back = uses.edge.copy(), uses.motion.copy(), uses.backwards.copy()
+    joined: dict[int, list[int]] = {}  # an edge of a loop: the uses that are joined
     count = len(quotient.offsets) - 1
     parts: list[list[int]] = []
     for k in loops:
@@ -43,15 +42,12 @@ def with_whole_loops(quotient: Quotient) -> Quotient:
             leader = ring[:size]
             joined.update({int(edge[use]): leader for use in leader})
             parts.append(leader)
-        first, size = leader[0], len(leader)
-        at = [use for use in ring if uses.edge[use] == uses.edge[first]]
-        kept = []
-        for use in at:
+        first = leader[0]
+        rings[k] = [use for use in ring if uses.edge[use] == uses.edge[first]]
+        for use in rings[k]:
             by = composed(uses.motion[use : use + 1], inverted(uses.motion[first : first + 1]))
             motion[use], back[use] = by[0], uses.backwards[use] != uses.backwards[first]
             edge[use] = count + parts.index(leader)
-            kept.append(use)
-        rings[k] = kept
     gone = np.zeros(count, np.bool_)
     for part in parts:
         gone[uses.edge[part]] = True
@@ -62,8 +58,8 @@ def _renumbered(
     quotient: Quotient,
     rings: list[list[int]],
     parts: list[list[int]],
-    gone: np.ndarray,
-    changed: tuple[Ints, Codes, Ints],
+    gone: Bools,
+    changed: tuple[Ints, Codes, Bools],
 ) -> Quotient:
     """The complex without the edges that are `gone`, and with those that are joined of the uses `parts` behind them."""
     uses = quotient.uses

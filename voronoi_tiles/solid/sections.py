@@ -68,7 +68,8 @@ def _not_simple(sides: Complexes, group: Ints) -> Ints:
     """The groups of sides, complex128 (n, 2), that have some which meet elsewhere than at their ends."""
     order = np.argsort(group, kind="stable")
     lines = shapely.linestrings(np.stack((sides.real, sides.imag), axis=-1)[order])
-    return np.unique(group)[~shapely.is_simple(shapely.multilinestrings(lines, indices=group[order]))]
+    simple = shapely.is_simple(shapely.multilinestrings(lines, indices=group[order]))
+    return np.asarray(np.unique(group)[~simple])
 
 
 def _meetings(sides: _MovingSides) -> Ints:
@@ -114,7 +115,7 @@ def _meets(low: Complexes, high: Complexes, side_low: Complexes, side_high: Comp
             share = (at * side.conj()).real / (side * side.conj()).real
             # Of a side that shrinks to a point the area is nothing in the end, wherever the other point is.
             met |= (t > 0) & (t < 1) & (share >= 0) & (share <= 1) & (np.abs(at - share * side) <= near)
-    return met & ~same & ~(starts & ends)
+    return np.asarray(met & ~same & ~(starts & ends))
 
 
 def _cross(u: Complexes, v: Complexes) -> Floats:
