@@ -20,6 +20,14 @@ from voronoi_tiles.solid.extrusion_proof import prove_prisms
 from voronoi_tiles.solid.prism import Face, Prism
 from voronoi_tiles.solid.slab import Slab
 
+QUICK = ["p1", "p2", "pg", "pmm", "cm", "p4", "p4m", "p3", "p6"]
+"""Designs of the quick run: the cells of all kinds, mirrors, glides, special positions."""
+
+
+def quick(some: list[str], names: list[str]) -> list[Any]:
+    """The names as parameters, all but some of them slow."""
+    return [name if name in some else pytest.param(name, marks=pytest.mark.slow) for name in names]
+
 
 def judged(mesh: TriangleMesh) -> Any:
     """The solid as manifold3d takes it, which refuses what is no closed surface."""
@@ -34,7 +42,7 @@ def cell_volume(name: str, height: float) -> float:
     return float(design.lattice.det * design.unit_mm**2 * height)
 
 
-@pytest.mark.parametrize("name", [*GROUPS, *(pytest.param(name, marks=pytest.mark.slow) for name in EXAMPLES)])
+@pytest.mark.parametrize("name", quick(QUICK, [*GROUPS, *EXAMPLES]))
 def test_tiles_fill_the_slab(name: str) -> None:
     """Each is one solid as manifold3d judges it; with their copies they have the volume of the slab over the cell."""
     tiles = tiling(name)
@@ -52,7 +60,7 @@ def test_tiles_fill_the_slab(name: str) -> None:
     assert total == pytest.approx(cell_volume(name, 5.0), rel=1e-12)
 
 
-@pytest.mark.parametrize("name", ["p4", "pgg", "p6m"])
+@pytest.mark.parametrize("name", quick(["pgg"], ["p4", "pgg", "p6m"]))
 def test_neighbours_on_a_sheet_share_their_walls(name: str) -> None:
     """Within the sheet every triangle of an upright wall is one of a neighbour as well, turned over, bit for bit."""
     solid = extrude(tiling(name), SolidJob(sheet="200x150mm", height=2.0))
@@ -78,7 +86,7 @@ def test_neighbours_do_not_overlap() -> None:
     assert max(common) <= 1e-9 * made[0].volume()
 
 
-@pytest.mark.parametrize("name", ["p4", "p3", "pg", "p4m"])
+@pytest.mark.parametrize("name", quick(["p3"], ["p4", "p3", "pg", "p4m"]))
 def test_a_clearance_parts_neighbours(name: str) -> None:
     """As far as it says, within the accuracy; and each tile loses half of it along its edge."""
     solid = extrude(tiling(name), SolidJob(sheet="160x160mm", clearance=0.3))
@@ -102,7 +110,7 @@ def face(mesh: TriangleMesh) -> Any:
     return shapely.union_all(shapely.polygons(corners))
 
 
-@pytest.mark.parametrize("clearance", [0.0, 0.2])
+@pytest.mark.parametrize("clearance", [pytest.param(0.0, marks=pytest.mark.slow), 0.2])
 def test_a_chamfer_breaks_both_rims(clearance: float) -> None:
     """The solid is closed; its faces lie the chamfer within its middle; between them its walls run at 45 degrees."""
     whole = extrude(tiling("p6"), SolidJob(height=4.0, clearance=clearance)).pieces[0].mesh

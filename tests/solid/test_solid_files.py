@@ -168,6 +168,7 @@ def test_a_slicer_takes_it_as_it_is(form: str, which: str, tmp_path: Path, reque
     assert sum(map(float, re.findall(r"volume = ([\d.]+)", said))) == pytest.approx(model.volume, rel=1e-5)
 
 
+@pytest.mark.slow
 def test_a_slicer_slices_it(tmp_path: Path) -> None:
     """As much filament as the solid takes, at full density."""
     model = extrude(tiling("p4"), SolidJob(clearance=0.2, chamfer=0.3))
