@@ -46,7 +46,7 @@ def test_a_section_of_an_open_mesh_is_refused() -> None:
 
 def test_overhangs_are_what_leans_out() -> None:
     """A pyramid has none; on its tip it leans by the angle of its sides, 36.9 degrees, and its base hangs over."""
-    assert overhang(PYRAMID, 1.0) == (0.0, pytest.approx(0.0))
+    assert overhang(PYRAMID, 1.0) == pytest.approx((0.0, 0.0))
     assert overhang(PYRAMID, -1.0)[1] == pytest.approx(np.degrees(np.arctan2(3, 4)))
     flat = TriangleMesh(PYRAMID.vertices * [1, 1, 0.25], PYRAMID.triangles)
     share, steepest = overhang(flat, -1.0)
@@ -74,7 +74,7 @@ def test_the_narrowest_neck_is_found() -> None:
     x, y = [0, 8, 8, 20, 20, 28, 28, 20, 20, 8, 8, 0], [0, 0, 5, 5, 0, 0, 13, 13, 8, 8, 13, 13]
     points = np.array(x) + 1j * np.array(y)
     assert narrowest_neck(Prism.over(Face(points, np.array([0, 12]), 0.0), 5.0).mesh()) == pytest.approx(3.0)
-    assert narrowest_neck(PYRAMID) is None or narrowest_neck(PYRAMID) < 6.0
+    assert narrowest_neck(PYRAMID) is None
 
 
 @pytest.mark.parametrize("density", [0, -1, float("nan"), "heavy"])

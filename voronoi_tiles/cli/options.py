@@ -157,7 +157,8 @@ def with_job(command: Command) -> Command:
             _refuse_scale()
         return command(job=job, **arguments)
 
-    return _with_options(run, _OPTIONS)
+    added: Command = _with_options(run, _OPTIONS)
+    return added
 
 
 def with_solid_job(command: Command) -> Command:
@@ -169,12 +170,13 @@ def with_solid_job(command: Command) -> Command:
         given = {name: value for name in options if (value := arguments.pop(name)) is not None}
         return command(job=SolidJob(**given), **arguments)
 
-    return _with_options(run, options)
+    added: Command = _with_options(run, options)
+    return added
 
 
-def _with_options(command: Any, options: Mapping[str, Option[Any, Any]]) -> Any:
+def _with_options(command: Callable[..., Any], options: Mapping[str, Option[Any, Any]]) -> Any:
     """Add options to a command, in their order."""
-    for name, option in reversed(options.items()):
+    for name, option in reversed(list(options.items())):
         flags = _SPELLINGS.get(name, (f"--{name.replace('_', '-')}",))
         command = click.option(*flags, help=as_options(option.help), **_settings(option))(command)
     return command
