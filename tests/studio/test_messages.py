@@ -129,6 +129,7 @@ def test_files_stay_in_the_folder(tmp_path: Path) -> None:
             (design(name), "site[0].strokes[1].file"),
             ({"site": [{"art": {"file": name}}]}, "site[0].art.file"),
             ({"site": [{"art": name}]}, "site[0].art.file"),
+            ({"key": [{"strokes": [{"file": name}]}]}, "key[0].strokes[0].file"),
         ):
             with pytest.raises(DesignError) as caught:
                 check_files(table, {}, str(home), ())
