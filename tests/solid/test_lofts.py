@@ -169,7 +169,7 @@ def test_events_are_where_neighbours_change() -> None:
 
     for z in events:
         assert faced(z - 1e-4) != faced(z + 1e-4)
-    inner = [z for z in np.linspace(0, 20, 81).tolist() if min(abs(z - at) for at in events) > 1e-3]
+    inner = [z for z in np.linspace(0, 20, 31).tolist() if min(abs(z - at) for at in events) > 1e-3]
     for low, high in pairwise(inner):
         crossed = any(low < at < high for at in events)
         assert (faced(low) != faced(high)) == crossed
