@@ -27,6 +27,8 @@ from setuptools.errors import CompileError, OptionError
 SOURCES = [
     "voronoi_tiles/base/kernels.c",
     "voronoi_tiles/base/box_index.c",
+    "voronoi_tiles/fabrication/next_rows.c",
+    "voronoi_tiles/fabrication/separation.c",
     "voronoi_tiles/paths/biarc_bounds.c",
     "voronoi_tiles/paths/clearance.c",
     "voronoi_tiles/paths/cubic_fit.c",

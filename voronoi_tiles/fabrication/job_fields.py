@@ -103,7 +103,7 @@ class JobFields:
     layout: Option[str | os.PathLike[str], str] = Option(
         "tessellated",
         read_layout,
-        "Where pieces lie: as in the tessellation, nested anew on the sheet, nested without a search where that holds "
+        "Where pieces lie: as in the tessellation, nested anew on the sheet, nested in a second or so where that holds "
         "more, or as in a file of ours [default: tessellated].",
         kind="text",
         shown="tessellated|nested|auto|FILE",

@@ -85,15 +85,15 @@ def most_pieces(
     known: NestPlaces,
     effort: float,
     seed: int,
-    progress: Progress | None = None,
+    watch: Callable[[float], None] = lambda _: None,
 ) -> NestPlaces:
     """The most pieces that fit into a rectangle from 0 to `size`: those `known`, or more found in `effort` seconds.
 
-    spyrrow has to be installed. Raises JobError where it gives up, as for an item that does not fit by itself, and none
-    are known.
+    `watch` is told of the seconds that passed. spyrrow has to be installed. Raises JobError where it gives up, as for
+    an item that does not fit by itself, and none are known.
     """
     width, height = size
-    each = sum(item.share * _area(item.ring) for item in items)
+    each = sum(item.share * ring_area(item.ring) for item in items)
     density, hope, best = _DENSITY, 1.0, known
     begun = monotonic()
     for share in _SHARES if effort >= _SHORT_S else (1.0,):
@@ -102,7 +102,7 @@ def most_pieces(
         seconds = max(1, round(effort * share))
         demand = counts_of(items, count)
         try:
-            found = strip(items, demand, height, seconds, seed, lambda now: _tell(progress, now - begun, effort))
+            found = strip(items, demand, height, seconds, seed, lambda now: watch(now - begun))
         except JobError:
             if not len(best.item):
                 raise
@@ -112,12 +112,6 @@ def most_pieces(
         fitting = found.take(np.flatnonzero(reach <= width))
         best = max(best, fitting, key=lambda places: len(places.item))
     return best
-
-
-def _tell(progress: Progress | None, now: float, effort: float) -> None:
-    """Tell of the time that has passed."""
-    if progress is not None:
-        progress(min(now, effort), effort)
 
 
 def strip(
@@ -180,6 +174,6 @@ def _right_ends(items: Sequence[NestItem], places: NestPlaces) -> Floats:
     return np.array(ends)
 
 
-def _area(ring: Complexes) -> float:
+def ring_area(ring: Complexes) -> float:
     """The area of a polygon."""
     return abs(float((ring.conj() * np.roll(ring, -1)).imag.sum())) / 2

@@ -17,6 +17,8 @@ from voronoi_tiles.base.values import shown
 from voronoi_tiles.fabrication.dressed_tiles import DressedTiles
 from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.layout import Layout, Piece, PlacedTiles
+from voronoi_tiles.fabrication.nest_kinds import NestKind, kind_keys
+from voronoi_tiles.fabrication.nest_search import NestPlaces
 from voronoi_tiles.fabrication.tile_placement import TilePlacement
 from voronoi_tiles.paths.near_items import ROUNDING, near_items
 from voronoi_tiles.paths.paths import Paths
@@ -137,3 +139,18 @@ def piece_at(tiles: DressedTiles, tile: int, about: complex, turn: float, shift:
     angle = round(math.degrees(cmath.phase(unit * factor)), _ANGLE_DIGITS)
     x, y = round(where.real, _PLACE_DIGITS), round(where.imag, _PLACE_DIGITS)
     return Piece(int(tiles.period.site[tile]), conj, angle, complex(x, y))
+
+
+def as_laid(layout: Layout, kinds: Sequence[NestKind], corner: complex, *, grain: bool) -> NestPlaces:
+    """Where the tiles of a tessellation lie, as places of items: so that the middles of their boxes are the same."""
+    keys = kind_keys(layout.period, grain=grain)
+    numbers = {key: k for k, key in enumerate(dict.fromkeys(keys))}
+    factor = np.array([layout.tiles.page.after(motion)[0] for motion in layout.period.motion])
+    tile = layout.copies.tile[layout.contours.copy]
+    item = np.array([numbers[key] for key in keys], np.intp)[tile]
+    unit = factor[tile] / factor[np.array([kind.tile for kind in kinds])[item]]
+    box = item_boxes(layout.contours.paths, layout.contours.items)
+    rings = [turned * kinds[k].item.ring for k, turned in zip(item.tolist(), unit.tolist(), strict=True)]
+    middle = np.array([complex(np.ptp(z.real) / 2 + z.real.min(), np.ptp(z.imag) / 2 + z.imag.min()) for z in rings])
+    place = (box[:, 0] + box[:, 2]) / 2 + 1j * (box[:, 1] + box[:, 3]) / 2
+    return NestPlaces(item, np.degrees(np.angle(unit)), place - middle - corner)

@@ -12,8 +12,9 @@ from voronoi_tiles.base.arrays import Complexes, Ints, plane
 from voronoi_tiles.base.maps import unit_at
 from voronoi_tiles.fabrication.nest_filling import fill
 from voronoi_tiles.fabrication.nest_kinds import NestKind
-from voronoi_tiles.fabrication.nest_patterns import lay_patterns
+from voronoi_tiles.fabrication.nest_patterns import pattern_layouts
 from voronoi_tiles.fabrication.nest_search import NestPlaces
+from voronoi_tiles.fabrication.no_fit import NoFits
 from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.conversion import to_lines
 from voronoi_tiles.paths.paths import Paths
@@ -47,7 +48,8 @@ def lay_in_region(kinds: Sequence[NestKind], region: Any, demand: Ints, even: fl
 
     items = [kind.item for kind in kinds]
     x0, y0, x1, y1 = region.bounds
-    pattern = lay_patterns(items, (_WIDER * (x1 - x0), _WIDER * (y1 - y0)))
+    wider = (_WIDER * (x1 - x0), _WIDER * (y1 - y0))
+    pattern, *_ = pattern_layouts(items, wider, NoFits([item.ring for item in items]), 1)
     outlines = [shapely.Polygon(plane(ring)) for ring in _turned(pattern, [kind.outline for kind in kinds])]
     best, move = np.zeros(0, np.intp), 0j
     steps = np.linspace(0.0, _WIDER - 1.0, _MOVES)

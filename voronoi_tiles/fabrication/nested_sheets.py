@@ -16,11 +16,11 @@ from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.layout import Layout, Piece
 from voronoi_tiles.fabrication.nest_filling import fill
+from voronoi_tiles.fabrication.nest_growth import most_found, most_laid
 from voronoi_tiles.fabrication.nest_kinds import NestKind, kinds_of, refuse_large
-from voronoi_tiles.fabrication.nest_patterns import lay_patterns
 from voronoi_tiles.fabrication.nest_places import NESTED_MAX
-from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces, Progress, counts_of, most_pieces
-from voronoi_tiles.fabrication.nested_pieces import misplaced, piece_at, placed
+from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces, Progress, counts_of, has_search, most_pieces
+from voronoi_tiles.fabrication.nested_pieces import as_laid, misplaced, piece_at, placed
 from voronoi_tiles.fabrication.nested_regions import capped, joined, lay_in_holes, lay_in_region, region_within
 
 EVEN: Final = 0.8
@@ -66,15 +66,19 @@ class Nesting:
         return 0j if self.region is not None else (self.job.margin - self.job.side_by_side / 2) * (1 + 1j)
 
     def sheet(
-        self, demand: Ints | None = None, progress: Progress | None = None, *, search: bool
+        self,
+        demand: Ints | None = None,
+        progress: Progress | None = None,
+        *,
+        search: bool,
+        unnested: Layout | None = None,
     ) -> tuple[Layout, Ints]:
-        """A sheet with as many pieces as patterns, or with `search` that, find places for, and how many of each kind.
+        """A sheet with as many pieces as places are found for, and how many of each kind (intp).
 
-        Not more than `demand` of each kind (intp), where that says how many. Sheets that are drawn are not searched.
-        Raises JobError where a piece is larger than the sheet.
+        With `search` they are looked for as long as the job says; what is tried begins also with those of a
+        tessellation, `unnested`. Not more than `demand` of each kind (intp), where that says how many. Sheets that are
+        drawn are not searched. Raises JobError where a piece is larger than the sheet.
         """
-        import shapely
-
         items = [kind.item for kind in self.kinds]
         left = np.full(len(items), NESTED_MAX) if demand is None else demand
         which = np.flatnonzero(left)
@@ -86,10 +90,8 @@ class Nesting:
             found = lay_in_region(kinds, self.region, left[which], EVEN if demand is None else 0.0)
             found = found._replace(item=which[found.item])
         elif demand is None:
-            found = lay_patterns(items, self.room)
-            found = joined(found, fill(items, shapely.box(0.0, 0.0, *self.room), found, even=EVEN))
-            if search:
-                found = most_pieces(items, self.room, found, self.job.effort, self.job.seed, progress)
+            known = [] if unnested is None else [as_laid(unnested, self.kinds, self.corner, grain=self.job.grain)]
+            found = self._searched(items, known, progress) if search else most_laid(items, self.room, known)
         else:
             found = self._demanded(demand, progress, search=search)
         found = self._kept(found)
@@ -120,11 +122,28 @@ class Nesting:
             left = demand[which] - np.bincount(some.item, minlength=len(items))
             return joined(some, fill(items, shapely.box(0.0, 0.0, *self.room), some, left))
 
-        found = filled(lay_patterns(items, self.room))
+        found = filled(most_laid(items, self.room))
         if search and len(found.item) < demand.sum():
-            more = most_pieces(items, self.room, found, self.job.effort, self.job.seed, progress)
+            more = self._searched(items, [found], progress)
             found = max(found, filled(more), key=lambda places: len(places.item))
         return found._replace(item=which[found.item])
+
+    def _searched(
+        self, items: Sequence[NestItem], known: Sequence[NestPlaces], progress: Progress | None
+    ) -> NestPlaces:
+        """Places that are found in the effort of the job, half of which is spyrrow's where that is installed."""
+        effort, seed = self.job.effort, self.job.seed
+        own = effort / 2 if has_search() else effort
+
+        def tell(now: float) -> None:
+            """Tell of the time that has passed."""
+            if progress is not None:
+                progress(min(now, effort), effort)
+
+        found = most_found(items, self.room, known, own, seed, tell)
+        if own < effort:
+            found = most_pieces(items, self.room, found, effort - own, seed, lambda now: tell(own + now))
+        return found
 
     def _laid(self, places: NestPlaces) -> Layout:
         """The layout with pieces at places."""

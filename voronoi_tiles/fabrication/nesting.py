@@ -30,8 +30,8 @@ from voronoi_tiles.fabrication.nested_sheets import (
 from voronoi_tiles.fabrication.packed_sheets import stock
 
 _UNSEARCHED: Final = (
-    "spyrrow is not installed, so pieces were nested in patterns alone: with `pip install spyrrow` a search may find "
-    "places for more"
+    "spyrrow is not installed, so only our own search was made: with `pip install spyrrow` another may find places for "
+    "more"
 )
 
 
@@ -109,10 +109,10 @@ def _counted(base: Layout, job: Job, progress: Progress | None) -> Arranged:
         raise crowd
     wanted = wanted_of(job, [site.name for site in base.design.noded])
     assert wanted is not None, "there is a count"
-    search = job.layout == "nested" and has_search()
+    search = job.layout == "nested"
     nesting = Nesting.of(base, job, job.sheets or 1)
     sheets = counted_sheets(nesting, demand_of_sites(nesting, wanted), progress, search=search)
-    said = [] if search or job.layout == "auto" or isinstance(job.sheet, str) else [_UNSEARCHED]
+    said = [_UNSEARCHED] if search and not has_search() and not isinstance(job.sheet, str) else []
     said += [f"{counted(len(sheets), 'sheet')}: {'; '.join(map(_counts, sheets))}"] if len(sheets) > 1 else []
     return Arranged(tuple(sheets), tuple(said))
 
@@ -131,10 +131,10 @@ def _densest(base: Layout, lay: Callable[[], Layout], job: Job, progress: Progre
     except JobError as error:
         refusal = error  # what is hooked, or does not fit as it lies, may fit by itself
     fewer = 0 if unnested is None else len(unnested.copies.tile)
-    search = job.layout == "nested" and has_search()
-    nested, _ = Nesting.of(base, job).sheet(progress=progress, search=search)
+    search = job.layout == "nested"
+    nested, _ = Nesting.of(base, job).sheet(unnested=unnested, progress=progress, search=search)
     count = len(nested.pieces)
-    said = [] if search or job.layout == "auto" else [_UNSEARCHED]
+    said = [_UNSEARCHED] if search and not has_search() else []
     if unnested is not None and count <= fewer:
         said.append(f"nested there would be {_counts(nested)}: they lie as in the tessellation")
         return Arranged((unnested,), tuple(said))
