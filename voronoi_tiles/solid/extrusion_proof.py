@@ -30,21 +30,24 @@ class PrismProof:
     """What was proved of the prisms over the tiles of a period.
 
     Where they fill the slab (`fills`), `volume_error` is how far all together are from the cell's area times the
-    height, relative to it; else how far one is from the exact tile's volume at most, relative to that. `shared` is how
-    many points the outlines have, each of them, bit for bit, a neighbour's as well; None where they are drawn in. Then
-    `apart` is the least distance between neighbours in millimetres.
+    height, relative to it; else how far one is from the exact offset's volume at most, relative to that; None with a
+    chamfer, where it is between those over both faces. `shared` is how many points the outlines have, each of them, bit
+    for bit, a neighbour's as well; None where they are drawn in. Then `apart` is the least distance between neighbours
+    in millimetres.
     """
 
     fills: bool
-    volume_error: float
+    volume_error: float | None
     shared: int | None
     apart: float | None
 
     def __str__(self) -> str:
-        if self.fills:
+        if self.volume_error is None:
+            volume = "volumes between those over both faces"
+        elif self.fills:
             volume = f"volume = cell area x height (relative error {self.volume_error:.1g})"
         else:
-            volume = f"volumes within {self.volume_error:.1g} of the exact tiles'"
+            volume = f"volumes within {self.volume_error:.1g} of the exact offset's"
         shared = "" if self.shared is None else f"; all {self.shared:,} points of outlines are neighbours', bit for bit"
         apart = "" if self.apart is None else f"; neighbours at least {self.apart:.4g} mm apart"
         return f"closed; {volume}{shared}{apart}"
@@ -77,7 +80,7 @@ def prove_prisms(prisms: Sequence[Prism], period: Period, job: SolidJob) -> Pris
             raise ProofError(f"the volume of the solids is {error:.1g} off, relative to the cell's")
         return PrismProof(True, error, shared, None)
     error = max(_excess(prism, volume, job) for prism, volume in zip(prisms, volumes, strict=True))
-    return PrismProof(False, error, shared, apart)
+    return PrismProof(False, None if job.chamfer else error, shared, apart)
 
 
 def _excess(prism: Prism, volume: float, job: SolidJob) -> float:
