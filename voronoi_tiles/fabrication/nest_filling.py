@@ -68,11 +68,11 @@ def fill(
 
     counts, share = np.bincount(laid.item, minlength=len(items)), np.array([item.share for item in items])
     left = np.full(len(items), np.iinfo(np.intp).max) if demand is None else demand.copy()
-    solids = [_Solid.of(item.ring) for item in items]
-    within = solids if outlines is None else [_Solid.of(ring) for ring in outlines]
-    room = _Room(region, [solids[k].turned(turn).moved(shift) for k, turn, shift in _rows(laid)])
+    rings = [_PartedRing.of(item.ring) for item in items]
+    within = rings if outlines is None else [_PartedRing.of(ring) for ring in outlines]
+    room = _Room(region, [rings[k].turned(turn).moved(shift) for k, turn, shift in _rows(laid)])
     postures = [
-        _Posture(k, turn, solids[k].turned(turn), room.places(solids[k].turned(turn), within[k].turned(turn)))
+        _Posture(k, turn, rings[k].turned(turn), room.places(rings[k].turned(turn), within[k].turned(turn)))
         for k, item in enumerate(items)
         if left[k] > 0
         for turn in _turns(item, laid.turn[laid.item == k])
@@ -84,8 +84,8 @@ def fill(
         turn = round(math.remainder(moves.turn - stays.turn, 360.0), _TURN_DIGITS)
         key = stays.item, moves.item, turn
         if key not in overlap:
-            parts = solids[moves.item].parts * unit_at(turn)
-            overlap[key] = shapely.union_all(overlaps(solids[stays.item].parts, parts, _EVERYWHERE))
+            parts = rings[moves.item].parts * unit_at(turn)
+            overlap[key] = shapely.union_all(overlaps(rings[stays.item].parts, parts, _EVERYWHERE))
         return _image(overlap[key], unit_at(stays.turn), shift)
 
     def may_come(item: int) -> bool:
@@ -110,7 +110,7 @@ def fill(
 
 
 @dataclass(frozen=True, eq=False)
-class _Solid:
+class _PartedRing:
     """A polygon (complex128, n), its convex parts (k x m), and the middles and radii of circles in it."""
 
     ring: Complexes
@@ -119,18 +119,18 @@ class _Solid:
     radius: Floats
 
     @classmethod
-    def of(cls, ring: Complexes) -> _Solid:
+    def of(cls, ring: Complexes) -> _PartedRing:
         """A ring of points as a polygon."""
         return cls(ring, convex_parts(ring), *_circles(ring))
 
-    def turned(self, turn: float) -> _Solid:
+    def turned(self, turn: float) -> _PartedRing:
         """The polygon turned about 0; degrees."""
         unit = unit_at(turn)
-        return _Solid(self.ring * unit, self.parts * unit, self.middle * unit, self.radius)
+        return _PartedRing(self.ring * unit, self.parts * unit, self.middle * unit, self.radius)
 
-    def moved(self, shift: complex) -> _Solid:
+    def moved(self, shift: complex) -> _PartedRing:
         """The polygon moved."""
-        return _Solid(self.ring + shift, self.parts + shift, self.middle + shift, self.radius)
+        return _PartedRing(self.ring + shift, self.parts + shift, self.middle + shift, self.radius)
 
 
 @dataclass(eq=False)
@@ -139,14 +139,14 @@ class _Posture:
 
     item: int
     turn: float
-    solid: _Solid
+    ring: _PartedRing
     places: Any
 
 
 class _Room:
     """A region, and what lies there."""
 
-    def __init__(self, region: Any, laid: Sequence[_Solid]) -> None:
+    def __init__(self, region: Any, laid: Sequence[_PartedRing]) -> None:
         import shapely
 
         self.region = region
@@ -159,15 +159,15 @@ class _Room:
         self.free = around.difference(shapely.union_all([shapely.Polygon(plane(one.ring)) for one in laid]))
         self.eroded: dict[tuple[bool, float], Any] = {}
 
-    def places(self, solid: _Solid, within: _Solid) -> Any:
+    def places(self, ring: _PartedRing, within: _PartedRing) -> Any:
         """All places for a polygon that may not overlap what lies there, as its part `within` may not leave the region.
 
         A shapely polygon, or several.
         """
         import shapely
 
-        room = shapely.intersection_all([*self._middles(within, beside=False), *self._middles(solid, beside=True)])
-        room = _without(_without(room, self.sides, within.parts), self.taken, solid.parts)
+        room = shapely.intersection_all([*self._middles(within, beside=False), *self._middles(ring, beside=True)])
+        room = _without(_without(room, self.sides, within.parts), self.taken, ring.parts)
         # Where it meets no side it may lie beyond all of them, or around a hole.
         inside = []
         for part in _polygons(room):
@@ -176,12 +176,12 @@ class _Room:
                 inside.append(part)
         return shapely.MultiPolygon(inside)
 
-    def _middles(self, solid: _Solid, *, beside: bool) -> list[Any]:
+    def _middles(self, ring: _PartedRing, *, beside: bool) -> list[Any]:
         """The places at which each circle of a polygon lies in the region, or `beside` what lies there."""
         if beside and not len(self.taken):
             return []
         found = []
-        for middle, radius in zip(solid.middle.tolist(), solid.radius.tolist(), strict=True):
+        for middle, radius in zip(ring.middle.tolist(), ring.radius.tolist(), strict=True):
             if (beside, radius) not in self.eroded:
                 self.eroded[beside, radius] = (self.free if beside else self.region).buffer(-radius)
             found.append(_image(self.eroded[beside, radius], 1 + 0j, -middle))
@@ -194,7 +194,7 @@ def _lowest(postures: Sequence[_Posture], item: int) -> tuple[_Posture, complex]
     for posture in postures:
         if posture.item != item or posture.places.is_empty:
             continue
-        z, ring = _complex(posture.places), posture.solid.ring
+        z, ring = _complex(posture.places), posture.ring.ring
         top, left = np.round(z.imag + ring.imag.max(), _LEVEL_DIGITS), z.real + ring.real.min()
         at = int(np.lexsort((left, top))[0])
         rank = float(top[at]), float(left[at])
