@@ -168,7 +168,8 @@ def test_the_studio_keeps_a_solid(tmp_path: Path) -> None:
     document.close()
     assert file.read_text() == (FLAT + SOLID).replace("[25, 11]", "[26, 11]")
     del design["site"][0]["strokes"][1]  # a key no longer fits, and drawing goes on
-    tiles = Outliner().outline(1, design, rest=True, tolerance=None)["tiles"]
+    (said,) = Outliner().outlines(1, design, rest=True, tolerance=None)
+    tiles = said.message["tiles"]
     assert math.isclose(
         tiles[0]["width"],
         vt.Design.loads(FLAT.replace("[25, 11]", "[26, 11]").replace("  { circle = [15, 14], radius = 2 },\n", ""))

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import cast, get_args
 
 from voronoi_tiles.fabrication.job_fields import Into, JobFields
@@ -12,7 +11,6 @@ from voronoi_tiles.fabrication.job_options import JobError
 __all__ = ["Job", "JobError"]
 
 
-@dataclass(frozen=True, kw_only=True, repr=False)
 class Job(JobFields):
     """What is to be made of a tiling; lengths are numbers of millimetres or texts with a unit, "0.15mm".
 
@@ -31,7 +29,8 @@ class Job(JobFields):
     two of them. Use that, or leave `kerf` out.
     """
 
-    def __post_init__(self) -> None:
+    def _refuse_contradictions(self) -> None:
+        """Refuse options that cannot be together; a frame means that it is fitted. Raises JobError."""
         if self.frame is not None and self.fit == "whole":
             object.__setattr__(self, "fit", "frame")
         for check in (

@@ -203,6 +203,12 @@ class JobFields:
         "whole", ArtUse, "The art of the design's sites: whole, clipped to the tiles, or left out [default: whole]."
     )
 
+    def __post_init__(self) -> None:
+        self._refuse_contradictions()
+
+    def _refuse_contradictions(self) -> None:
+        """Refuse options that cannot be together: none as far as fields go."""
+
     def __repr__(self) -> str:
         return f"Job({', '.join(f'{name}={value!r}' for name, value in self._said())})"
 

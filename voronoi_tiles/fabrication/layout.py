@@ -313,9 +313,8 @@ def _refuse_crowd(period: Period, region: Region) -> None:
 
 def _spaced(tiles: DressedTiles, sheet: Sheet, stretch: Stretch) -> Period:
     """The period where it is cut."""
-    if stretch.is_identity:
-        return tiles.period
-    return pulled_apart(tiles.period, tiles.centres(), sheet.centre, stretch)
+    period = tiles.period
+    return period if stretch.is_identity else pulled_apart(period, tiles.centres(), sheet.centre, stretch)
 
 
 def _stretch(tiles: DressedTiles, apart: float, accuracy: float) -> Stretch:
@@ -326,8 +325,9 @@ def _stretch(tiles: DressedTiles, apart: float, accuracy: float) -> Stretch:
             f"a `gap` of {apart:g} mm is more than {FARTHEST:.0f} times the cell",
             remedy=f"Give at most {largest:g} mm.",
         )
+    spacing = tiles.spacing(accuracy)
     try:
-        return tiles.spacing(accuracy).stretch(apart + 2 * accuracy)
+        return spacing.stretch(apart + 2 * accuracy)
     except ValueError as error:
         raise JobError(str(error), remedy="Use `edges='once'`, or leave `sheet` out: pieces lie in a row.") from error
 
