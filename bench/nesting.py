@@ -22,7 +22,7 @@ from report import machine, published, table
 
 from voronoi_tiles import Design, Job, Tiling
 from voronoi_tiles.fabrication.nest_search import NestPlaces, most_pieces
-from voronoi_tiles.fabrication.nesting import _items, _Kinds
+from voronoi_tiles.fabrication.nested_sheets import Nesting
 from voronoi_tiles.fabrication.product import Product, _Plan
 
 EXAMPLES = Path(__file__).parents[1] / "examples"
@@ -84,11 +84,9 @@ def searched(tiling: Tiling, effort: float) -> int:
     """How many pieces spyrrow lays by itself."""
     job = Job(sheet=SHEET, margin=MARGIN, kerf=KERF)
     layout = _Plan.of(tiling.design, tiling.tessellation, job, "svg").layout
-    kinds = _Kinds.of(layout.tiles, grain=False)
-    items, _ = _items(layout.tiles, kinds, GAP, layout.budget.measured, grain=False)
+    nesting = Nesting.of(layout, job)
     none = NestPlaces(np.zeros(0, np.intp), np.zeros(0), np.zeros(0, np.complex128))
-    room = (SHEET[0] - 2 * MARGIN + GAP, SHEET[1] - 2 * MARGIN + GAP)
-    return len(most_pieces(items, room, none, effort, 0).item)
+    return len(most_pieces([kind.item for kind in nesting.kinds], nesting.room, none, effort, 0).item)
 
 
 def made(tiling: Tiling, layout: str, effort: float) -> tuple[Product, float]:
