@@ -167,8 +167,14 @@ def test_the_studio_keeps_a_solid(tmp_path: Path) -> None:
     document.save(design)
     document.close()
     assert file.read_text() == (FLAT + SOLID).replace("[25, 11]", "[26, 11]")
-    del design["site"][0]["strokes"][1]  # a key no longer fits, and drawing goes on
     (said,) = Outliner().outlines(1, design, rest=True, tolerance=None)
+    assert said.message["unfit"] is None
+    del design["site"][0]["strokes"][1]  # a key no longer fits: drawing goes on, and it is said
+    first, *_ = Outliner().outlines(1, design, rest=False, tolerance=0.1)
+    assert first.message["unfit"]
+    (said,) = Outliner().outlines(1, design, rest=True, tolerance=None)
+    assert said.message["unfit"]["message"].startswith("Commands will refuse this drawing with its key[0]")
+    assert said.message["unfit"]["remedy"]
     tiles = said.message["tiles"]
     assert math.isclose(
         tiles[0]["width"],

@@ -81,6 +81,21 @@ def saved_state(window: Window) -> str:
 # Crashes
 
 
+def test_a_drawing_that_its_keys_no_longer_fit(window: Window) -> None:
+    """The outline goes on, and the page says that commands will refuse the file; undo makes it fit again."""
+    key = {"z": 20, "strokes": [{"segment": [[8, 12], [22, 14]]}]}
+    line = {"strokes": [{"segment": [[8, 10], [22, 17]]}]}
+    window.begin({**DESIGN, "site": [line], "solid": {"height": 40}, "key": [key]})
+    draw_a_line(window)
+    window.wait("refused")
+    banner = window.page.locator("#banner")
+    assert "Commands will refuse this drawing with its key[0]" in banner.inner_text()
+    assert window.page.locator("#exact").inner_text() == "proved, but it cannot stand"
+    window.page.keyboard.press("Control+z")
+    window.wait()
+    assert banner.is_hidden()
+
+
 def test_a_killed_server(chromium: Any, tmp_path: Path) -> None:
     """The page says it, and keeps what is drawn; a new studio offers the copy, which is at most a second old."""
     path = tmp_path / "bird.toml"

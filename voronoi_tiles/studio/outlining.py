@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Any, Final, NamedTuple
 
-from voronoi_tiles.base.errors import TouchingCopiesError
+from voronoi_tiles.base.errors import DesignError, TouchingCopiesError
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.base.tolerance import FLATTENING_MM
 from voronoi_tiles.base.units import UNIT_MM
@@ -19,6 +19,7 @@ from voronoi_tiles.designs.design import Design
 from voronoi_tiles.formats.svg.path_text import path_data
 from voronoi_tiles.groups.wallpaper import WallpaperGroup
 from voronoi_tiles.studio.page_colouring import Colourist
+from voronoi_tiles.studio.refusals import error_document
 from voronoi_tiles.vector.outline import Outline
 from voronoi_tiles.vector.proof import prove, proved_tiles
 from voronoi_tiles.vector.tessellation import TileRecord, tessellate
@@ -37,6 +38,10 @@ class Said(NamedTuple):
     more: bool = False
 
 
+_STANDING: Final = ("solid", "key")
+"""The tables of a design that say what stands above its drawing."""
+
+
 @dataclass
 class Outliner:
     """Outlines of one design after the other; `proof_s` is what the last proof took for each edge, in seconds."""
@@ -53,18 +58,19 @@ class Outliner:
         and ProofError.
         """
         begun = time.perf_counter()
-        # What is above the drawing of the design does not change its tiles, and need not fit while that is drawn.
-        design = {key: value for key, value in design.items() if key not in ("solid", "key")}
+        # What is above the drawing does not change its tiles, and need not fit while that is drawn; but it is said.
+        unfit = _unfit(design)
+        design = {key: value for key, value in design.items() if key not in _STANDING}
         if rest:
             read, tiles = _tiles(design)
             tiles, _ = self._proved(read, tiles)
-            message = _message(rev, read, tiles, proved=True)
+            message = _message(rev, read, tiles, unfit, proved=True)
             operations = [document["operations"] for document in message["tiles"]]
             message["colouring"] = self.colourist.colour(tiles[0].tessellation, operations)
             yield Said(_timed(message, begun))
             return
         read, tiles = _tiles(design, tolerance)
-        message = _message(rev, read, tiles, proved=False)
+        message = _message(rev, read, tiles, unfit, proved=False)
         edges = sum(len(tile.outline) for tile in tiles)
         if time.perf_counter() - begun + self.proof_s * edges > PROOF_S:
             self.proof_s *= _FADING
@@ -72,7 +78,10 @@ class Outliner:
             return
         yield Said(_timed(message, begun), more=True)
         tiles, mended = self._proved(read, tiles)
-        yield Said(_timed(_message(rev, read, tiles, proved=True), begun) if mended else {"type": "proof", "rev": rev})
+        if mended:
+            yield Said(_timed(_message(rev, read, tiles, unfit, proved=True), begun))
+        else:
+            yield Said({"type": "proof", "rev": rev})
 
     def _proved(self, design: Design, tiles: list[TileRecord]) -> tuple[list[TileRecord], bool]:
         """The tiles of a design, proved, and whether they are others. Raises ProofError."""
@@ -93,9 +102,25 @@ def _tiles(design: Mapping[str, Any], tolerance: float | None = None) -> tuple[D
     return read, tessellate(read.noded, read.group, read.lattice)
 
 
-def _message(rev: int, design: Design, tiles: list[TileRecord], *, proved: bool) -> dict[str, Any]:
+def _unfit(design: Mapping[str, Any]) -> dict[str, Any] | None:
+    """What is wrong with what stands above a drawing that is right by itself; None where nothing is."""
+    if not any(key in design for key in _STANDING):
+        return None
+    try:
+        Design.from_dict(design)
+    except DesignError as error:
+        if error.key is not None and error.key.startswith(_STANDING):
+            said = error_document(error)
+            return {**said, "message": f"Commands will refuse this drawing with its {error.key}: {said['message']}"}
+    return None
+
+
+def _message(
+    rev: int, design: Design, tiles: list[TileRecord], unfit: Mapping[str, Any] | None, *, proved: bool
+) -> dict[str, Any]:
     """The message "outline" of a design, but for its time and its colours, which the page keeps meanwhile."""
     return {
+        "unfit": unfit,
         "type": "outline",
         "rev": rev,
         "proved": proved,

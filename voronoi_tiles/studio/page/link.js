@@ -17,6 +17,7 @@
  * @typedef {object} Outline the exact tiles of a revision
  * @property {number} rev
  * @property {boolean} proved else its proof comes after it, where that is quick enough
+ * @property {import("./store.js").Trouble | null} unfit what does not fit of what stands above the drawing
  * @property {number} scale
  * @property {Tile[]} tiles
  * @property {Record<string, string>} [resolved] path data of strokes that are files, by "site.stroke"

@@ -19,9 +19,10 @@ function proofOf({ exact, proved, refusal, revision, connected, behind, dragging
         return ["behind", "exact tile follows"];
     }
     // While something is dragged, the proof of the last outline may be on its way.
-    return proved === exact.rev || (dragging && proved === exact.after)
-        ? ["proved", "proved"]
-        : ["proving", "exact, proof follows"];
+    if (proved !== exact.rev && !(dragging && proved === exact.after)) {
+        return ["proving", "exact, proof follows"];
+    }
+    return exact.unfit ? ["refused", "proved, but it cannot stand"] : ["proved", "proved"];
 }
 
 const LOST = {
@@ -30,13 +31,13 @@ const LOST = {
 };
 
 /**
- * Why there is no tile, in the page's words where it knows what to do here.
+ * Why there is no tile, in the page's words where it knows what to do here; or why there is no solid.
  * @type {(state: import("../store.js").State) => import("../store.js").Trouble | null}
  */
-function whyNoTile({ design, refusal }) {
+function whyNoTile({ design, refusal, exact }) {
     const bare = design.site.findIndex((site) => !site.strokes.length);
     if (!refusal || bare < 0) {
-        return refusal?.error ?? null;
+        return refusal?.error ?? exact?.unfit ?? null;
     }
     const what = design.site.length > 1 ? `${siteNames(design)[bare]} has no stroke yet` : "Nothing is drawn yet";
     return { message: what, remedy: "Take the pen or another tool and draw.", quiet: true };
@@ -105,7 +106,7 @@ export function showStatus(store) {
         { calm: true },
     );
 
-    store.subscribe(["refusal", "trouble", "connected"], (state) => {
+    store.subscribe(["refusal", "trouble", "connected", "exact"], (state) => {
         const { trouble, connected } = state;
         const said = [connected ? null : LOST, trouble, connected ? whyNoTile(state) : null].filter(
             (one) => one !== null,
