@@ -68,6 +68,8 @@ if TYPE_CHECKING:
     from voronoi_tiles.solid.pieces import SolidPiece
     from voronoi_tiles.solid.solid_job import SolidJob
     from voronoi_tiles.solid.solid_model import SolidModel
+    from voronoi_tiles.solid.stack import Stack, StackSheet, stack
+    from voronoi_tiles.solid.stack_job import StackJob
     from voronoi_tiles.solid.standing import stand
     from voronoi_tiles.tile import Tile, TileCopy
     from voronoi_tiles.tiling import Tiling
@@ -128,6 +130,9 @@ __all__ = [
     "SolidJob",
     "SolidModel",
     "SolidPiece",
+    "Stack",
+    "StackJob",
+    "StackSheet",
     "Stroke",
     "Tile",
     "TileCopy",
@@ -153,6 +158,7 @@ __all__ = [
     "preflight",
     "render",
     "segment",
+    "stack",
     "stand",
     "starter",
     "starter_text",
@@ -198,6 +204,8 @@ _HOMES = {
     "voronoi_tiles.solid.solid_job": "SolidJob",
     "voronoi_tiles.solid.pieces": "SolidPiece",
     "voronoi_tiles.solid.solid_model": "SolidModel",
+    "voronoi_tiles.solid.stack": "Stack StackSheet stack",
+    "voronoi_tiles.solid.stack_job": "StackJob",
     "voronoi_tiles.solid.standing": "stand",
     "voronoi_tiles.tile": "Tile TileCopy",
     "voronoi_tiles.tiling": "Tiling",

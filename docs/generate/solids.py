@@ -23,6 +23,7 @@ PICTURES: Final = (
         *("--sheet", "160x160mm", "--height", "6mm", "--clearance", "0.3mm", "--chamfer", "0.5mm"),
         *("--gap", "1.5mm", "--colours", "site"),
     ),
+    _picture("stack", "examples/solid/p3-steps.toml", "--sheets", "9"),
 )
 """In the order of the page."""
 

@@ -115,3 +115,50 @@ def test_a_design_that_stands_is_lofted(here: Path, voronoi_tiles: CommandLine) 
     assert refused.returncode == 2
     assert refused.stderr.startswith("Error: standing.toml: --clearance is for prisms")
     assert not (here / "b.3mf").exists()
+
+
+STANDING = starter_text("p4") + "\n[solid]\nheight = 12\nlayers = 3\nshift = [2, 1]\n"
+
+
+def test_a_stack_is_cut(here: Path, voronoi_tiles: CommandLine) -> None:
+    """A file for each sheet, with its recipe; how thick they are and where dowels go is said, and reported."""
+    (here / "standing.toml").write_text(STANDING, encoding="utf-8")
+    call = ("solid", "standing.toml", "--sheets", "3", "-o", "a.svg", "--dowel", "2mm", "--kerf", "0.1mm")
+    done = voronoi_tiles(*call, "--json", "--density", "0.5", cwd=here)
+    assert done.returncode == 0, done.stderr
+    *written, said = done.stderr.splitlines()
+    assert [line.partition(":")[0] for line in written] == [f"wrote a-{k}.svg" for k in (1, 2, 3)]
+    assert said.startswith("3 sheets, 1 the lowest, each 4 mm thick; 2 holes in a tile, ")
+    assert said.endswith(" mm apart, for dowels of 2 mm, 12 mm long")
+    figures = json.loads(done.stdout)
+    assert [row["middle"] for row in figures["sheets"]] == [2.0, 6.0, 10.0]
+    assert figures["mass"] == pytest.approx((900 - 2 * 3.14159265) * 12 / 1000 * 0.5)
+    recipe = recipe_of((here / "a-2.svg").read_bytes())
+    assert json.loads(recipe["stack"]) == {"sheets": 3, "dowel": 2.0, "kerf": 0.1, "sheet": 2}
+
+
+def test_a_stack_is_a_solid(here: Path, voronoi_tiles: CommandLine) -> None:
+    """An object for each sheet, and a table of them."""
+    (here / "standing.toml").write_text(STANDING, encoding="utf-8")
+    done = voronoi_tiles("solid", "standing.toml", "--sheets", "3", "-o", "a.3mf", "--report", cwd=here)
+    assert done.returncode == 0, done.stderr
+    assert "wrote a.3mf: 3 solids, " in done.stderr
+    assert "x 12 mm, 10.8 cm³" in done.stderr
+    assert "12 mm high, of sheets of 4 mm" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("-o", "a.svg", "--sheets", "0"), "Error: --sheets 0 cannot be."),
+        (("-o", "a.svg", "--sheets", "3", "--clearance", "1mm"), "Error: --clearance is for prisms, and --sheets for"),
+        (("-o", "a.3mf", "--dowel", "1mm"), "Error: --dowel is for sheets that are cut, and there are none."),
+        (("-o", "a.svg", "--sheets", "3"), "Error: bird.toml: the design is flat. Write [solid] and, below it,"),
+        (("-o", "a.svg"), "Error: a.svg is no name of such a file"),
+    ],
+)
+def test_a_stack_that_cannot_be_is_refused(
+    options: tuple[str, ...], message: str, here: Path, voronoi_tiles: CommandLine
+) -> None:
+    """One message, exit code 2, nothing written."""
+    test_what_cannot_be_is_refused(options, message, here, voronoi_tiles)

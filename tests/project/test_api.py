@@ -26,9 +26,9 @@ Arc ArgumentError Art Burn CheckError CheckReport Design DesignError Dots Drawin
 Frame GROUPS Inventory Isometry Job JobError Key Lattice Layer LayerUse Limits LineArc Marks MissingLibraryError
 Neighbour NodedSite Operation Outline OutputError ParabolaArc Paths Placement PreflightReport Product ProofError
 ProofReport Provenance ReadDrawing RenderError RenderOptions Rendering Shape Site Solid SolidJob SolidModel SolidPiece
-Stroke Tile TileCopy Tiling TouchingCopiesError TriangleMesh UnknownNameError VoronoiTilesError WallpaperGroup
-__version__ bezier bspline catmull_rom circle coupon drawing extrude hermite path placed point polyline preflight
-render segment stand starter starter_text
+Stack StackJob StackSheet Stroke Tile TileCopy Tiling TouchingCopiesError TriangleMesh UnknownNameError
+VoronoiTilesError WallpaperGroup __version__ bezier bspline catmull_rom circle coupon drawing extrude hermite path
+placed point polyline preflight render segment stack stand starter starter_text
 """
 
 INTERNAL = {
@@ -201,6 +201,8 @@ WRONG: list[Callable[[], object]] = [
     lambda: vt.extrude(vt.starter("p4")),  # type: ignore[arg-type]
     lambda: vt.extrude(pair()).save("a.step"),
     lambda: vt.stand(vt.starter("p4")),
+    lambda: vt.stack(vt.starter("p4"), vt.StackJob(sheets=3)),
+    lambda: vt.StackJob(sheets=1.5),  # type: ignore[arg-type]
     lambda: pair().report({"kerf": 1}),  # type: ignore[arg-type]
     lambda: pair().export("a.svg", job=5),  # type: ignore[arg-type]
     lambda: pair().export("a\0.svg"),

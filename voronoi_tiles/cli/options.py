@@ -11,8 +11,9 @@ import click
 
 from voronoi_tiles.cli.common import SCALE, as_options
 from voronoi_tiles.fabrication.job import Job
-from voronoi_tiles.fabrication.job_options import Option
+from voronoi_tiles.fabrication.job_options import JobError, Option
 from voronoi_tiles.solid.solid_job import SolidJob
+from voronoi_tiles.solid.stack_job import StackJob
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -162,13 +163,19 @@ def with_job(command: Command) -> Command:
 
 
 def with_solid_job(command: Command) -> Command:
-    """Add the options of solids; the command gets `job`."""
-    options = SolidJob.options()
+    """Add the options of solids and of stacks; the command gets `job`, of a stack where there are sheets."""
+    solids, stacks = SolidJob.options(), StackJob.options()
+    options = {**stacks, **solids}
 
     @wraps(command)
     def run(**arguments: Any) -> Any:
         given = {name: value for name in options if (value := arguments.pop(name)) is not None}
-        return command(job=SolidJob(**given), **arguments)
+        kind, known = (StackJob, stacks) if "sheets" in given else (SolidJob, solids)
+        for name in given.keys() - known.keys():
+            if kind is StackJob:
+                raise JobError(f"`{name}` is for prisms, and `sheets` for stacks", remedy="Leave one of them out.")
+            raise JobError(f"`{name}` is for sheets that are cut, and there are none", remedy="Add `sheets=7`.")
+        return command(job=kind(**given), **arguments)
 
     added: Command = _with_options(run, options)
     return added

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -19,10 +19,13 @@ from voronoi_tiles.cli.common import (
 from voronoi_tiles.cli.options import with_scale, with_solid_job
 
 if TYPE_CHECKING:
+    from voronoi_tiles.designs.design import Design
     from voronoi_tiles.solid.solid_job import SolidJob
-    from voronoi_tiles.solid.solid_model import SolidFormat
+    from voronoi_tiles.solid.solid_model import SolidFormat, SolidModel
+    from voronoi_tiles.solid.stack_job import StackJob
 
 _SUFFIXES = (".3mf", ".stl", ".png")
+_CUT_SUFFIXES = (".svg", ".dxf", ".pdf", ".lbrn2", ".gcode", ".nc")
 
 
 @click.command()
@@ -33,7 +36,8 @@ _SUFFIXES = (".3mf", ".stl", ".png")
     required=True,
     metavar="FILE",
     type=PATH,
-    help="The file to write, its format by its suffix: .3mf, .stl, or .png for a picture; - for standard output.",
+    help="The file to write, its format by its suffix: .3mf, .stl, or .png for a picture; with --sheets also .svg, "
+    ".dxf, .pdf, .lbrn2, .gcode or .nc, to cut; - for standard output.",
 )
 @click.option(
     "--format", "file_format", type=click.Choice(("3mf", "stl", "png")), help="The format on standard output."
@@ -43,7 +47,11 @@ _SUFFIXES = (".3mf", ".stl", ".png")
 @click.option(
     "--size", type=click.IntRange(1, 4000), metavar="N", help="The longer side of a picture in pixels [default: 1200]."
 )
-@click.option("--report", is_flag=True, help="Print volume, mass, the narrowest neck, overhangs, which way up.")
+@click.option(
+    "--report",
+    is_flag=True,
+    help="Print volume, mass, the narrowest neck, overhangs, which way up; of a stack its sheets and where dowels go.",
+)
 @click.option("--json", "as_json", is_flag=True, help="Print these as JSON, with the proof's figures.")
 @click.option(
     "--density", type=click.FloatRange(0.001, 100.0), metavar="G/CM3", help="For the mass [default: 1.24, PLA]."
@@ -53,7 +61,7 @@ def solid(
     design: str,
     output: str,
     file_format: SolidFormat | None,
-    job: SolidJob,
+    job: SolidJob | StackJob,
     size: int | None,
     report: bool,
     as_json: bool,
@@ -64,11 +72,12 @@ def solid(
 
     3MF holds an object for each piece, with its colour, and what it was made from; STL all of them in one, without
     colours. Neighbours share every point of their walls: printed pieces need a clearance, 0.2mm, to go together. A
-    picture shows a tile and its neighbours, pulled apart, or the sheet. A design with a [solid] is lofted.
+    picture shows a tile and its neighbours, pulled apart, or the sheet. A design with a [solid] is lofted, or with
+    --sheets cut in sheets that are stacked.
     """
-    from voronoi_tiles.cli.tables import solid_text
-    from voronoi_tiles.solid.extrusion import extrude, surrounded
+    from voronoi_tiles.cli.tables import solid_text, stack_text
     from voronoi_tiles.solid.solid_report import DENSITY, solid_report
+    from voronoi_tiles.solid.stack_job import StackJob
 
     if output == "-" and file_format is None:
         raise click.UsageError("On standard output the format is not clear: add --format 3mf, stl or png.")
@@ -77,22 +86,68 @@ def solid(
         raise click.UsageError("--density is for the mass: add --report, or --json.")
     if reports and output == "-":
         raise click.UsageError("The report goes to standard output: give the solids a file.")
-    refuse_output(design, output, (f".{file_format}",) if file_format else _SUFFIXES)
+    stacked = isinstance(job, StackJob)
+    suffixes = (*_SUFFIXES, *_CUT_SUFFIXES) if stacked else _SUFFIXES
+    refuse_output(design, output, (f".{file_format}",) if file_format else suffixes)
+    mass = DENSITY if density is None else density
     with reporting(design):
         loaded = load(design, quiet=quiet)
-        around = (output.lower().endswith(".png") or file_format == "png") and job.sheet is None
-        if loaded.standing is not None:
-            from voronoi_tiles.solid.standing import stand
-
-            made = stand(loaded, job, around=around)
+        if isinstance(job, StackJob):
+            figures = _stack(loaded, job, output, file_format, size, mass, quiet=quiet)
         else:
-            made = (surrounded if around else extrude)(loaded.tessellate(), job)
-        figures = solid_report(made, DENSITY if density is None else density) if reports else {}
-        made.save(output, file_format, size=size)
+            picture = output.lower().endswith(".png") or file_format == "png"
+            made = _model(loaded, job, around=picture and job.sheet is None)
+            figures = solid_report(made, mass) if reports else {}
+            _save(made, output, file_format, size, quiet=quiet)
+    if reports:
+        print_figures(figures, stack_text if stacked else solid_text, as_json=as_json)
+
+
+def _model(design: Design, job: SolidJob, *, around: bool) -> SolidModel:
+    """The solids of a design, or what a picture shows of them."""
+    if design.standing is not None:
+        from voronoi_tiles.solid.standing import stand
+
+        return stand(design, job, around=around)
+    from voronoi_tiles.solid.extrusion import extrude, surrounded
+
+    return (surrounded if around else extrude)(design.tessellate(), job)
+
+
+def _save(made: SolidModel, output: str, file_format: SolidFormat | None, size: int | None, *, quiet: bool) -> None:
+    """Write solids, and say what was written."""
+    made.save(output, file_format, size=size)
     if not quiet:
         for note in made.notes:
             say(as_options(note))
         say_written(output, made.summary())
         say(f"proved: {made.proved}")
-    if reports:
-        print_figures(figures, solid_text, as_json=as_json)
+
+
+def _stack(
+    design: Design,
+    job: StackJob,
+    output: str,
+    file_format: SolidFormat | None,
+    size: int | None,
+    density: float,
+    *,
+    quiet: bool,
+) -> dict[str, Any]:
+    """Write a stack, as files to cut or as a solid, and say what was written; its figures."""
+    from voronoi_tiles.solid.stack import stack
+
+    made = stack(design, job)
+    figures = made.report(density)
+    if file_format is not None or output.lower().endswith(_SUFFIXES):
+        _save(made.model, output, file_format, size, quiet=quiet)
+    else:
+        written = made.export(output)
+        if not quiet:
+            for note in dict.fromkeys(note for _, product in written if product for note in product.notes):
+                say(as_options(note))
+            for path, product in written:
+                say_written(path, product and as_options(product.summary()))
+    if not quiet:
+        say(made.summary())
+    return figures

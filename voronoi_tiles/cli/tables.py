@@ -161,6 +161,33 @@ def solid_text(figures: dict[str, Any]) -> str:
     return page.text()
 
 
+def stack_text(figures: dict[str, Any]) -> str:
+    """Write the figures of a stack (solid.stack) as tables."""
+    page = _TextTable()
+    page.head(
+        {
+            "stack": f"{figures['height']:.5g} mm high, of sheets of {figures['thickness']:.5g} mm",
+            "volume": f"{figures['volume'] / 1000:.4g} cm³",
+            "mass": f"{figures['mass']:.4g} g, at {figures['density']:g} g/cm³",
+        }
+    )
+    page.table(
+        "Sheets",
+        [">sheet", ">exact at mm", "site", ">area cm²"],
+        [
+            (str(row["sheet"]), f"{row['middle']:.5g}", row["site"], f"{row['area'] / 100:.4g}")
+            for row in figures["sheets"]
+        ],
+    )
+    if figures["holes"]:
+        page.table(
+            f"Holes of {figures['dowel']:g} mm",
+            ["site", ">x mm", ">y mm"],
+            [(site, f"{x:.3f}", f"{y:.3f}") for site, holes in figures["holes"].items() for x, y in holes],
+        )
+    return page.text()
+
+
 def check_text(document: dict[str, Any]) -> str:
     """Write what `check --json` prints as tables."""
     page = _TextTable()

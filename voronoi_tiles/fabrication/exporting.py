@@ -66,19 +66,34 @@ def write_products(
         )
     if not job.several:
         products = {path: make(design, tessellation, job, file_format, progress)}
-    elif path == STDOUT or is_special(path):
-        raise JobError(
-            f"`{'sheets' if job.sheets is not None else 'into'}`: several files need a name that they can begin with",
-            remedy="Write to a file such as sheet.svg.",
-        )
     else:
-        place = Path(path)
-        products = {
-            str(place.with_name(f"{place.stem}-{name}{place.suffix}")): product
-            for name, product in make_several(design, tessellation, job, file_format, progress)
-        }
+        refuse_stream(path, "sheets" if job.sheets is not None else "into")
+        products = numbered(path, make_several(design, tessellation, job, file_format, progress))
     if evidence is not None:
         products = {name: product.with_evidence(evidence) for name, product in products.items()}
+    return write_all(products)
+
+
+def refuse_stream(path: str, option: str) -> None:
+    """Refuse what is no name of several files. Raises JobError, which names the option that makes them several."""
+    if path == STDOUT or is_special(path):
+        raise JobError(
+            f"`{option}`: several files need a name that they can begin with",
+            remedy="Write to a file such as sheet.svg.",
+        )
+
+
+def numbered(path: str, products: Sequence[tuple[str, Product]]) -> dict[str, Product]:
+    """Products by the files that they go to: each has its name, which is given with it, before the suffix."""
+    place = Path(path)
+    return {str(place.with_name(f"{place.stem}-{name}{place.suffix}")): product for name, product in products}
+
+
+def write_all(products: Mapping[str, Product]) -> tuple[Exported, ...]:
+    """Write products to the files that they are given by: no file takes its place before all are written.
+
+    Raises OutputError where a file cannot be written, or a product is made from it.
+    """
     refuse_overwriting(products, (file for product in products.values() for file in product.files))
     with ExitStack() as stack:
         for name, product in products.items():

@@ -140,8 +140,11 @@ def make(
     job: Job,
     file_format: str = "svg",
     progress: Progress | None = None,
+    finish: Callable[[Layout], Layout] = lambda layout: layout,
 ) -> Product:
     """Make what a job asks for, in the curves that a format takes; `progress` is told of a search for places.
+
+    Pieces that lie in their places are changed by `finish`.
 
     Raises JobError where the job cannot be done, DesignError where the preset or the sheet's drawing is broken.
     """
@@ -153,7 +156,7 @@ def make(
             remedy=f"Export it to a file's name, or {other}.",
         )
     plan = _Plan.of(design, tessellation, job, form, progress)
-    return plan.product(plan.layout.job)
+    return plan.on(finish(plan.layout)).product(plan.layout.job)
 
 
 def make_several(

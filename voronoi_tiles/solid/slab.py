@@ -141,13 +141,16 @@ class Slab:
         lines = to_lines(rings, accuracy=self.layout.budget.chords)
         return _face(lines, float(ring_areas(rings).sum()))
 
-    def meshes(self, prisms: Sequence[Prism]) -> Iterator[TriangleMesh]:
-        """The solids of all copies; where nothing is drawn in, what neighbours share has the same bits in both."""
+    def meshes(self, prisms: Sequence[Prism], corner: complex | None = None) -> Iterator[TriangleMesh]:
+        """The solids of all copies, moved by `corner`, or so that no coordinates are negative.
+
+        Where nothing is drawn in, what neighbours share has the same bits in both.
+        """
         copies = self.layout.copies
         assert copies.unit is None, "pieces that are laid anew are turned"
         rings, items = self.lines.outlines(copies.tile, copies.step)
         shifts = self.layout.copy_shifts
-        corner = self._corner(prisms)
+        corner = self.corner(prisms) if corner is None else corner
         for k, tile in enumerate(copies.tile.tolist()):
             prism, shift = prisms[tile], shifts[k] + corner
             if self.outer is None:
@@ -157,7 +160,7 @@ class Slab:
                 outer = prism.outer.points + shift
             yield prism.mesh(outer, None if prism.inner is None else prism.inner.points + shift)
 
-    def _corner(self, prisms: Sequence[Prism]) -> complex:
+    def corner(self, prisms: Sequence[Prism]) -> complex:
         """What takes the solids to where they have no negative coordinates; on a sheet they are there."""
         if self.layout.region is not None:
             return 0j

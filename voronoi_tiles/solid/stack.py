@@ -1,0 +1,225 @@
+"""Stacks: a solid as sheets, each the exact tiles at the middle of its height, as files to cut or as prisms."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property
+from math import fsum, pi
+from typing import Any
+
+import numpy as np
+
+from voronoi_tiles.base.arguments import instance, number, path_name
+from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.base.errors import TouchingCopiesError
+from voronoi_tiles.base.text import counted
+from voronoi_tiles.designs.design import Design
+from voronoi_tiles.fabrication.exact import design_recipe
+from voronoi_tiles.fabrication.exporting import Exported, format_of, numbered, refuse_stream, write_all
+from voronoi_tiles.fabrication.job_options import JobError
+from voronoi_tiles.fabrication.layout import Layout
+from voronoi_tiles.fabrication.product import Product, make
+from voronoi_tiles.formats.presets import FORMATS, Format
+from voronoi_tiles.groups.periodic_colouring import palette
+from voronoi_tiles.paths.areas import ring_areas
+from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.solid.dowel_holes import BoredLayout, place_holes
+from voronoi_tiles.solid.events import LoftError
+from voronoi_tiles.solid.extrusion_proof import prove_prisms
+from voronoi_tiles.solid.mesh import TriangleMesh
+from voronoi_tiles.solid.motion import Motion
+from voronoi_tiles.solid.pieces import SolidPiece
+from voronoi_tiles.solid.slab import Slab
+from voronoi_tiles.solid.solid_job import HEIGHT_MIN, SolidJob
+from voronoi_tiles.solid.solid_model import SolidModel
+from voronoi_tiles.solid.solid_report import DENSITY
+from voronoi_tiles.solid.stack_job import StackJob
+from voronoi_tiles.vector.proof import proved_tiles
+from voronoi_tiles.vector.tessellation import Tessellation
+
+
+@dataclass(frozen=True, eq=False)
+class StackSheet:
+    """A sheet of a stack: its number, from 1, the lowest; the height of its middle; the exact tiles there.
+
+    `outlines` are those of each site's tile, where it is drawn. Millimetres.
+    """
+
+    number: int
+    middle: float
+    tessellation: Tessellation
+    outlines: tuple[Paths, ...]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Stack:
+    """A design that stands as sheets, proved: each has the exact tiles of the strokes at the middle of its height.
+
+    `thickness` is that of a sheet. `holes` are the centres of each site's dowels, complex128 (2,), where its tile is
+    drawn; none without dowels. Millimetres.
+    """
+
+    design: Design
+    job: StackJob
+    thickness: float
+    sheets: tuple[StackSheet, ...]
+    holes: tuple[Complexes, ...]
+
+    def __repr__(self) -> str:
+        return f"<Stack: {self.summary()}>"
+
+    def summary(self) -> str:
+        """Say in a line what a maker needs to know of the sheets."""
+        text = f"{counted(len(self.sheets), 'sheet')}, 1 the lowest, each {self.thickness:.5g} mm thick"
+        if self.holes:
+            apart = min(float(abs(own[1] - own[0])) for own in self.holes)
+            more = " or more" if len(self.holes) > 1 else ""
+            text += (
+                f"; 2 holes in a tile, {apart:.4g} mm{more} apart, for dowels of {self.job.dowel:g} mm, "
+                f"{self.thickness * len(self.sheets):.5g} mm long"
+            )
+        return text
+
+    def products(self, file_format: Format = "svg") -> list[Product]:
+        """The drawing of each sheet, with its number engraved. Raises JobError where the job cannot be done."""
+        drawn = any(art is not None for art in self.design.art)
+        notes = ("art is left out of sheets: it is drawn for the lowest tile",) if drawn else ()
+        made = []
+        for sheet in self.sheets:
+            finish = self._finish(sheet.number)
+            product = make(self.design, sheet.tessellation, self.job.cut, file_format, finish=finish)
+            own = json.dumps({**self.job.recipe(), "sheet": sheet.number}, sort_keys=True)
+            drawing = replace(product.drawing, recipe={**product.drawing.recipe, "stack": own})
+            made.append(replace(product, drawing=drawing, notes=(*product.notes, *notes)))
+        return made
+
+    def export(self, path: str | os.PathLike[str], file_format: Format | None = None) -> tuple[Exported, ...]:
+        """Write a file for each sheet, with its number before the suffix: all of them, whole, or none.
+
+        The format is that of the suffix, or `file_format`. Raises OutputError, and JobError where the job cannot be
+        done.
+        """
+        name = path_name("path", path)
+        form = format_of(name, FORMATS) if file_format is None else file_format
+        refuse_stream(name, "sheets")
+        products = self.products(form)
+        return write_all(numbered(name, [(str(k + 1), product) for k, product in enumerate(products)]))
+
+    def _finish(self, sheet: int) -> Callable[[Layout], Layout]:
+        """What numbers the pieces of a sheet, and bores them."""
+
+        def finish(layout: Layout) -> Layout:
+            """The layout with the number of the sheet on all pieces, and holes."""
+            layout = replace(layout, numbers=np.full(len(layout.copies.tile), sheet))
+            return layout if self.job.dowel is None else BoredLayout.of(layout, self.holes, self.job.dowel)
+
+        return finish
+
+    @cached_property
+    def model(self) -> SolidModel:
+        """The stack as a solid for each sheet of each tile, one upon the other, proved.
+
+        Raises JobError where the job asks for what is cut alone.
+        """
+        for name in self.job.recipe():
+            if name not in ("sheets", "margin", "rotate", "accuracy"):
+                raise JobError(
+                    f"`{name}` is for sheets that are cut, and this is a solid", remedy="Leave it out, or write svg."
+                )
+        flat = SolidJob(
+            height=self.thickness, margin=self.job.margin, rotate=self.job.rotate, accuracy=self.job.accuracy
+        )
+        slabs = [Slab.of(self.design, sheet.tessellation, flat) for sheet in self.sheets]
+        prisms = [slab.prisms() for slab in slabs]
+        proofs = [prove_prisms(own, slab.lines, flat) for own, slab in zip(prisms, slabs, strict=True)]
+        # They stand upon each other: all are moved alike.
+        corners = np.array([slab.corner(own) for own, slab in zip(prisms, slabs, strict=True)])
+        corner = complex(corners.real.max(), corners.imag.max())
+        names = [site.name for site in self.design.noded]
+        pieces = []
+        for sheet, slab, own in zip(self.sheets, slabs, prisms, strict=True):
+            up = np.array([0.0, 0.0, (sheet.number - 1) * self.thickness])
+            for site, mesh in zip(slab.layout.site.tolist(), slab.meshes(own, corner), strict=True):
+                raised = TriangleMesh(mesh.vertices + up, mesh.triangles)
+                pieces.append(SolidPiece(f"{names[site]} {sheet.number}", names[site], site, raised))
+        error = max(proof.volume_error or 0.0 for proof in proofs)
+        return SolidModel(
+            title=f"{self.design.name} ({self.design.group.name})",
+            pieces=tuple(pieces),
+            colours=tuple(f"#{bytes(shade).hex()}" for shade in palette(len(names))),
+            recipe={**design_recipe(self.design), "stack": json.dumps(self.job.recipe(), sort_keys=True)},
+            proof={"sheets": [proof.document() for proof in proofs]},
+            proved=f"each sheet: closed; volume = cell area x thickness (relative error {error:.1g}); "
+            "all points of outlines are neighbours', bit for bit",
+            files=tuple(self.design.files),
+        )
+
+    def report(self, density: float = DENSITY) -> dict[str, Any]:
+        """What the sheets come to, in the types of JSON; millimetres, square and cubic ones, grams.
+
+        "holes" are the centres of the dowels' holes of each site, in the plane of the design. `density` is in grams per
+        cubic centimetre. Raises ArgumentError for one that is no positive number.
+        """
+        density = number("density", density, "Give grams per cubic centimetre, such as 0.7.", least=1e-6)
+        names = [site.name for site in self.design.noded]
+        bored = 0.0 if self.job.dowel is None else 2 * pi * self.job.dowel**2 / 4
+        rows = [
+            {
+                "sheet": sheet.number,
+                "middle": sheet.middle,
+                "site": name,
+                "area": float(ring_areas(rings).sum()) - bored,
+            }
+            for sheet in self.sheets
+            for name, rings in zip(names, sheet.outlines, strict=True)
+        ]
+        volume = fsum(row["area"] for row in rows) * self.thickness
+        return {
+            "thickness": self.thickness,
+            "height": self.thickness * len(self.sheets),
+            "dowel": self.job.dowel,
+            "holes": {
+                name: [[point.real, point.imag] for point in own.tolist()]
+                for name, own in zip(names, self.holes, strict=False)
+            },
+            "density": density,
+            "volume": volume,
+            "mass": volume / 1000 * density,
+            "sheets": rows,
+        }
+
+
+def stack(design: Design, job: StackJob) -> Stack:
+    """A design that stands as a stack of sheets, all tiles proved.
+
+    Raises ArgumentError for a design that is flat, LoftError with the height where copies meet in a sheet, JobError
+    where sheets are too thin or dowels have no room, ProofError where tiles fail their proof.
+    """
+    design, job = instance("design", design, Design), instance("job", job, StackJob)
+    motion = Motion.of(design)
+    unit = design.unit_mm
+    thickness = motion.height * unit / job.sheets
+    if thickness < HEIGHT_MIN:
+        raise JobError(
+            f"with `sheets={job.sheets}` each of them is {thickness:.3g} mm thick",
+            remedy=f"Make fewer, or a higher [solid]: {HEIGHT_MIN:g} mm is the least.",
+        )
+    sheets = []
+    for k in range(job.sheets):
+        z = (k + 0.5) / job.sheets * motion.height
+        try:
+            records, _ = proved_tiles(motion.at(z), design.group, design.lattice)
+        except TouchingCopiesError as error:
+            raise LoftError(
+                f"{str(error).partition('. ')[0]} in sheet {k + 1}", z, remedy="Copies must keep apart in all sheets."
+            ) from None
+        outlines = tuple(record.outline.paths.moved(unit, 0j) for record in records)
+        sheets.append(StackSheet(k + 1, z * unit, records[0].tessellation, outlines))
+    holes: list[Complexes] = []
+    if job.dowel is not None:
+        each = zip(*(sheet.outlines for sheet in sheets), strict=True)
+        holes = [place_holes(site.name, own, job.dowel) for site, own in zip(design.noded, each, strict=True)]
+    return Stack(design, job, thickness, tuple(sheets), tuple(holes))

@@ -1,0 +1,96 @@
+"""What is to be made of a stack: how many sheets, their dowels, and how they are cut."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields
+from typing import Any, Final
+
+from voronoi_tiles.base.values import shown
+from voronoi_tiles.fabrication.job import Job
+from voronoi_tiles.fabrication.job_options import SHEET_MIN, JobError, Length, Option, Rates, length
+
+SHEETS_MAX: Final = 200
+"""Most sheets of a stack; a count. All their files are open at once."""
+
+_CUT: Final = Job.options()
+
+
+def read_sheets(name: str, value: object) -> int:
+    """Read the number of sheets. Raises JobError."""
+    if isinstance(value, str) and value.isascii() and value.isdigit() and len(value) < 9:
+        value = int(value)
+    if isinstance(value, bool) or not isinstance(value, int) or not 1 <= value <= SHEETS_MAX:
+        raise JobError(f"`{name}` {shown(value)} cannot be", remedy=f"Give a whole number from 1 to {SHEETS_MAX}.")
+    return value
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class StackJob:
+    """What is to be made of a stack; lengths are numbers of millimetres or texts with a unit, "3mm".
+
+    Raises JobError for values that cannot be, and that contradict each other.
+
+    >>> import voronoi_tiles as vt
+    >>> vt.StackJob(sheets=7, dowel="3mm")
+    StackJob(sheets=7, dowel=3.0)
+    """
+
+    sheets: Option[int | str, int] = Option(
+        1,
+        read_sheets,
+        "Make a stack of so many sheets, each as thick as that part of the [solid]'s height: a numbered file to cut "
+        "for each, as `export` writes it, or all of them as a solid.",
+        kind="number",
+        shown="N",
+    )
+    dowel: Option[float | str | None, float | None] = length(
+        None,
+        "Cut two holes of this diameter into every sheet of each tile, in the same places, for dowels.",
+        least=SHEET_MIN,
+        shown="DIAMETER",
+    )
+    kerf: Length = _CUT["kerf"]
+    preset: Option[Any, str] = _CUT["preset"]
+    feed: Option[Rates, str | None] = _CUT["feed"]
+    power: Option[Rates, str | None] = _CUT["power"]
+    margin: Length = _CUT["margin"]
+    rotate: Option[float, float] = _CUT["rotate"]
+    accuracy: Length = _CUT["accuracy"]
+
+    def __post_init__(self) -> None:
+        if self.dowel is not None and self.kerf >= self.dowel:
+            raise JobError(
+                f"a `kerf` of {self.kerf:g} mm leaves nothing to cut of holes with `dowel='{self.dowel:g}mm'`",
+                remedy="Use a thicker `dowel`.",
+            )
+
+    def __repr__(self) -> str:
+        return f"StackJob({', '.join(f'{name}={value!r}' for name, value in self._said())})"
+
+    @classmethod
+    def options(cls) -> dict[str, Option[Any, Any]]:
+        """The options by their names, in the order of the fields."""
+        return {field.name: vars(cls)[field.name] for field in fields(cls)}
+
+    @property
+    def cut(self) -> Job:
+        """The job of each sheet: one of each tile, with the sheet's number."""
+        own = {name: value for name, value in self._said() if name not in ("sheets", "dowel")}
+        return Job(**own, labels="number", art="none")
+
+    def recipe(self) -> dict[str, Any]:
+        """What differs from the defaults, in the types of JSON."""
+        return dict(self._said())
+
+    def _said(self) -> Iterator[tuple[str, Any]]:
+        """The options that differ from their defaults."""
+        for name, option in self.options().items():
+            value = getattr(self, name)
+            if value != option.default:
+                yield name, value
+
+
+StackJob.__doc__ = f"{StackJob.__doc__}\n" + "\n".join(
+    f"    - `{name}`: {option.help}" for name, option in StackJob.options().items()
+)
