@@ -102,6 +102,22 @@ def test_the_kerf_is_taken_from_holes() -> None:
     assert cut.drawing.width - plain.drawing.width == pytest.approx(KERF, abs=0.11)
 
 
+def test_holes_go_with_their_tiles() -> None:
+    """Tiles of two sites, turned, and apart for the beam: each has its holes where it would have them in its place."""
+    moth = '{ name = "moth", strokes = [{ segment = [[20, 25], [26, 23]] }] }'
+    design = Design.loads(TWIST.replace("}] }]", f"}}] }}, {moth}]").replace("90", "8"))
+    made = stack(design, StackJob(sheets=2, dowel=1.5, rotate=33, kerf=0.02))
+    turn = complex(np.exp(1j * np.radians(33)))
+    for sheet, product in zip(made.sheets, made.products(), strict=True):
+        page = _layer(product, "cut")
+        boxes = np.array([page.take(np.array([k])).bounds for k in range(2)]).reshape(2, 2, 2)
+        for own, outline in zip(made.report()["holes"].values(), sheet.outlines, strict=True):
+            box = np.reshape(outline.moved(turn, 0j).bounds, (2, 2))
+            (k,) = np.flatnonzero(np.abs(np.ptp(boxes - box, axis=1)).max(axis=1) < 0.1)
+            placed = np.array([complex(x, y) for x, y in own]) * turn + complex(*(boxes[k] - box)[0])
+            assert np.abs(_centres(product)[:, None] - placed).min(axis=0).max() < 0.1
+
+
 def test_sheets_are_numbered(products: list[Product]) -> None:
     """From the lowest up, each by the strokes of its number."""
     for k, product in enumerate(products):
