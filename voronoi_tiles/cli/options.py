@@ -171,7 +171,7 @@ def with_solid_job(command: Command) -> Command:
     def run(**arguments: Any) -> Any:
         given = {name: value for name in options if (value := arguments.pop(name)) is not None}
         kind, known = (StackJob, stacks) if "sheets" in given else (SolidJob, solids)
-        for name in given.keys() - known.keys():
+        for name in (name for name in given if name not in known):
             if kind is StackJob:
                 raise JobError(f"`{name}` is for prisms, and `sheets` for stacks", remedy="Leave one of them out.")
             raise JobError(f"`{name}` is for sheets that are cut, and there are none", remedy="Add `sheets=7`.")

@@ -80,13 +80,13 @@ def _filled(rings: Paths, accuracy: float) -> Any:
 
 def _farthest(common: Any, diameter: float) -> Complexes | None:
     """The centres of two holes that are farthest from each other; None where two have no room."""
+    import shapely
+
     # The circles that a tile is drawn in by are polygons within the true ones.
     inset = (diameter / 2 + wall_of(diameter)) / cos(pi / (4 * _QUARTER))
     room = common.buffer(-inset, quad_segs=_QUARTER)
     if room.is_empty:
         return None
-    import shapely
-
     x, y = shapely.get_coordinates(room.convex_hull).T
     corners = x + 1j * y
     apart = np.abs(corners[:, None] - corners)
