@@ -166,7 +166,7 @@ class Stack:
         density = number("density", density, "Give grams per cubic centimetre, such as 0.7.", least=1e-6)
         names = [site.name for site in self.design.noded]
         bored = 0.0 if self.job.dowel is None else 2 * pi * self.job.dowel**2 / 4
-        rows = [
+        rows: list[dict[str, Any]] = [
             {
                 "sheet": sheet.number,
                 "middle": sheet.middle,
