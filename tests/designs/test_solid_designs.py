@@ -151,6 +151,24 @@ def test_heights_must_ascend() -> None:
         vt.Design.loads(FLAT + below)
 
 
+@pytest.mark.parametrize(
+    ("below", "message"),
+    [
+        ("height = 1e-90", r"solid.height: 1e-90 mm is no height from 0.01 to 100,000 mm"),
+        ("height = 1e12", r"solid.height: 1e\+12 mm is no height"),
+        ("height = 20\nscale = 1e9", r"solid.scale: a site becomes more than 100 times larger than the cell"),
+        ("height = 20\nturn = 1e9", r"solid: a site moves by more than 100 times the cell"),
+        ("height = 20\nshift = [1e9, 0]", r"solid: a site moves by more than 100 times the cell"),
+        ("height = 20\nturn = 90\nabout = [1e12, 1e12]", r"solid: a site moves by more than 100 times the cell"),
+    ],
+)
+def test_what_no_solid_can_be_is_refused_at_once(below: str, message: str) -> None:
+    """Each limit is met before anything is computed; with less of the same the design is read."""
+    with pytest.raises(vt.DesignError, match=message):
+        vt.Design.loads(f"{FLAT}\n[solid]\n{below}\n")
+    assert vt.Design.loads(f"{FLAT}\n[solid]\nheight = 20\nturn = 3600\nshift = [200, 0]\nscale = 0.5\n").standing
+
+
 def test_errors_of_keys_name_arguments_in_python() -> None:
     """A design made in Python is told of its own argument."""
     with pytest.raises(vt.DesignError, match=r"solid.keys\[0\].z: the height 30"):

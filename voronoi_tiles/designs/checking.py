@@ -24,7 +24,7 @@ from voronoi_tiles.designs.drawn_files import DrawnFiles
 from voronoi_tiles.designs.keys import PLACEMENT
 from voronoi_tiles.designs.load import STARTER
 from voronoi_tiles.designs.site import NodedSite, build_site
-from voronoi_tiles.designs.solid_checking import CheckedSolid, DrawnStroke, SiteDrawing, read_solid
+from voronoi_tiles.designs.solid_checking import CheckedSolid, DrawnStroke, SiteDrawing, read_solid, refuse_far
 from voronoi_tiles.designs.strokes import ARC_SHARE, polylines
 from voronoi_tiles.groups.wallpaper import GROUPS, Lattice, WallpaperGroup
 
@@ -73,6 +73,8 @@ def checked(value: object, folder: str) -> CheckedDesign:
     reading = _Reading(FLATTENING_MM / UNIT_MM[units], lattice, Placement(scale), DrawnFiles(folder, UNIT_MM[units]))
     sites = reading.sites(listed)
     standing, keys = read_solid(table, scale, [site.drawing for site in sites])
+    if standing is not None:
+        refuse_far(standing, math.sqrt(lattice.det), UNIT_MM[units])
     drawn = _text(table)
     source = _text({**table, "site": [site.table for site in sites], **keys}) if reading.files.names else drawn
     return CheckedDesign(

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import pairwise
+from math import radians
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -10,6 +12,7 @@ import numpy as np
 from voronoi_tiles.base import values
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.base.tolerance import SITE_EXTENT_MAX
 from voronoi_tiles.designs import schema
 
 LAYERS: Final = 41
@@ -17,6 +20,13 @@ LAYERS: Final = 41
 
 LAYERS_MAX: Final = 10_000
 """Most of them; a count. A millimetre of a print has 20 at most."""
+
+TRAVEL_MAX: Final = 100.0
+"""The longest way of a point from the bottom to the top; relative to the square root of the cell's area. Each part of
+it takes levels of its own, in which copies are shown to keep apart."""
+
+HEIGHT_MM: Final = (0.01, 1e5)
+"""The least height and the greatest; millimetres. STL files hold no others beside a tile's width."""
 
 DrawnStroke = tuple[Complexes, bool]
 """A stroke where it is placed: a polyline (n,) and False, or cubic Bezier pieces (k, 4) and True."""
@@ -96,6 +106,40 @@ def read_solid(
         sites=tuple(DrawnInHeight(tuple(keys), site.accuracy) for keys, site in zip(found, sites, strict=True)),
     )
     return checked, {"key": written} if written else {}
+
+
+def refuse_far(solid: CheckedSolid, size: float, unit: float) -> None:
+    """Refuse a solid that is too low or too high, grows too large, or moves too far.
+
+    `size` is the square root of the cell's area in the design's units, one of which has `unit` millimetres. Raises
+    DesignError.
+    """
+    low, high = HEIGHT_MM
+    if not low <= solid.height * unit <= high:
+        raise DesignError(
+            f"{solid.height * unit:.4g} mm is no height from {low:g} to {high:,.0f} mm",
+            key="solid.height",
+            remedy="Give another height, in the design's units and times its scale.",
+        )
+    grown = max(1.0, solid.scale)
+    for site in solid.sites:
+        drawn = [np.concatenate([points.ravel() for points, _ in key.strokes]) for key in site.keys]
+        extent = max(max(np.ptp(points.real), np.ptp(points.imag)) for points in drawn)
+        if not grown * extent <= SITE_EXTENT_MAX * size:
+            raise DesignError(
+                f"a site becomes more than {SITE_EXTENT_MAX:,.0f} times larger than the cell",
+                key="solid.scale" if extent <= SITE_EXTENT_MAX * size else "key",
+                remedy="Make the scale or the strokes smaller, or the cell larger.",
+            )
+        away = max(float(np.abs(points - solid.about).max()) for points in drawn)
+        moved = grown * sum(float(np.abs(below.mean() - above.mean())) for below, above in pairwise(drawn))
+        travel = moved + abs(solid.shift) + away * (abs(solid.scale - 1.0) + grown * radians(abs(solid.turn)))
+        if not travel <= TRAVEL_MAX * size:
+            raise DesignError(
+                f"a site moves by more than {TRAVEL_MAX:,.0f} times the cell on its way up",
+                key="solid",
+                remedy="Make turn, shift or scale smaller, or put about, the point that strokes turn about, near them.",
+            )
 
 
 def _read_motion(value: object) -> tuple[float, int, dict[str, Any]]:
