@@ -10,10 +10,14 @@ from typing import Final
 from running import Command, run_all
 
 
-def _picture(name: str, design: str, *options: str) -> Command:
+def _picture(name: str, design: str, *options: str, size: int = 330) -> Command:
     """The command that draws one."""
-    return Command(("voronoi-tiles", "solid"), design, f"docs/pictures/solid-{name}.png", (*options, "--size", "330"))
+    words = (*options, "--size", str(size))
+    return Command(("voronoi-tiles", "solid"), design, f"docs/pictures/solid-{name}.png", words)
 
+
+LOFTS: Final = {"scutoid": "pgg-scutoid", "noodle": "p1-noodle", "abeille": "p4-abeille", "twist": "p2-twist"}
+"""Those of designs that stand, and the examples that they are of."""
 
 PICTURES: Final = (
     _picture("puzzle", "examples/p3-puzzle.toml", "--height", "10mm", "--chamfer", "0.6mm"),
@@ -24,6 +28,7 @@ PICTURES: Final = (
         *("--gap", "1.5mm", "--colours", "site"),
     ),
     _picture("stack", "examples/solid/p3-steps.toml", "--sheets", "9"),
+    *(_picture(name, f"examples/solid/{design}.toml", size=280) for name, design in LOFTS.items()),
 )
 """In the order of the page."""
 
