@@ -27,8 +27,8 @@ PICTURES: Final = (
         *("--sheet", "160x160mm", "--height", "6mm", "--clearance", "0.3mm", "--chamfer", "0.5mm"),
         *("--gap", "1.5mm", "--colours", "site"),
     ),
+    *(_picture(name, f"examples/solid/{design}.toml", size=272) for name, design in LOFTS.items()),
     _picture("stack", "examples/solid/p3-steps.toml", "--sheets", "9"),
-    *(_picture(name, f"examples/solid/{design}.toml", size=280) for name, design in LOFTS.items()),
 )
 """In the order of the page."""
 

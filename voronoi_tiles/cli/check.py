@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import click
@@ -39,7 +40,8 @@ def check(
 ) -> None:
     """Check the exact outlines of a design against an image that is rendered by another method.
 
-    Every figure is printed with its limit and what that follows from. The exit code is 1 where they differ.
+    Every figure is printed with its limit and what that follows from. The exit code is 1 where they differ. Of a design
+    with a [solid], the drawing at the height 0 is checked, and slices of the solid at heights between its layers.
     """
     from voronoi_tiles.cli.tables import check_text
     from voronoi_tiles.tiling import require
@@ -51,6 +53,12 @@ def check(
         if output is not None:
             tiling.difference(report).save(output)
             say_written(output)
+        if tiling.design.standing is not None:
+            from voronoi_tiles.solid.slice_check import check_slices
+            from voronoi_tiles.solid.solid_proof import proved_loft
+
+            slices = check_slices(proved_loft(tiling.design)[0], renderer=renderer, device=device, method=method)
+            report = replace(report, figures=(*report.figures, *slices))
     print_figures(tiling.evidence(report), check_text, as_json=as_json)
     with reporting(design):
         require(report)

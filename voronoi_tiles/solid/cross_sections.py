@@ -1,12 +1,19 @@
-"""Sections of solids by level planes: rings of points, with the material on their left."""
+"""Sections of solids by level planes: rings of points, with the material on their left, and the region they bound."""
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
+from voronoi_tiles.base.arrays import plane
 from voronoi_tiles.base.errors import ProofError
 from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.solid.face_triangles import polygons
 from voronoi_tiles.solid.mesh import TriangleMesh
+
+if TYPE_CHECKING:
+    import shapely
 
 
 def section(mesh: TriangleMesh, z: float) -> Paths:
@@ -46,3 +53,13 @@ def section(mesh: TriangleMesh, z: float) -> Paths:
             raise ProofError(f"a solid is open at a height of {z:.6g} mm")
         rings.append(point[ring])
     return Paths.polylines([ring.tolist() for ring in rings], closed=True)
+
+
+def filled_section(mesh: TriangleMesh, z: float) -> shapely.MultiPolygon:
+    """What `section` cuts out as a region, in millimetres; raises as that does."""
+    import shapely
+
+    rings = section(mesh, z)
+    points = plane(rings.start)
+    parts = polygons(rings.start, rings.offsets)
+    return shapely.MultiPolygon([(points[loops[0]], [points[hole] for hole in loops[1:]]) for loops in parts])

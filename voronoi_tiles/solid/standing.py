@@ -14,8 +14,7 @@ from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.exact import design_recipe
 from voronoi_tiles.fabrication.job import JobError
 from voronoi_tiles.groups.periodic_colouring import palette
-from voronoi_tiles.solid.cross_sections import section
-from voronoi_tiles.solid.face_triangles import polygons
+from voronoi_tiles.solid.cross_sections import filled_section
 from voronoi_tiles.solid.loft import ACCURACY_MM, Loft
 from voronoi_tiles.solid.mesh import TriangleMesh
 from voronoi_tiles.solid.pieces import SolidPiece
@@ -104,7 +103,7 @@ def _pulled(meshes: Sequence[TriangleMesh]) -> tuple[list[TriangleMesh], list[in
 
     low, high = float(meshes[0].vertices[:, 2].min()), float(meshes[0].vertices[:, 2].max())
     levels = [low + share * (high - low) for share in _SHARES]
-    shapes = np.array([[_filled(mesh, z) for z in levels] for mesh in meshes], object)
+    shapes = np.array([[filled_section(mesh, z) for z in levels] for mesh in meshes], object)
     centres = np.array([(mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0))[:2] / 2 for mesh in meshes])
     size = float(np.ptp(meshes[0].vertices[:, :2], axis=0).max())
     one, other = np.triu_indices(len(meshes), 1)
@@ -131,13 +130,3 @@ def _moved(shapes: Any, by: Floats) -> list[Any]:
     import shapely
 
     return [shapely.transform(shape, lambda z: z + by) for shape in shapes]
-
-
-def _filled(mesh: TriangleMesh, z: float) -> Any:
-    """The section of a mesh as a shape."""
-    import shapely
-
-    rings = section(mesh, z)
-    plane = np.column_stack((rings.start.real, rings.start.imag))
-    parts = polygons(rings.start, rings.offsets)
-    return shapely.MultiPolygon([(plane[loops[0]], [plane[hole] for hole in loops[1:]]) for loops in parts])

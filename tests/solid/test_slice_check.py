@@ -1,0 +1,74 @@
+"""The cross-check of lofts: slices between levels against images of the strokes there, and that damage is seen."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+from helpers.outlines import CommandLine
+
+from voronoi_tiles import Design
+from voronoi_tiles.solid.loft import Loft, lofted
+from voronoi_tiles.solid.mesh import TriangleMesh
+from voronoi_tiles.solid.slice_check import between_levels, check_slices
+
+BIRD = """
+schema = 1
+group = "p4"
+cell = { a = 60 }
+site = [{ name = "bird", strokes = [{ segment = [[8, 10], [22, 17]] }] }]
+solid = { height = 20, layers = 31, turn = 40, about = [15, 14] }
+"""
+
+
+@pytest.fixture(scope="module")
+def loft() -> Loft:
+    """A segment that turns."""
+    return lofted(Design.loads(BIRD))
+
+
+def damaged(loft: Loft, vertices: np.ndarray) -> Loft:
+    """The loft with other vertices of its mesh."""
+    copy = dataclasses.replace(loft)
+    copy.__dict__["meshes"] = (TriangleMesh(vertices, loft.meshes[0].triangles),)
+    return copy
+
+
+def test_slices_are_the_tiles_of_the_strokes_there(loft: Loft) -> None:
+    """At heights that are no level's, within the accuracy of chords; the areas are right to rounding."""
+    heights = between_levels(loft, 5)
+    assert len(heights) == 5
+    assert np.abs(heights[:, None] - loft.meshes[0].vertices[:, 2]).min() > 0.1
+    labels, areas = check_slices(loft, renderer="cpu", slices=5, samples=128)
+    assert labels.passed
+    assert labels.checked > 5 * 100 * 100
+    assert 0 < (labels.worst or 0.0) <= 0.05
+    assert areas.passed
+
+
+def test_damage_is_seen(loft: Loft) -> None:
+    """A layer that is pushed aside, and a bulge that stays a wall of nobody: too little room, or too much."""
+    vertices = loft.meshes[0].vertices.copy()
+    inner = (vertices[:, 2] > 8) & (vertices[:, 2] < 12)
+    aside = vertices + np.where(inner, 0.4, 0.0)[:, None] * np.array([1.0, 0.0, 0.0])
+    labels, _ = check_slices(damaged(loft, aside), renderer="cpu", slices=5, samples=128)
+    assert not labels.passed
+    assert 0.2 < (labels.worst or 0.0) < 0.5
+    middle = vertices[:, :2].mean(axis=0)
+    grown = vertices.copy()
+    grown[inner, :2] = middle + 1.01 * (grown[inner, :2] - middle)
+    _, areas = check_slices(damaged(loft, grown), renderer="cpu", slices=5, samples=128)
+    assert not areas.passed
+
+
+def test_the_command_checks_slices(voronoi_tiles: CommandLine, tmp_path: Path) -> None:
+    """With too few layers the slices fail, and the exit code is 1; with enough they pass."""
+    for layers, code in ((2, 1), (31, 0)):
+        path = tmp_path / f"{layers}.toml"
+        path.write_text(BIRD.replace("layers = 31", f"layers = {layers}"), encoding="utf-8")
+        result = voronoi_tiles("check", path, "--size", 64, "--renderer", "cpu")
+        assert result.returncode == code, result.stderr
+        assert "slice areas" in result.stdout
+        assert ("differ: slices." in result.stdout) == (code == 1)
