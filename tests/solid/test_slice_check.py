@@ -7,9 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 from helpers.outlines import CommandLine
 
 from voronoi_tiles import Design
+from voronoi_tiles.solid.cross_sections import filled_section
 from voronoi_tiles.solid.loft import Loft, lofted
 from voronoi_tiles.solid.mesh import TriangleMesh
 from voronoi_tiles.solid.slice_check import between_levels, check_slices
@@ -72,3 +74,16 @@ def test_the_command_checks_slices(voronoi_tiles: CommandLine, tmp_path: Path) -
         assert result.returncode == code, result.stderr
         assert "slice areas" in result.stdout
         assert ("differ: slices." in result.stdout) == (code == 1)
+
+
+def test_chords_of_layers_are_within_their_accuracy() -> None:
+    """Also beside corners of edges, to which vertices are moved: the section at a layer is the tile of the strokes."""
+    curve = "[{ catmull_rom = [[2, 10], [7, 6], [13, 14], [18, 10]] }]"
+    flat = BIRD.partition("solid =")[0].replace('"p4"', '"p2"').replace("a = 60", "a = 40, b = 40, angle = 90")
+    flat = flat.replace("[{ segment = [[8, 10], [22, 17]] }]", curve)
+    made = lofted(Design.loads(flat + "solid = { height = 2, layers = 5, turn = 56, about = [10, 10] }"))
+    for z in (0.5, 1.0):
+        points = [[point.real, point.imag] for point in made.motion.points(z)[0].tolist()]
+        tile = Design.loads(flat.replace(curve, f"[{{ polyline = {points} }}]")).tessellate()[0]
+        off = shapely.hausdorff_distance(tile.to_shapely(accuracy=1e-4), filled_section(made.meshes[0], z + 1e-9), 0.01)
+        assert off <= 0.051

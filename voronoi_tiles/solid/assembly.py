@@ -9,18 +9,21 @@ from typing import NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Ints, offsets_of
+from voronoi_tiles.base.arrays import Bools, Floats, Ints, offsets_of
 from voronoi_tiles.base.components import components
 from voronoi_tiles.solid.correspondence import Correspondence, corresponding
 from voronoi_tiles.solid.events import Event, LoftError, matched
 from voronoi_tiles.solid.layers import ExactLayer
-from voronoi_tiles.solid.levels import VertexChains, carried, sampled, weighed
+from voronoi_tiles.solid.levels import VertexChains, carried, sagging, sampled, weighed
 from voronoi_tiles.solid.loft_caps import cap, outline_of
 from voronoi_tiles.solid.vertices import VertexTable, Vertices, joined_points
 from voronoi_tiles.solid.walls import Walls, walls
 from voronoi_tiles.vector.complex.representatives import Points
 
 _OTHERS = "Write another number of `layers`."
+
+_FINER = 8
+"""How often edges that are too far from their chords get more of them, at most; a count."""
 
 
 class _View(NamedTuple):
@@ -146,10 +149,18 @@ def _chains(
         links.append(np.stack((first[k] + one[both], first[k + 1] + two[both])))
     one, two = np.concatenate(links, axis=1)
     family = components(int(first[-1]), one, two)
-    most = np.ones(int(first[-1]))
-    np.maximum.at(most, family, np.concatenate(needed))
-    steps = np.ceil(most).astype(np.intp)[family]
-    steps += steps % 2  # halves are images of each other where a motion turns an edge round
+    steps = _steps(family, np.concatenate(needed))
+    for _ in range(_FINER):
+        # A vertex that is moved to where arcs meet leaves longer chords beside it.
+        sag = np.concatenate(
+            [
+                sagging(level.core, steps[a:b], weight)
+                for level, weight, (a, b) in zip(levels, weights, pairwise(first.tolist()), strict=True)
+            ]
+        )
+        if sag.max(initial=0.0) <= accuracy:
+            break
+        steps = _steps(family, steps * np.clip(np.sqrt(sag / accuracy), 1.0, 2.0))
     found = []
     for k, level in enumerate(levels):
         own = sampled(table, level.core, level.points, steps[first[k] : first[k + 1]], weights[k])
@@ -159,6 +170,14 @@ def _chains(
         )
         found.append((lower, upper))
     return found
+
+
+def _steps(family: Ints, needed: Floats) -> Ints:
+    """For each edge the steps that the neediest of its family takes, an even number."""
+    most = np.ones(len(needed))
+    np.maximum.at(most, family, needed)
+    steps = np.ceil(most).astype(np.intp)[family]
+    return steps + steps % 2  # halves are images of each other where a motion turns an edge round
 
 
 def _core_edges(core: ExactLayer, view: _View) -> Ints:

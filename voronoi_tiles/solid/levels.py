@@ -26,6 +26,9 @@ _KINK: Final = 0.05
 _LONGEST: Final = 1 / 16
 """How long a step is at most, relative to the cell's size."""
 
+_SEEN: Final = np.linspace(0.0, 1.0, 9)
+"""At these parameters of arcs it is seen how far they are from chords."""
+
 
 @dataclass(frozen=True, eq=False)
 class VertexChains:
@@ -93,14 +96,17 @@ def _symmetric(table: VertexTable, positions: Complexes, within: Points, z: floa
 
 
 def _along(paths: Paths, lengths: Floats, inner: Ints, steps: Ints) -> Complexes:
-    """The first `inner[k]` points within path k when it is cut into `steps[k]` parts, whose arcs have these lengths.
+    """The first `inner[k]` points within path k when it is cut into `steps[k]` parts, whose arcs have these lengths."""
+    return _on_arcs(paths, lengths, _cuts(paths, lengths, inner, steps), np.repeat(np.arange(len(inner)), inner))
 
-    Arcs are cut into equal parts of their parameter, and points lie on them to the last bits; where two meet at an
-    angle, the nearest point is put there.
+
+def _cuts(paths: Paths, lengths: Floats, inner: Ints, steps: Ints) -> Floats:
+    """Where these points are along all paths: in equal steps, but for that nearest to where two arcs meet at an angle.
+
+    It is put there.
     """
     ends = np.cumsum(lengths)
-    begins = ends - lengths
-    path_begin, path_end = begins[paths.offsets[:-1]], ends[paths.offsets[1:] - 1]
+    path_begin, path_end = (ends - lengths)[paths.offsets[:-1]], ends[paths.offsets[1:] - 1]
     owner = np.repeat(np.arange(len(inner)), inner)
     number = ranges(np.ones(len(inner), np.intp), inner)
     share = number / np.maximum(steps, 1)[owner]
@@ -113,14 +119,48 @@ def _along(paths: Paths, lengths: Floats, inner: Ints, steps: Ints) -> Complexes
         fits = (nearest >= 1) & (nearest <= last[kink])
         place = (np.cumsum(inner) - inner)[kink] + nearest - 1
         at[place[fits]] = where[fits]
+    return at
+
+
+def _on_arcs(paths: Paths, lengths: Floats, at: Floats, owner: Ints) -> Complexes:
+    """The points of paths, to the last bits, at places along all of them; each lies on path `owner`.
+
+    Arcs are cut into equal parts of their parameter.
+    """
+    ends = np.cumsum(lengths)
     arc = np.minimum(np.searchsorted(ends, at, side="left"), paths.offsets[1:][owner] - 1)
     arc = np.maximum(arc, paths.offsets[:-1][owner])
-    t = np.clip((at - begins[arc]) / np.where(lengths[arc] > 0.0, lengths[arc], 1.0), 0.0, 1.0)
+    t = np.clip((at - (ends - lengths)[arc]) / np.where(lengths[arc] > 0.0, lengths[arc], 1.0), 0.0, 1.0)
     s = 1.0 - t
     start, end, bent = paths.start[arc], paths.end[arc], paths.kind[arc] > 0
     line = start * s + end * t
     curve = (start * (s * s) + end * (t * t)) + paths.control[arc, 0] * (2.0 * (s * t))
     return np.where(bent, curve, line)
+
+
+def sagging(layer: ExactLayer, steps: Ints, weight: Floats) -> Floats:
+    """How far the edges of a layer are from the chords of their vertices, as `sampled` has them; float64 (edges,)."""
+    paths = layer.quotient.paths()
+    edges, inner = np.arange(len(steps)), steps - 1
+    ends = np.cumsum(weight)
+    bounds = np.stack(((ends - weight)[paths.offsets[:-1]], ends[paths.offsets[1:] - 1]), axis=1)
+    owner = np.concatenate((edges, np.repeat(edges, inner), edges))
+    cuts = np.concatenate((bounds[:, 0], _cuts(paths, weight, inner, steps), bounds[:, 1]))
+    order = np.lexsort((cuts, owner))
+    cuts, owner = cuts[order], owner[order]
+    corners = _on_arcs(paths, weight, cuts, owner)
+    seen = (ends - weight)[:, None] + weight[:, None] * _SEEN
+    edge = np.repeat(paths.owner, len(_SEEN))
+    points = _on_arcs(paths, weight, seen.ravel(), edge)
+    first = offsets_of(steps + 1)
+    after = np.clip(np.searchsorted(cuts, seen.ravel(), side="left"), first[edge] + 1, first[edge + 1] - 1)
+    start, along = corners[after - 1], corners[after] - corners[after - 1]
+    square = np.maximum(along.real * along.real + along.imag * along.imag, 1e-300)
+    away = points - start
+    share = np.clip((away.real * along.real + away.imag * along.imag) / square, 0.0, 1.0)
+    found = np.zeros(len(steps))
+    np.maximum.at(found, edge, np.abs(away - share * along))
+    return found
 
 
 def _kinks(paths: Paths, ends: Floats) -> tuple[Ints, Floats]:
