@@ -182,7 +182,9 @@ def _read_key(
         if not 0.0 < z <= height:
             raise DesignError(
                 f"the height {z:g} is not above 0 and up to {height:g}, the solid's",
-                remedy="The drawing at 0 is the design's own.",
+                remedy="The drawing at 0 is the design's own."
+                if z <= 0.0
+                else "Write a lower one, or a greater height of the solid.",
             )
         if z * scale <= keys[-1].z:
             raise DesignError(
