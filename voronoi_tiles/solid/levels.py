@@ -101,10 +101,7 @@ def _along(paths: Paths, lengths: Floats, inner: Ints, steps: Ints) -> Complexes
 
 
 def _cuts(paths: Paths, lengths: Floats, inner: Ints, steps: Ints) -> Floats:
-    """Where these points are along all paths: in equal steps, but for that nearest to where two arcs meet at an angle.
-
-    It is put there.
-    """
+    """Where these points are along all paths: in equal steps, but at an angle of arcs the nearest is put there."""
     ends = np.cumsum(lengths)
     path_begin, path_end = (ends - lengths)[paths.offsets[:-1]], ends[paths.offsets[1:] - 1]
     owner = np.repeat(np.arange(len(inner)), inner)
