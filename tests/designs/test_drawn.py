@@ -71,7 +71,13 @@ def made(table: Mapping[str, Any]) -> vt.Design:
             art = vt.Art(**art)
         strokes = [drawn(stroke) for stroke in site["strokes"]]
         sites.append(vt.Site(strokes, name=site.get("name"), tolerance=site.get("tolerance"), art=art))
-    return vt.Design(table["group"], table["cell"], sites, units=table.get("units", "mm"))
+    solid = None
+    if "solid" in table:
+        keys = [
+            vt.Key(key["z"], list(map(drawn, key["strokes"])), site=key.get("site")) for key in table.get("key", ())
+        ]
+        solid = vt.Solid(**table["solid"], keys=keys)
+    return vt.Design(table["group"], table["cell"], sites, units=table.get("units", "mm"), solid=solid)
 
 
 def same_bits(one: vt.Design, other: vt.Design) -> bool:
