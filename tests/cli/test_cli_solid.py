@@ -24,7 +24,8 @@ def here(tmp_path: Path) -> Path:
 @pytest.mark.parametrize("name", ["a.3mf", "a.stl", "a.png"])
 def test_a_file_is_written_and_said(name: str, here: Path, voronoi_tiles: CommandLine) -> None:
     """What there is in it, and what was proved; the same bytes again, and nothing is said, with --quiet."""
-    call = ("solid", "bird.toml", "--height", "4mm", "--clearance", "0.2mm", "--size", "90")
+    call = ("solid", "bird.toml", "--height", "4mm", "--clearance", "0.2mm")
+    call += ("--size", "90") if name == "a.png" else ()
     done = voronoi_tiles(*call, "-o", name, cwd=here)
     assert (done.returncode, done.stdout) == (0, "")
     *notes, written, proved = done.stderr.splitlines()
@@ -32,7 +33,7 @@ def test_a_file_is_written_and_said(name: str, here: Path, voronoi_tiles: Comman
     assert written.startswith(f"wrote {name}: ")
     assert "x 4 mm" in written
     assert proved.startswith("proved: closed; volumes within ")
-    assert proved.endswith("mm apart")
+    assert proved.endswith("mm apart, before they are pulled apart" if name == "a.png" else "mm apart")
     again = voronoi_tiles(*call, "-o", f"b{Path(name).suffix}", "--quiet", cwd=here)
     assert (again.returncode, again.stderr) == (0, "")
     assert (here / f"b{Path(name).suffix}").read_bytes() == (here / name).read_bytes()
@@ -56,6 +57,8 @@ def test_the_recipe_says_what_was_asked(here: Path, voronoi_tiles: CommandLine) 
         (("-o", "a.3mf", "--clearance", "80mm"), "Error: bird.toml: --clearance 80mm is too much: a piece vanishes at"),
         (("-o", "a.3mf", "--chamfer", "2mm"), "Error: two rims with --chamfer 2mm leave nothing of a --height of 3 mm"),
         (("-o", "a.3mf", "--sheet", "5x5mm"), "Error: bird.toml: no whole tile fits on the sheet"),
+        (("-o", "a.3mf", "--size", "90"), "Error: --size is for a picture: write a .png, or leave it out."),
+        (("-o", "a.3mf", "--colours", "layers"), "Error: --colours 'layers' is unknown. Use a number up to"),
         (("-o", "none/a.3mf"), "Error: bird.toml: cannot write none/a.3mf: "),
         (("-o", "-"), "Error: On standard output the format is not clear: add --format 3mf, stl or png."),
         (("-o", "bird.toml", "--format", "stl"), "Error: bird.toml is no name of such a file"),
@@ -84,6 +87,11 @@ def test_a_report_is_printed(here: Path, voronoi_tiles: CommandLine) -> None:
     assert figures["volume"] == pytest.approx(9000.0)
     assert figures["mass"] == pytest.approx(18.0)
     assert figures["proof"]["closed"] is True
+    # What a picture shows beside it is not counted.
+    pictured = voronoi_tiles("solid", "bird.toml", "-o", "a.png", "--size", "60", *call[4:], "--json", cwd=here)
+    counted = json.loads(pictured.stdout)
+    assert [row["count"] for row in counted["solids"]] == [1]
+    assert counted["volume"] == pytest.approx(9000.0)
 
 
 @pytest.mark.parametrize(

@@ -16,6 +16,7 @@ from helpers.programs import PIECES
 
 from voronoi_tiles import GROUPS, Design, JobError, ProofError, SolidJob, TriangleMesh, extrude
 from voronoi_tiles.solid import extrusion
+from voronoi_tiles.solid.extrusion import surrounded
 from voronoi_tiles.solid.extrusion_proof import prove_prisms
 from voronoi_tiles.solid.prism import Face, Prism
 from voronoi_tiles.solid.slab import Slab
@@ -197,6 +198,7 @@ def test_a_recipe_makes_the_same_solid() -> None:
         ({"clearance": 1e-3}, "hardly more than the `accuracy`"),
         ({"sheet": "10x10mm", "margin": 5}, "`margin`"),
         ({"colours": "rainbow"}, "`colours` 'rainbow' is unknown"),
+        ({"colours": "files"}, "`colours` 'files' is unknown"),
     ],
 )
 def test_a_job_that_cannot_be_is_refused(options: dict[str, Any], message: str) -> None:
@@ -270,3 +272,39 @@ def test_the_proof_sees_a_slab_that_is_not_filled() -> None:
     slab = Slab.of(tiles.design, tiles.tessellation, SolidJob())
     with pytest.raises(ProofError, match="volume of the solids"):
         prove_prisms(slab.prisms(), slab.lines, SolidJob(height=3.000000003))
+
+
+@pytest.mark.parametrize(
+    ("fault", "message"),
+    [
+        (lambda mesh: mesh._replace(vertices=mesh.vertices * [1, 1, 2]), "from 0 to 6 mm, and not from 0 to 3 mm"),
+        (lambda mesh: mesh._replace(vertices=mesh.vertices * [1 + 1e-9, 1, 1]), "cubic millimetres, and its tile's"),
+        (lambda mesh: mesh._replace(vertices=mesh.vertices * [-1, 1, 1], triangles=mesh.triangles[:, ::-1]), "tile"),
+        (lambda mesh: mesh._replace(triangles=mesh.triangles[1:]), "not closed"),
+    ],
+    ids=["twice as high", "a little too wide", "mirrored", "open"],
+)
+def test_what_is_written_is_proved(
+    fault: Callable[[TriangleMesh], TriangleMesh], message: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Where the tiles of the period are right and one of the solids on the sheet is not."""
+    made = Slab.meshes
+
+    def wrong(self: Slab, prisms: Any) -> Any:
+        *others, last = made(self, prisms)
+        return iter([*others, fault(last)])
+
+    monkeypatch.setattr(Slab, "meshes", wrong)
+    with pytest.raises(ProofError, match=message):
+        extrude(tiling("p4m"), SolidJob(sheet="150x120mm"))
+
+
+def test_what_is_pulled_apart_is_not_said_to_touch() -> None:
+    """Its neighbours share their points, or are a clearance apart, before that alone."""
+    for clearance in (0.0, 0.3):
+        together = extrude(tiling("p2"), SolidJob(sheet="150x120mm", clearance=clearance))
+        pulled = extrude(tiling("p2"), SolidJob(sheet="150x120mm", clearance=clearance, gap=5.0))
+        said = ("neighbours" in together.proved, "pulled" in together.proved, "before they are pulled" in pulled.proved)
+        assert said == (True, False, True)
+        assert (together.proof["pulled_apart"], pulled.proof["pulled_apart"]) == (False, True)
+        assert surrounded(tiling("p2"), SolidJob(clearance=clearance)).proved.endswith("before they are pulled apart")

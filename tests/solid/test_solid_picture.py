@@ -101,6 +101,13 @@ def test_a_picture_is_a_file(tmp_path: Path) -> None:
     assert int.from_bytes(data[16:20], "big") == 150
 
 
+def test_a_size_is_for_a_picture(tmp_path: Path) -> None:
+    """Elsewhere it is not passed over."""
+    with pytest.raises(ArgumentError, match="`size` 77 is for a picture"):
+        extrude(tiling("p4m")).save(tmp_path / "a.stl", size=77)
+    assert not list(tmp_path.iterdir())
+
+
 @pytest.mark.parametrize("size", [0, 5000, 3.5, True])
 def test_a_size_that_cannot_be_is_refused(size: int) -> None:
     """With what to give."""

@@ -41,6 +41,15 @@ def test_a_design_that_stands_is_a_model() -> None:
     assert (again.pieces[0].mesh.vertices == piece.mesh.vertices).all()
 
 
+def test_the_accuracy_that_is_asked_for_is_taken() -> None:
+    """Also that which prisms have where nobody says: finer chords are more triangles than the loft's own accuracy."""
+    unsaid, coarse, fine = (
+        len(stand(Design.loads(TWIST), SolidJob(accuracy=accuracy)).pieces[0].mesh.triangles)
+        for accuracy in (None, 0.05, "0.01mm")
+    )
+    assert unsaid == coarse < fine
+
+
 def test_copies_around_one_are_apart_and_of_other_colours(around: SolidModel) -> None:
     """At all heights; they are the same solid."""
     assert len(around.pieces) > 4

@@ -81,7 +81,9 @@ def solid(
 
     if output == "-" and file_format is None:
         raise click.UsageError("On standard output the format is not clear: add --format 3mf, stl or png.")
-    reports = report or as_json
+    reports, picture = report or as_json, (f".{file_format}" if file_format else output.lower()).endswith(".png")
+    if size is not None and not picture:
+        raise click.UsageError("--size is for a picture: write a .png, or leave it out.")
     if density is not None and not reports:
         raise click.UsageError("--density is for the mass: add --report, or --json.")
     if reports and output == "-":
@@ -95,9 +97,11 @@ def solid(
         if isinstance(job, StackJob):
             figures = _stack(loaded, job, output, file_format, size, mass, quiet=quiet)
         else:
-            picture = output.lower().endswith(".png") or file_format == "png"
-            made = _model(loaded, job, around=picture and job.sheet is None)
-            figures = solid_report(made, mass) if reports else {}
+            around = picture and job.sheet is None
+            made = _model(loaded, job, around=around)
+            # What is there for the picture alone is not counted.
+            reported = _model(loaded, job, around=False) if around and reports else made
+            figures = solid_report(reported, mass) if reports else {}
             _save(made, output, file_format, size, quiet=quiet)
     if reports:
         print_figures(figures, stack_text if stacked else solid_text, as_json=as_json)

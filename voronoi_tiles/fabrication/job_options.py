@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass
 from numbers import Integral
 from typing import Any, Final, Generic, Literal, TypeAlias, TypeVar, cast, get_args
@@ -159,16 +159,16 @@ def read_colour(name: str, value: object) -> int | None:
     return None if value is None else int(value)
 
 
-def read_colours(name: str, value: object) -> str | int:
-    """Read what colours tiles have: a number of them, or a word. Raises JobError."""
+def read_colours(name: str, value: object, schemes: Sequence[str] = SCHEMES) -> str | int:
+    """Read what colours tiles have: a number of them, or one of some words, the first for none. Raises JobError."""
     if isinstance(value, str) and value.isascii() and value.isdigit() and len(value) < 5:
         value = int(value)
     if not isinstance(value, bool) and isinstance(value, Integral) and 1 <= int(value) <= COLOURS_MAX:
         return int(value)
-    if not (isinstance(value, str) and value in SCHEMES):
+    if not (isinstance(value, str) and value in schemes):
         raise JobError(
             f"`{name}` {shown(value)} is unknown",
-            remedy=f"Use a number up to {COLOURS_MAX}, or one of {', '.join(SCHEMES[1:])}.",
+            remedy=f"Use a number up to {COLOURS_MAX}, or one of {', '.join(schemes[1:])}.",
         )
     return value
 

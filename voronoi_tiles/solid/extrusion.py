@@ -16,7 +16,7 @@ from voronoi_tiles.fabrication.job import JobError
 from voronoi_tiles.fabrication.layout import Layout
 from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_tiles
 from voronoi_tiles.groups.periodic_colouring import palette
-from voronoi_tiles.solid.extrusion_proof import prove_prisms
+from voronoi_tiles.solid.extrusion_proof import prove_copies, prove_prisms
 from voronoi_tiles.solid.pieces import SolidPiece
 from voronoi_tiles.solid.prism import Prism
 from voronoi_tiles.solid.slab import Slab
@@ -59,10 +59,12 @@ def _model(slab: Slab, scheme: str | int) -> SolidModel:
     shades = palette(int(colour.max()) + 1)
     prisms = slab.prisms()
     _refuse_crowd(prisms, layout)
-    proof = prove_prisms(prisms, slab.lines, job)
+    meshes = list(slab.meshes(prisms))
+    proof = replace(prove_prisms(prisms, slab.lines, job), pulled=bool(layout.copies.moved_by.any()))
+    prove_copies(meshes, layout.copies.tile, prisms, job)
     pieces = [
         SolidPiece(name, site, shade, mesh)
-        for (name, site), shade, mesh in zip(_named(layout), index.tolist(), slab.meshes(prisms), strict=True)
+        for (name, site), shade, mesh in zip(_named(layout), index.tolist(), meshes, strict=True)
     ]
     losses = [note for shape in (slab.outer, slab.inner) if shape for note in shape.compensation.losses]
     return SolidModel(

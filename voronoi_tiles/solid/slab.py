@@ -180,7 +180,7 @@ def _budget(job: SolidJob) -> AccuracyBudget:
 
     Of what is drawn in for a clearance, half of it is drawn in as well: so nothing is left that is nearer.
     """
-    whole = job.accuracy / 2 if job.clearance > 0.0 else job.accuracy
+    whole = job.chords / 2 if job.clearance > 0.0 else job.chords
     if not job.insets:
         return AccuracyBudget(whole, arcs=0.0, short=0.0, chords=whole, cubics=0.0)
     return AccuracyBudget(whole, arcs=_ARCS * whole, short=_SHORT * whole, chords=_CHORDS * whole, cubics=0.0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass, fields
+from functools import partial
 from typing import Any, Final
 
 from voronoi_tiles.fabrication.job import Job
@@ -27,7 +28,7 @@ HEIGHT_MIN: Final = 0.01
 """Least height; millimetres. A tenth of the thinnest layer that is printed."""
 
 CHORDS_MM: Final = 0.01
-"""How far the walls of solids may be from the exact ones, where nobody says; millimetres: a fortieth of a nozzle."""
+"""How far the walls of prisms may be from the exact ones, where nobody says; millimetres: a fortieth of a nozzle."""
 
 _STEEP: Final = 4.0
 """A chamfer has so many accuracies at least: else chords within the accuracy could cross."""
@@ -64,14 +65,17 @@ class SolidJob:
     gap: Option[float | str | None, float | None] = length(None, "Pull tiles apart until they keep this distance.")
     colours: Option[str | int, str | int] = Option(
         "none",
-        read_colours,
+        partial(read_colours, schemes=("none", "fewest", "site", "handedness", "orientation")),
         "Colour the tiles, a filament each: by N colours or the fewest, so that no neighbours are alike; by site, "
         "handedness or orientation. Each colour is one object of a 3MF file.",
         kind="text",
         shown="N|fewest|site|handedness|orientation",
     )
-    accuracy: Length = length(
-        CHORDS_MM, "How far walls may be from the exact ones [default: 0.01mm].", least=ACCURACY_MIN, most=1.0
+    accuracy: Option[float | str | None, float | None] = length(
+        None,
+        "How far walls may be from the exact ones [default: 0.01mm; 0.05mm for a design with a [solid]].",
+        least=ACCURACY_MIN,
+        most=1.0,
     )
 
     def __post_init__(self) -> None:
@@ -81,9 +85,9 @@ class SolidJob:
                 remedy="Use a smaller `chamfer`, or more `height`.",
             )
         for name in ("chamfer", "clearance"):
-            if 0.0 < getattr(self, name) < _STEEP * self.accuracy:
+            if 0.0 < getattr(self, name) < _STEEP * self.chords:
                 raise JobError(
-                    f"`{name}='{getattr(self, name):g}mm'` is hardly more than the `accuracy` of {self.accuracy:g} mm",
+                    f"`{name}='{getattr(self, name):g}mm'` is hardly more than the `accuracy` of {self.chords:g} mm",
                     remedy=f"Give a finer `accuracy`, or leave `{name}` out.",
                 )
         self.flat  # noqa: B018 - what cannot be laid out is refused here
@@ -103,6 +107,11 @@ class SolidJob:
         return Job(
             sheet=self.sheet, margin=self.margin, rotate=self.rotate, gap=gap, colours=self.colours, edges="pieces"
         )
+
+    @property
+    def chords(self) -> float:
+        """How far the walls of prisms may be from the exact ones; millimetres."""
+        return CHORDS_MM if self.accuracy is None else self.accuracy
 
     @property
     def insets(self) -> bool:

@@ -66,12 +66,15 @@ class SolidModel:
 
         The longer side of a picture has `size` pixels, None for 1200.
 
-        Raises OutputError, also where it was made from this file, and ArgumentError for another format.
+        Raises OutputError, also where it was made from this file, and ArgumentError for another format, and a `size`
+        where there is no picture.
         """
         name = path_name("path", path)
         form = format_of(name, SOLID_FORMATS) if file_format is None else file_format
         if form not in SOLID_FORMATS:
             raise ArgumentError(f"no solid can be written as {form!r}", remedy=f"Use {' or '.join(SOLID_FORMATS)}.")
+        if size is not None and form != "png":
+            raise ArgumentError(f"`size` {size!r} is for a picture", remedy="Write a .png, or leave it out.")
         refuse_overwriting([name], self.files)
         with writing(name) as file:
             match form:

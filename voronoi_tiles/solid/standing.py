@@ -44,8 +44,7 @@ def stand(design: Design, job: SolidJob | None = None, *, around: bool = False) 
     """
     job = SolidJob() if job is None else instance("job", job, SolidJob)
     _refuse_prisms(job)
-    accuracy = ACCURACY_MM if job.accuracy == SolidJob.options()["accuracy"].default else job.accuracy
-    loft, proof = proved_loft(design, accuracy=accuracy)
+    loft, proof = proved_loft(design, accuracy=ACCURACY_MM if job.accuracy is None else job.accuracy)
     names = [site.name for site in design.noded]
     if around:
         found = _around(loft)
