@@ -90,6 +90,15 @@ def test_the_examples_are_solids(path: Path) -> None:
     assert model.notes == ()
 
 
+def test_a_design_is_made_flat() -> None:
+    """By False; None leaves its solid as it is."""
+    design = Design.loads(TWIST)
+    assert design.replace(solid=None).solid is not None
+    flat = design.replace(solid=False)
+    assert (flat.solid, flat.standing) == (None, None)
+    assert flat == Design.loads(TWIST.split("solid =", maxsplit=1)[0])
+
+
 def test_a_flat_design_does_not_stand() -> None:
     """The message says what to write."""
     with pytest.raises(ArgumentError, match=r"\[solid\]"):

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import TYPE_CHECKING, Any, Final, Literal, TypeAlias
 
 from voronoi_tiles.base import values
 from voronoi_tiles.base.arguments import path_name
@@ -281,11 +281,14 @@ class Design:
         sites: Site | Iterable[Site] | None = None,
         units: Units | None = None,
         scale: float | None = None,
-        solid: Solid | None = None,
+        solid: Solid | Literal[False] | None = None,
         name: str | None = None,
         folder: str | os.PathLike[str] | None = None,
     ) -> Design:
-        """The design with some of its parts changed, checked again; None leaves a part as it is. Raises DesignError."""
+        """The design with some of its parts changed, checked again; None leaves a part as it is, False makes it flat.
+
+        Raises DesignError.
+        """
         name = self.name if name is None else name
         if all(part is None for part in (group, cell, sites, units, scale, solid, folder)):
             return _fill(Design.__new__(Design), self._parts, name, self.folder, self.file)
@@ -295,7 +298,7 @@ class Design:
             self.sites if sites is None else sites,
             units=self.units if units is None else units,
             scale=self.scale if scale is None else scale,
-            solid=self.solid if solid is None else solid,
+            solid=self.solid if solid is None else solid or None,
             folder=self.folder if folder is None else folder,
         )
         return _fill(made, made._parts, name, made.folder, self.file)

@@ -15,6 +15,7 @@ from voronoi_tiles.designs.drawn_site import Site
 from voronoi_tiles.designs.drawn_strokes import Stroke, stroke_of
 from voronoi_tiles.designs.keys import DEFAULTS
 from voronoi_tiles.designs.schema import point
+from voronoi_tiles.designs.solid_checking import LAYERS
 
 
 @dataclass(frozen=True, init=False, repr=False)
@@ -85,7 +86,7 @@ class Solid:
         self,
         height: float,
         *,
-        layers: int = 41,
+        layers: int = LAYERS,
         turn: float = 0.0,
         shift: PointLike = 0j,
         scale: float = 1.0,
@@ -112,7 +113,7 @@ class Solid:
         """The table [solid] of a design file, without its keys."""
         shift, about = ([z.real, z.imag] for z in (self.shift, self.about))
         found = {"layers": self.layers, "turn": self.turn, "shift": shift, "scale": self.scale, "about": about}
-        plain = {"layers": 41, "turn": DEFAULTS["rotate"], "shift": [0.0, 0.0], "scale": 1.0, "about": [0.0, 0.0]}
+        plain = {"layers": LAYERS, "turn": DEFAULTS["rotate"], "shift": [0.0, 0.0], "scale": 1.0, "about": [0.0, 0.0]}
         return {"height": self.height, **{key: value for key, value in found.items() if value != plain[key]}}
 
     def placed(self, by: Placement, sites: Sequence[Site], height: float = 1.0) -> Solid:
