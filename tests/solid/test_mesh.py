@@ -42,11 +42,3 @@ def test_the_volume_keeps_its_digits_far_away() -> None:
 def test_what_is_not_closed_is_seen(triangles: np.ndarray) -> None:
     """Every side has to be there once in each direction."""
     assert not TriangleMesh(CORNERS, triangles).is_closed
-
-
-def test_meshes_are_joined_side_by_side() -> None:
-    """Volumes add, and the whole is as closed as its parts."""
-    both = TriangleMesh.joined([TETRAHEDRON, TriangleMesh(CORNERS + 10.0, TETRAHEDRON.triangles)])
-    assert len(both.vertices) == 8
-    assert both.is_closed
-    assert both.volume == pytest.approx(20.0)

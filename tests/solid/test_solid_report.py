@@ -55,6 +55,14 @@ def test_overhangs_are_what_leans_out() -> None:
     assert steepest == pytest.approx(np.degrees(np.arctan2(3, 1)))
 
 
+def test_a_speck_is_no_overhang() -> None:
+    """A triangle of some ten thousandths of a square millimetre that hangs out level; a larger one is."""
+    for side, steepest in ((0.03, 0.0), (0.3, 90.0)):
+        level = np.array([[0.0, 0, 2], [0, side, 2], [side, 0, 2]])
+        mesh = TriangleMesh(np.concatenate((PYRAMID.vertices, level)), np.vstack((PYRAMID.triangles, [[5, 6, 7]])))
+        assert overhang(mesh, 1.0)[1] == pytest.approx(steepest, abs=1e-9)
+
+
 def test_a_report_says_which_way_up() -> None:
     """A solid that leans out is turned over where that is better; a chamfer of 45 degrees is no overhang."""
     model = extrude(tiling("p4m"), SolidJob(height=3, chamfer=0.5, sheet="150x150mm"))

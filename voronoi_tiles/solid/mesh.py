@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from math import fsum
-from typing import NamedTuple, Self
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,17 +18,6 @@ class TriangleMesh(NamedTuple):
 
     vertices: Floats
     triangles: Ints
-
-    @classmethod
-    def joined(cls, meshes: list[TriangleMesh]) -> Self:
-        """Several meshes as one, their vertices one after the other; none are merged."""
-        sizes = np.cumsum([0] + [len(mesh.vertices) for mesh in meshes])
-        return cls(
-            np.concatenate([np.zeros((0, 3)), *(mesh.vertices for mesh in meshes)]),
-            np.concatenate(
-                [np.zeros((0, 3), np.intp), *(mesh.triangles + n for mesh, n in zip(meshes, sizes, strict=False))]
-            ),
-        )
 
     @property
     def corners(self) -> Floats:
