@@ -18,6 +18,7 @@ from voronoi_tiles import GROUPS, Design, JobError, ProofError, SolidJob, Triang
 from voronoi_tiles.solid import extrusion
 from voronoi_tiles.solid.extrusion import surrounded
 from voronoi_tiles.solid.extrusion_proof import prove_prisms
+from voronoi_tiles.solid.loft_caps import cap
 from voronoi_tiles.solid.prism import Face, Prism
 from voronoi_tiles.solid.slab import Slab
 
@@ -144,6 +145,8 @@ def test_rings_that_touch_in_a_point_are_parted() -> None:
     mesh = Prism.over(Face(points, np.array([0, 5, 9]), 89.5), 2.0).mesh()
     assert mesh.is_closed
     assert judged(mesh).volume() == pytest.approx(179.0)
+    # And so at the ends of a loft.
+    assert set(cap([points[:5], points[5:]]).ravel().tolist()) == set(range(9))
 
 
 def test_one_of_each_stands_at_the_origin_and_a_sheet_on_its_page() -> None:
@@ -163,6 +166,15 @@ def test_a_gap_pulls_tiles_apart() -> None:
         one, other = np.triu_indices(len(shapes), 1)
         apart = shapely.distance(np.array(shapes)[one], np.array(shapes)[other])
         assert 2.0 - 1e-6 <= apart.min() <= 2.1
+
+
+def test_what_a_sheet_lacks_is_said() -> None:
+    """Sites that are not on it, and that pulling a stone out of its ring takes most of it."""
+    tiles = Design.loads(PIECES).tessellate()
+    assert extrude(tiles, SolidJob(sheet="200x200mm")).notes == ()
+    assert "times their room" in "".join(extrude(tiles, SolidJob(sheet="300x300mm", gap=2.0)).notes)
+    notes = extrude(Design.loads(WAISTED).tessellate(), SolidJob(sheet="45x20mm")).notes
+    assert notes == ("no whole tile of 'bar', 'above' is on the sheet",)
 
 
 def test_colours_are_the_schemes() -> None:

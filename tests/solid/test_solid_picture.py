@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tracemalloc
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,8 @@ import pytest
 import shapely
 from helpers.examples import tiling
 
-from voronoi_tiles import ArgumentError, SolidJob, SolidPiece, TriangleMesh, extrude
+from voronoi_tiles import ArgumentError, Design, SolidJob, SolidPiece, TriangleMesh, extrude
+from voronoi_tiles.solid import solid_picture
 from voronoi_tiles.solid.extrusion import surrounded
 from voronoi_tiles.solid.solid_picture import picture
 from voronoi_tiles.solid.visible import NOTHING, barycentric, seen
@@ -19,7 +21,7 @@ def test_the_nearest_triangle_is_seen() -> None:
     """Against shapely, which says what covers a pixel's middle, and the planes' depths; random triangles."""
     rng = np.random.default_rng(3)
     corners = rng.uniform(-5, 35, (40, 3, 3))
-    found = seen(corners, 30, 24)
+    found = seen(corners, 30, range(24))
     y, x = np.mgrid[:24, :30] + 0.5
     middles = shapely.points(x, y)
     shapes = shapely.polygons(corners[:, :, :2])
@@ -39,7 +41,7 @@ def test_triangles_side_by_side_leave_no_gap() -> None:
     x = np.linspace(2.0, 18.0, 1001)
     low, high = np.column_stack((x, np.full(1001, 3.0))), np.column_stack((x, np.full(1001, 17.0)))
     flat = np.concatenate([np.stack((low[:-1], low[1:], high[1:]), 1), np.stack((low[:-1], high[1:], high[:-1]), 1)])
-    found = seen(np.dstack((flat, np.zeros(flat.shape[:2]))), 20, 20)
+    found = seen(np.dstack((flat, np.zeros(flat.shape[:2]))), 20, range(20))
     covered = np.zeros((20, 20), bool)
     covered[3:17, 2:18] = True
     assert ((found != NOTHING) == covered).all()
@@ -79,6 +81,18 @@ def test_a_box_shows_three_faces_lines_and_a_shadow() -> None:
     assert grey.sum() > 500
 
 
+def test_a_picture_is_drawn_in_strips(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is the same whatever their height, and takes less memory than all its points."""
+    whole = picture([SolidPiece("box", "box", 0, BOX)], ["#4080c0"], 240)
+    monkeypatch.setattr(solid_picture, "_STRIP", 40_000)
+    tracemalloc.start()
+    parts = picture([SolidPiece("box", "box", 0, BOX)], ["#4080c0"], 240)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert (parts == whole).all()
+    assert peak < 3 * 8 * 9 * whole[:, :, 0].size
+
+
 @pytest.mark.parametrize("name", ["p3", "pgg-crane"])
 def test_the_neighbours_are_shown_apart(name: str) -> None:
     """One tile and all around it in three colours; none covers another, though they hook into each other."""
@@ -88,6 +102,38 @@ def test_the_neighbours_are_shown_apart(name: str) -> None:
     boxes = [shapely.union_all(shapely.polygons(piece.mesh.corners[:, :, :2])) for piece in model.pieces]
     one, other = np.triu_indices(len(boxes), 1)
     assert shapely.distance(np.array(boxes)[one], np.array(boxes)[other]).min() > 0.5
+
+
+HOLED = """
+schema = 1
+group = "p4"
+cell = { a = 80 }
+site = [
+  { name = "egg", strokes = [{ segment = [[11, 14], [17, 18]] }] },
+  { name = "bird", strokes = [{ catmull_rom = [[30, 4], [36, 12], [30, 20], [37, 30]] }] },
+  { name = "moth", strokes = [{ circle = [14, 16], radius = 11 }] },
+]
+"""
+"""A moth with an egg in it, beside a bird."""
+
+
+@pytest.mark.parametrize(("first", "count"), [("egg", 9), ("bird", 10), ("moth", 9)])
+def test_what_lies_in_a_hole_stays_there(first: str, count: int) -> None:
+    """Each moth has its egg, whichever is the first tile; the others are as near as they can be."""
+    design = Design.loads(HOLED)
+    sites = sorted(design.sites, key=lambda site: site.name != first)
+    model = surrounded(design.replace(sites=sites).tessellate(), SolidJob(height=4))
+    assert len(model.pieces) == count
+    faces = {name: [] for name in ("egg", "bird", "moth")}
+    for piece in model.pieces:
+        faces[piece.site].append(shapely.union_all(shapely.polygons(piece.mesh.corners[:, :, :2])))
+    filled = [shapely.Polygon(moth.exterior) for moth in faces["moth"]]
+    assert [sum(moth.contains(egg) for moth in filled) for egg in faces["egg"]] == [1] * len(filled)
+    assert all(moth.intersection(egg).area < 1e-6 for moth in faces["moth"] for egg in faces["egg"])
+    others = np.array([*filled, *faces["bird"]])
+    one, other = np.triu_indices(len(others), 1)
+    assert 0.5 < shapely.distance(others[one], others[other]).min() < 5
+    assert np.ptp(model.bounds, axis=0).max() < 150
 
 
 def test_a_picture_is_a_file(tmp_path: Path) -> None:

@@ -58,6 +58,10 @@ class DressedTiles:
         rings = {tile: rings.moved(1.0, shift) for tile, rings in self._rings.items()}
         return replace(self, period=self.period.placed(1.0, shift), page=self.page.moved(shift), _rings=rings)
 
+    def compensated(self, compensation: Compensation) -> DressedTiles:
+        """The same tiles with another compensation."""
+        return DressedTiles(self.period, self.page, compensation)
+
     def rings(self, tile: int) -> Paths:
         """The rings of a tile where it stands in the period. Raises JobError where it does not survive."""
         if tile not in self._rings:

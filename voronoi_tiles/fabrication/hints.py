@@ -16,7 +16,7 @@ _LEAST_MM: Final = 0.3
 _NEARLY: Final = 0.9
 """A gap that is hardly smaller, as a share, is not worth a word."""
 
-_ROOM: Final = 1.5
+ROOM: Final = 1.5
 """Tiles that are pulled apart to so many times their room are hooked: nested by themselves they take less."""
 
 
@@ -25,7 +25,7 @@ def hints_of(layout: Layout, asked: Job) -> tuple[str, ...]:
     stretch = layout.stretch
     room = stretch.p**2 - abs(stretch.q) ** 2
     hints = [smaller_gap(layout)]
-    if room >= _ROOM and asked.layout == "tessellated" and asked.not_nestable is None:
+    if room >= ROOM and asked.layout == "tessellated" and asked.not_nestable is None:
         hints.append(f"tiles are pulled apart to {room:.1f} times their room: `layout='auto'` may hold more")
     return tuple(filter(None, hints))
 

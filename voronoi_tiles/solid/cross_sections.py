@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import plane
 from voronoi_tiles.base.errors import ProofError
 from voronoi_tiles.paths.paths import Paths
-from voronoi_tiles.solid.face_triangles import polygons
+from voronoi_tiles.solid.face_triangles import filled
 from voronoi_tiles.solid.mesh import TriangleMesh
 
 if TYPE_CHECKING:
@@ -57,9 +56,5 @@ def section(mesh: TriangleMesh, z: float) -> Paths:
 
 def filled_section(mesh: TriangleMesh, z: float) -> shapely.MultiPolygon:
     """What `section` cuts out as a region, in millimetres; raises as that does."""
-    import shapely
-
     rings = section(mesh, z)
-    points = plane(rings.start)
-    parts = polygons(rings.start, rings.offsets)
-    return shapely.MultiPolygon([(points[loops[0]], [points[hole] for hole in loops[1:]]) for loops in parts])
+    return filled(rings.start, rings.offsets)

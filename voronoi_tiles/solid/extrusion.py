@@ -12,6 +12,7 @@ import numpy as np
 
 from voronoi_tiles.base.arguments import instance
 from voronoi_tiles.fabrication.exact import design_recipe
+from voronoi_tiles.fabrication.hints import ROOM
 from voronoi_tiles.fabrication.job import JobError
 from voronoi_tiles.fabrication.layout import Layout
 from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_tiles
@@ -75,7 +76,7 @@ def _model(slab: Slab, scheme: str | int) -> SolidModel:
         proof=proof.document(),
         proved=str(proof),
         grouped=job.colours != "none",
-        notes=tuple(dict.fromkeys((*layout.sheet.notes, *losses))),
+        notes=tuple(dict.fromkeys((*layout.sheet.notes, *losses, *_missing(layout)))),
         files=(*design.files, *job.files),
     )
 
@@ -88,6 +89,19 @@ def _refuse_crowd(prisms: Sequence[Prism], layout: Layout) -> None:
             f"the solids would have {count:,} triangles",
             remedy=f"Take a smaller sheet, or a coarser `accuracy`: {TRIANGLES_MAX:,} are the most.",
         )
+
+
+def _missing(layout: Layout) -> list[str]:
+    """What the sheet lacks, in words: sites without a tile on it, and much of its room where tiles are pulled apart."""
+    there = set(layout.site.tolist())
+    names = [f"'{site.name}'" for k, site in enumerate(layout.design.noded) if k not in there]
+    found = [f"no whole tile of {', '.join(names)} is on the sheet"] if names else []
+    if layout.stretch.area >= ROOM:
+        found.append(
+            f"tiles are pulled apart to {layout.stretch.area:.1f} times their room: hooked ones, and those in holes of "
+            "others, take less without a `gap`, with a `clearance`"
+        )
+    return found
 
 
 def _named(layout: Layout) -> list[tuple[str, str]]:

@@ -13,7 +13,7 @@ from voronoi_tiles.base.arrays import Complexes, Ints, plane
 from voronoi_tiles.base.errors import ProofError
 from voronoi_tiles.base.tolerance import EPSILON
 from voronoi_tiles.fabrication.tile_colouring import neighbour_pairs
-from voronoi_tiles.solid.face_triangles import polygons
+from voronoi_tiles.solid.face_triangles import filled
 from voronoi_tiles.solid.mesh import TriangleMesh
 from voronoi_tiles.solid.prism import Face, Prism
 from voronoi_tiles.solid.solid_job import SolidJob
@@ -51,7 +51,7 @@ class PrismProof:
         if self.volume_error is None:
             volume = "volumes below those without a chamfer, and above those of the smaller face all the way"
         elif self.shared is not None:
-            volume = f"volume = cell area x height (relative error {self.volume_error:.1g})"
+            volume = f"volume of a cell's tiles = its area x height (relative error {self.volume_error:.1g})"
         else:
             volume = f"volumes within {self.volume_error:.1g} of the exact offset's"
         shared = "" if self.shared is None else f"; all {self.shared:,} points of outlines are neighbours', bit for bit"
@@ -152,16 +152,7 @@ def _apart(prisms: Sequence[Prism], period: Period) -> float:
     """The least distance between the faces of neighbours; millimetres."""
     import shapely
 
-    shapes = [
-        shapely.MultiPolygon(
-            [
-                (plane(points[loops[0]]), [plane(points[hole]) for hole in loops[1:]])
-                for loops in polygons(points, prism.outer.offsets)
-            ]
-        )
-        for prism in prisms
-        for points in [prism.outer.points]
-    ]
+    shapes = [filled(prism.outer.points, prism.outer.offsets) for prism in prisms]
     pairs = neighbour_pairs(period)
     shifts = plane(period.shifts(pairs[:, 2:]))
     return min(

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, Ints, next_in_ring, plane
 from voronoi_tiles.base.errors import ProofError
+
+if TYPE_CHECKING:
+    import shapely
 
 Loops = Sequence[Ints]
 """A polygon by the indices of its points: the outer ring counter-clockwise first, then its holes, clockwise."""
@@ -29,6 +33,16 @@ def polygons(points: Complexes, offsets: Ints) -> list[list[Ints]]:
             around = outer if len(outer) == 1 else [shell for shell in outer if filled[shell].covers(filled[k])]
             found[min(around, key=lambda shell: float(filled[shell].area))].append(ring)
     return list(found.values())
+
+
+def filled(points: Complexes, offsets: Ints) -> shapely.MultiPolygon:
+    """What rings bound, as a shape; the rings as of `polygons`."""
+    import shapely
+
+    loops = polygons(points, offsets)
+    return shapely.MultiPolygon(
+        [(plane(points[outer]), [plane(points[ring]) for ring in holes]) for outer, *holes in loops]
+    )
 
 
 def signed_area(ring: Complexes) -> float:

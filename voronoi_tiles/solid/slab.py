@@ -8,7 +8,7 @@ from typing import Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools
+from voronoi_tiles.base.arrays import Bools, Ints
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.accuracy import AccuracyBudget
 from voronoi_tiles.fabrication.arc_fitting import ABSORBED, EdgeArcs, EdgeLines
@@ -17,13 +17,14 @@ from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.kerf import SHORTEST_MM, Compensation, changed
 from voronoi_tiles.fabrication.layout import Layout, PlacedTiles, lay_out
 from voronoi_tiles.fabrication.sheets import read_sheet
-from voronoi_tiles.fabrication.spacing import Stretch
+from voronoi_tiles.fabrication.spacing import Spacing, Stretch
 from voronoi_tiles.fabrication.tile_colouring import neighbour_pairs
 from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.conversion import to_lines
 from voronoi_tiles.paths.offset import offset
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.paths.short_segments import without_short_segments
+from voronoi_tiles.solid.face_triangles import filled
 from voronoi_tiles.solid.mesh import TriangleMesh
 from voronoi_tiles.solid.prism import Face, Prism
 from voronoi_tiles.solid.solid_job import SolidJob
@@ -91,7 +92,7 @@ class Slab:
             """The tiles drawn in by a width, where an option asks for it."""
             given = float(getattr(job, name))
             asked = _Inset(job.flat, budget, width, (name, given))
-            return replace(layout.tiles, compensation=asked, _rings={}) if given > 0.0 else None
+            return layout.tiles.compensated(asked) if given > 0.0 else None
 
         half = job.clearance / 2 + (budget.whole if job.clearance > 0.0 else 0.0)
         return cls(job, layout, lines, inset("clearance", half), inset("chamfer", half + job.chamfer))
@@ -99,22 +100,32 @@ class Slab:
     def around(self) -> Slab:
         """The first tile and all that share an edge with it, pulled apart, in the place of those of the job.
 
-        One that lies within another stays there.
+        What lies in a hole of one of them stays there, and is shown as well; of a tile in a hole, that which has it
+        counts for the first.
         """
-        pairs = neighbour_pairs(self.layout.period)
-        first, second = pairs[pairs[:, 0] == 0, 1:], pairs[pairs[:, 1] == 0]
-        beside = np.concatenate([[[0, 0, 0]], first, np.column_stack((second[:, 0], -second[:, 2:]))])
-        rows = np.unique(beside, axis=0)
-        tile, step = rows[:, 0], rows[:, 1:]
-        tiles = self.layout.tiles
-        centre = tiles.period.at(tiles.centres()[tile], step)
-        box = tiles.period.own_boxes[0]
+        tiles, period = self.layout.tiles, self.layout.period
+        contours = [to_lines(rings, accuracy=self.layout.budget.whole) for rings in tiles.all_rings()]
+        pairs = neighbour_pairs(period)
+        holder = _holders(contours, period, pairs)
+        free = np.flatnonzero(holder[:, 0] == np.arange(len(holder)))
+        middle = int(holder[0, 0])
+        first, second = pairs[pairs[:, 0] == middle, 1:], pairs[pairs[:, 1] == middle]
+        beside = np.concatenate([[[middle, 0, 0]], first, np.column_stack((second[:, 0], -second[:, 2:]))])
+        beside = np.unique(beside[np.isin(beside[:, 0], free)], axis=0)
+        # Each with what it holds, and that with where its holder is.
+        held = [np.flatnonzero(holder[:, 0] == tile) for tile in beside[:, 0].tolist()]
+        of = np.repeat(np.arange(len(beside)), [len(some) for some in held])
+        tile = np.concatenate(held)
+        step = beside[of, 1:] - holder[tile, 1:]
+        box = period.own_boxes[middle]
         gap = _PULL * float((box[2:] - box[:2]).max())
+        outer = [contours[k].take(np.flatnonzero(ring_areas(contours[k]) > 0.0)) for k in free.tolist()]
         try:
-            stretch = tiles.spacing(self.layout.budget.whole).stretch(gap)
+            stretch = Spacing(outer, tiles.centres()[free], period.basis).stretch(gap)
         except ValueError:
             stretch = Stretch(_APART, 0j)
-        away = centre - centre[(rows == 0).all(axis=1)]
+        centre = period.at(tiles.centres()[beside[:, 0]], beside[:, 1:])[of]
+        away = centre - tiles.centres()[middle]
         copies = PlacedTiles(tile, step, np.ones(len(tile), np.bool_), stretch(away) - away)
         return replace(self, layout=replace(self.layout, copies=copies))
 
@@ -168,6 +179,27 @@ class Slab:
         low = [(points.real.min(), points.imag.min()) for k, z in places for points in [prisms[k].outer.points + z]]
         x, y = np.array(low).min(axis=0).tolist()
         return complex(self.job.margin - x, self.job.margin - y)
+
+
+def _holders(contours: Sequence[Paths], period: Period, pairs: Ints) -> Ints:
+    """In which outermost tile's hole each tile lies, itself where in none: intp (n, 3), tile and lattice vector.
+
+    `contours` are those of the tiles, as lines, `pairs` of the period's tiles share an edge, as of `neighbour_pairs`.
+    """
+    import shapely
+
+    shapes = [filled(part.start, part.offsets) for part in contours]
+    places = shapely.point_on_surface(shapes)
+    holder = np.column_stack((np.arange(len(shapes)), np.zeros((len(shapes), 2), np.intp)))
+    both = np.concatenate((pairs, np.column_stack((pairs[:, [1, 0]], -pairs[:, 2:]))))
+    for p, q, *step in both.tolist():
+        shift = period.shifts(np.array([step]))[0]
+        within = shapely.Point(places[q].x + shift.real, places[q].y + shift.imag)
+        if any(part.interiors and shapely.Polygon(part.exterior).contains(within) for part in shapes[p].geoms):
+            holder[q] = (p, *(-k for k in step))
+    for _ in shapes:  # what holds may be held
+        holder = np.column_stack((holder[holder[:, 0], 0], holder[:, 1:] + holder[holder[:, 0], 1:]))
+    return holder
 
 
 def _face(lines: Paths, area: float, forward: Bools | None = None) -> Face:

@@ -21,6 +21,9 @@ SIZE: Final = 1200
 SIZE_MAX: Final = 4000
 """Largest side; pixels. What is computed is three times as wide and as high."""
 
+_STRIP: Final = 2_000_000
+"""So many points are computed at once, a strip of the picture; a count. Bounds the memory whatever its size."""
+
 _FINER: Final = 3
 """Points along each side of a pixel, whose mean it shows."""
 
@@ -46,6 +49,9 @@ _SHADOW: Final = 0.30
 
 _BLUR: Final = 0.012
 """How far the edge of the shadow runs; a share of the picture's longer side."""
+
+_MEANS: Final = 3
+"""So many running means make the edge of the shadow soft; a count."""
 
 _MARGIN: Final = 0.06
 """What stays free around solids; a share of the picture's longer side."""
@@ -96,29 +102,71 @@ def picture(pieces: Sequence[SolidPiece], colours: Sequence[str], size: int = SI
         raise ArgumentError(f"`size` {size!r} cannot be", remedy=f"Give a number of pixels from 1 to {SIZE_MAX}.")
     corners = np.concatenate([piece.mesh.corners for piece in pieces])
     owner = np.repeat(np.arange(len(pieces)), [len(piece.mesh.triangles) for piece in pieces])
-    shadow = corners - _shadow_light() * (corners[:, :, 2:] - corners[:, :, 2].min()) / _shadow_light()[2]
+    light = _light()
+    shadow = corners - light * (corners[:, :, 2:] - corners[:, :, 2].min()) / light[2]
     view = _Camera.of(np.concatenate([corners, shadow]).reshape(-1, 3), size * _FINER)
     normals = np.concatenate([piece.mesh.normals for piece in pieces])
     front = np.flatnonzero(normals @ view.axes[2] > 0.0)
-    at = view(corners[front])
-    found = seen(at, view.width, view.height)
-    image = np.broadcast_to(_GROUND, (*found.shape, 3)).copy()
-    image *= 1.0 - _SHADOW * _blurred(seen(view(shadow[front]), view.width, view.height) != NOTHING, view)[:, :, None]
-    y, x = np.nonzero(found != NOTHING)
-    triangle = found[y, x]
-    weights = barycentric(at, triangle, x.astype(np.float64) + 0.5, y.astype(np.float64) + 0.5)
-    smooth = np.concatenate([_smoothed(piece.mesh) for piece in pieces])[front]
-    normal = (weights[:, :, None] * smooth[triangle]).sum(axis=1)
-    normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
-    light = _AMBIENT + _DIFFUSE * np.clip(normal @ _shadow_light(), 0.0, None)
     base = np.array([[int(colour[k : k + 2], 16) / 255 for k in (1, 3, 5)] for colour in colours])
-    hue = base[[piece.colour for piece in pieces]][owner[front[triangle]]]
-    image[y, x] = np.clip(hue * light[:, None], 0.0, 1.0)
-    image[_edges(found, owner[front], normals[front])] *= _LINE
-    return _coarser(image)
+    lit = _LitTriangles(
+        view,
+        view(corners[front]),
+        view(shadow[front]),
+        normals[front],
+        np.concatenate([_smoothed(piece.mesh) for piece in pieces])[front],
+        owner[front],
+        base[[piece.colour for piece in pieces]],
+    )
+    step = max(_STRIP // (_FINER * view.width), 1) * _FINER
+    return np.concatenate([_coarser(lit.strip(top, top + step)) for top in range(0, view.height, step)])
 
 
-def _shadow_light() -> Floats:
+class _LitTriangles(NamedTuple):
+    """What is drawn, m triangles that face the eye, and their shadows, `at` and `shadow` as seen (float64, m x 3 x 3).
+
+    `normals` (m, 3) are theirs, `smooth` (m, 3, 3) those at their corners; `owner` is the number of the piece, and
+    `hues` (k, 3) are the colours of these.
+    """
+
+    view: _Camera
+    at: Floats
+    shadow: Floats
+    normals: Floats
+    smooth: Floats
+    owner: Ints
+    hues: Floats
+
+    def strip(self, top: int, bottom: int) -> Floats:
+        """The rows from `top` to `bottom`, or the last, in full resolution: float64 (rows, width, 3) from 0 to 1."""
+        # Lines at edges reach into the next row.
+        some = self._rows(top, bottom, 1)
+        own = slice(top - some.start, bottom - some.start)
+        found = seen(self.at, self.view.width, some)
+        image = np.broadcast_to(_GROUND, (*found[own].shape, 3)).copy()
+        image *= 1.0 - _SHADOW * self._shade(top, bottom)[:, :, None]
+        y, x = np.nonzero(found[own] != NOTHING)
+        triangle = found[own][y, x]
+        weights = barycentric(self.at, triangle, x.astype(np.float64) + 0.5, y.astype(np.float64) + (top + 0.5))
+        normal = (weights[:, :, None] * self.smooth[triangle]).sum(axis=1)
+        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-9)
+        light = _AMBIENT + _DIFFUSE * np.clip(normal @ _light(), 0.0, None)
+        image[y, x] = np.clip(self.hues[self.owner[triangle]] * light[:, None], 0.0, 1.0)
+        image[_edges(found, self.owner, self.normals)[own]] *= _LINE
+        return image
+
+    def _shade(self, top: int, bottom: int) -> Floats:
+        """How dark the shadow is in some rows: float64 (rows, width) from 0 to 1."""
+        reach = max(round(_BLUR * max(self.view.width, self.view.height)), 1)
+        some = self._rows(top, bottom, _MEANS * reach)
+        mask = seen(self.shadow, self.view.width, some) != NOTHING
+        return _blurred(mask, reach)[top - some.start : bottom - some.start]
+
+    def _rows(self, top: int, bottom: int, more: int) -> range:
+        """Some rows and `more` on either side, those that there are."""
+        return range(max(top - more, 0), min(bottom + more, self.view.height))
+
+
+def _light() -> Floats:
     """The direction to the light in space."""
     c, s = np.cos(_TURN), np.sin(_TURN)
     x, y, z = _LIGHT.tolist()
@@ -159,11 +207,10 @@ def _edges(found: Ints, owner: Ints, normals: Floats) -> Bools:
     return lines
 
 
-def _blurred(mask: Bools, view: _Camera) -> Floats:
-    """A mask with soft edges: three running means, which come near a Gaussian."""
-    reach = max(round(_BLUR * max(view.width, view.height)), 1)
+def _blurred(mask: Bools, reach: int) -> Floats:
+    """A mask with soft edges: three running means over `reach` on either side, which come near a Gaussian."""
     soft = mask.astype(np.float64)
-    for _ in range(3):
+    for _ in range(_MEANS):
         for axis in (0, 1):
             padded = np.concatenate([np.zeros_like(np.take(soft, range(1), axis)), soft], axis=axis).cumsum(axis=axis)
             n = soft.shape[axis]

@@ -8,32 +8,33 @@ import numpy as np
 
 from voronoi_tiles.base.arrays import Floats, Ints, ranges
 
-_CHUNK: Final = 4_000_000
-"""Covered pixels of triangles that are compared at once; a count. Bounds the memory to some 200 megabytes."""
+_CHUNK: Final = 1_000_000
+"""Covered pixels of triangles that are compared at once; a count. Bounds the memory, for each, to 200 bytes."""
 
 NOTHING: Final = -1
 """What is seen where no triangle is."""
 
 
-def seen(corners: Floats, width: int, height: int) -> Ints:
-    """The triangle that is seen in each pixel, NOTHING where there is none: intp (height, width).
+def seen(corners: Floats, width: int, rows: range) -> Ints:
+    """The triangle that is seen in each pixel of some rows, NOTHING where there is none: intp (len(rows), width).
 
     `corners` float64 (m, 3, 3) are x to the right and y down in pixels, and the depth: the greater, the nearer. The
-    middle of the first pixel is at (0.5, 0.5).
+    middle of the first pixel of row 0 is at (0.5, 0.5).
     """
-    nearest = np.full(width * height, -np.inf)
-    found = np.full(width * height, NOTHING, np.intp)
+    nearest = np.full(width * len(rows), -np.inf)
+    found = np.full(width * len(rows), NOTHING, np.intp)
     top, bottom = corners[:, :, 1].min(axis=1), corners[:, :, 1].max(axis=1)
-    first = np.clip(np.ceil(top - 0.5), 0, height).astype(np.intp)
-    rows = np.clip(np.ceil(bottom - 0.5), 0, height).astype(np.intp) - first
-    area = rows * (np.ptp(corners[:, :, 0], axis=1) + 1.0)
+    first = np.clip(np.ceil(top - 0.5), rows.start, rows.stop).astype(np.intp)
+    count = np.clip(np.ceil(bottom - 0.5), rows.start, rows.stop).astype(np.intp) - first
+    area = count * (np.ptp(corners[:, :, 0], axis=1) + 1.0)
     bounds = np.searchsorted(np.cumsum(area), np.arange(_CHUNK, area.sum() + _CHUNK, _CHUNK)) + 1
     for some in np.split(np.arange(len(corners)), bounds[bounds < len(corners)]):
-        pixel, triangle, depth = _covered(corners[some], first[some], rows[some], width)
+        pixel, triangle, depth = _covered(corners[some], first[some], count[some], width)
+        pixel -= rows.start * width
         np.maximum.at(nearest, pixel, depth)
         won = depth == nearest[pixel]
         found[pixel[won]] = some[triangle[won]]
-    return found.reshape(height, width)
+    return found.reshape(len(rows), width)
 
 
 def _covered(corners: Floats, first: Ints, rows: Ints, width: int) -> tuple[Ints, Ints, Floats]:
