@@ -24,8 +24,8 @@ def here(tmp_path: Path) -> Path:
 @pytest.mark.parametrize("name", ["a.3mf", "a.stl", "a.png"])
 def test_a_file_is_written_and_said(name: str, here: Path, voronoi_tiles: CommandLine) -> None:
     """What there is in it, and what was proved; the same bytes again, and nothing is said, with --quiet."""
-    call = ("solid", "bird.toml", "--height", "4mm", "--clearance", "0.2mm")
-    call += ("--size", "90") if name == "a.png" else ()
+    size = ("--size", "90") if name == "a.png" else ()
+    call = ("solid", "bird.toml", "--height", "4mm", "--clearance", "0.2mm", *size)
     done = voronoi_tiles(*call, "-o", name, cwd=here)
     assert (done.returncode, done.stdout) == (0, "")
     *notes, written, proved = done.stderr.splitlines()

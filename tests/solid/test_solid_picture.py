@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tracemalloc
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -124,7 +125,7 @@ def test_what_lies_in_a_hole_stays_there(first: str, count: int) -> None:
     sites = sorted(design.sites, key=lambda site: site.name != first)
     model = surrounded(design.replace(sites=sites).tessellate(), SolidJob(height=4))
     assert len(model.pieces) == count
-    faces = {name: [] for name in ("egg", "bird", "moth")}
+    faces: dict[str, list[Any]] = {name: [] for name in ("egg", "bird", "moth")}
     for piece in model.pieces:
         faces[piece.site].append(shapely.union_all(shapely.polygons(piece.mesh.corners[:, :, :2])))
     filled = [shapely.Polygon(moth.exterior) for moth in faces["moth"]]
