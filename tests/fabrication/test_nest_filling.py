@@ -9,7 +9,9 @@ import shapely
 from voronoi_tiles.base.arrays import Complexes, plane
 from voronoi_tiles.fabrication.convex_parts import convex_parts, overlaps
 from voronoi_tiles.fabrication.nest_filling import fill
+from voronoi_tiles.fabrication.nest_kinds import NestKind
 from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces
+from voronoi_tiles.fabrication.nested_regions import lay_in_region
 
 BAY = np.array([0, 10, 10 + 10j, 6 + 10j, 6 + 8j, 8 + 8j, 8 + 2j, 2 + 2j, 2 + 8j, 5 + 8j, 5 + 10j, 10j])
 """A room with a door that is narrower than it; corners of it lie on one line."""
@@ -102,6 +104,30 @@ def test_a_region_with_holes_and_parts_is_filled_until_nothing_fits() -> None:
         turn, z = random.choice(items[k].turns or (), count), random.uniform(0, 90, (2 * count, 2)).view(complex)[:, 0]
         tried = NestPlaces(np.full(count, k), turn, z[:count])
         assert not any(free.contains(piece) for piece in shapes(items, tried))
+
+
+def test_items_that_lack_are_laid_though_others_lack_as_well() -> None:
+    """Two items are missing beside one of which there are many: all three have their part of their share at last."""
+    items = [NestItem(ring, 1 / 3, (0.0,)) for ring in (SQUARE, ELL, np.asarray(SQUARE / 2, np.complex128))]
+    laid = NestPlaces(np.full(9, 2), np.zeros(9), np.arange(9) * 6 + 3 + 3j)
+    places = fill(items, shapely.box(0, 0, 60, 34), laid, even=0.8)
+    counts = np.bincount(np.append(laid.item, places.item), minlength=3)
+    assert overlap(shapes(items, laid) + shapes(items, places)) < 1e-6
+    assert (counts >= np.floor(0.8 * counts.sum() / 3)).all(), counts
+
+
+def test_a_drawn_region_holds_each_kind_by_its_share() -> None:
+    """Also where the band of one lies beyond it, in the pattern that is moved over it."""
+    rings = [np.asarray(SQUARE / 2, np.complex128), np.asarray(ELL / 2, np.complex128), ELL]
+    kinds = [NestKind(0, 0j, NestItem(ring, 1 / 3, (0.0, 90.0)), ring, ()) for ring in rings]
+    region = shapely.box(0, 0, 60, 45)
+    places = lay_in_region(kinds, region, np.full(3, 99), 0.8)
+    pieces = shapes([kind.item for kind in kinds], places)
+    counts = np.bincount(places.item, minlength=3)
+    assert overlap(pieces) < 1e-4
+    assert region.buffer(1e-4).contains(shapely.union_all(pieces))
+    assert (counts >= np.floor(0.8 * counts.sum() / 3)).all(), counts
+    assert sum(piece.area for piece in pieces) > 0.6 * region.area
 
 
 def test_pieces_are_laid_beside_those_that_lie_there_the_lowest_place_first() -> None:

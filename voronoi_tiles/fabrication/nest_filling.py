@@ -89,9 +89,10 @@ def fill(
         return _image(overlap[key], unit_at(stays.turn), shift)
 
     def may_come(item: int) -> bool:
-        """Whether there may be one more of an item."""
+        """Whether there may be one more of an item: of what lacks there may, even where another lacks more."""
         more = counts + (np.arange(len(items)) == item)
-        return bool(left[item] > 0 and (more >= np.floor(even * share * more.sum())).all())
+        need = np.floor(even * share * more.sum())
+        return bool(left[item] > 0 and (counts[item] < need[item] or (more >= need).all()))
 
     found: list[tuple[int, float, complex]] = []
     while True:

@@ -60,7 +60,9 @@ def lay_in_region(kinds: Sequence[NestKind], region: Any, demand: Ints, even: fl
         inside = np.flatnonzero(shapely.contains(here, outlines))
         if len(inside) > len(best):
             best, move = inside, x0 + 1j * y0 - by
-    laid = capped(pattern.take(best), demand)
+    # Of a kind whose band is within by more than those of others there are no more than its share: the rest is filled.
+    share = np.array([item.share for item in items])
+    laid = capped(pattern.take(best), np.minimum(demand, np.ceil(share * len(best)).astype(np.intp)))
     laid = laid._replace(shift=laid.shift + move)
     left = demand - np.bincount(laid.item, minlength=len(items))
     return joined(laid, fill(items, region, laid, left, [kind.outline for kind in kinds], even))
