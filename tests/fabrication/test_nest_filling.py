@@ -61,7 +61,6 @@ def test_lines_that_stay_are_overlapped_as_well() -> None:
 
 SQUARE = np.array([-5 - 5j, 5 - 5j, 5 + 5j, -5 + 5j])
 ELL = np.array([0, 12, 12 + 4j, 4 + 4j, 4 + 12j, 12j]) - (4 + 4j)
-NONE = NestPlaces(np.zeros(0, np.intp), np.zeros(0), np.zeros(0, np.complex128))
 OFFCUT = shapely.union_all(
     [
         shapely.Point(30, 30).buffer(29).difference(shapely.Point(36, 33).buffer(7)),
@@ -75,7 +74,7 @@ OFFCUT = shapely.union_all(
 def shapes(items: list[NestItem], places: NestPlaces) -> list[shapely.Polygon]:
     """Pieces where they lie, by shapely."""
     found = []
-    for k, turn, shift in zip(*(part.tolist() for part in places), strict=True):
+    for k, turn, shift in places.rows():
         turned = shapely.affinity.rotate(polygon(items[k].ring), turn, origin=(0, 0))
         found.append(shapely.affinity.translate(turned, shift.real, shift.imag))
     return found
@@ -90,7 +89,7 @@ def overlap(pieces: list[shapely.Polygon]) -> float:
 def test_a_region_with_holes_and_parts_is_filled_until_nothing_fits() -> None:
     """By shapely all pieces lie in it and none on another; of 2,000 places drawn at random none is free."""
     items = [NestItem(SQUARE, 0.5, (0.0, 30.0)), NestItem(ELL, 0.5, (0.0, 90.0, 180.0, 270.0))]
-    places = fill(items, OFFCUT, NONE)
+    places = fill(items, OFFCUT, NestPlaces.none())
     pieces = shapes(items, places)
     assert overlap(pieces) < 1e-6
     assert max(piece.difference(OFFCUT).area for piece in pieces) < 1e-6
@@ -110,7 +109,7 @@ def test_items_that_lack_are_laid_though_others_lack_as_well() -> None:
     """Two items are missing beside one of which there are many: all three have their part of their share at last."""
     items = [NestItem(ring, 1 / 3, (0.0,)) for ring in (SQUARE, ELL, np.asarray(SQUARE / 2, np.complex128))]
     laid = NestPlaces(np.full(9, 2), np.zeros(9), np.arange(9) * 6 + 3 + 3j)
-    places = fill(items, shapely.box(0, 0, 60, 34), laid, even=0.8)
+    places = fill(items, shapely.box(0, 0, 60, 34), laid, even=True)
     counts = np.bincount(np.append(laid.item, places.item), minlength=3)
     assert overlap(shapes(items, laid) + shapes(items, places)) < 1e-6
     assert (counts >= np.floor(0.8 * counts.sum() / 3)).all(), counts
@@ -121,7 +120,7 @@ def test_a_drawn_region_holds_each_kind_by_its_share() -> None:
     rings = [np.asarray(SQUARE / 2, np.complex128), np.asarray(ELL / 2, np.complex128), ELL]
     kinds = [NestKind(0, 0j, NestItem(ring, 1 / 3, (0.0, 90.0)), ring, ()) for ring in rings]
     region = shapely.box(0, 0, 60, 45)
-    places = lay_in_region(kinds, region, np.full(3, 99), 0.8)
+    places = lay_in_region(kinds, region, np.full(3, 99), even=True)
     pieces = shapes([kind.item for kind in kinds], places)
     counts = np.bincount(places.item, minlength=3)
     assert overlap(pieces) < 1e-4
@@ -139,13 +138,15 @@ def test_pieces_are_laid_beside_those_that_lie_there_the_lowest_place_first() ->
     places = fill(items, shapely.box(0, 0, 45, 21), laid)
     assert np.round(places.shift[:2].imag, 3).tolist() == [5, 5]
     assert len(places.item) == 2 + 3
-    assert not len(fill(items, shapely.box(0, 0, 45, 9.9), NONE).item)
+    assert not len(fill(items, shapely.box(0, 0, 45, 9.9), NestPlaces.none()).item)
 
 
 def test_no_more_are_laid_than_asked_for_and_the_same_ones_again() -> None:
     """So many of each item at most; a search that no clock ends is repeatable."""
     items = [NestItem(SQUARE, 0.3, None), NestItem(ELL, 0.7, None)]
-    places, again = (fill(items, shapely.box(0, 0, 40, 40), NONE, demand=np.array([2, 1])) for _ in range(2))
+    places, again = (
+        fill(items, shapely.box(0, 0, 40, 40), NestPlaces.none(), demand=np.array([2, 1])) for _ in range(2)
+    )
     assert np.bincount(places.item).tolist() == [2, 1]
     for one, other in zip(places, again, strict=True):
         assert one.tobytes() == other.tobytes()
@@ -154,7 +155,7 @@ def test_no_more_are_laid_than_asked_for_and_the_same_ones_again() -> None:
 def test_outlines_may_come_nearer_to_the_edge_than_polygons_to_each_other() -> None:
     """Squares of 10 that keep 2 from each other, and nothing from the edge: two in a strip of 22, and none too many."""
     items = [NestItem(np.asarray(SQUARE * 1.2, np.complex128), 1.0, (0.0,))]
-    places = fill(items, shapely.box(0, 0, 22.01, 10.01), NONE, outlines=[SQUARE])
+    places = fill(items, shapely.box(0, 0, 22.01, 10.01), NestPlaces.none(), outlines=[SQUARE])
     assert len(places.item) == 2
     assert abs(places.shift[1] - places.shift[0]) >= 12
-    assert len(fill(items, shapely.box(0, 0, 21.9, 10.01), NONE, outlines=[SQUARE]).item) == 1
+    assert len(fill(items, shapely.box(0, 0, 21.9, 10.01), NestPlaces.none(), outlines=[SQUARE]).item) == 1

@@ -130,8 +130,7 @@ def test_a_search_begins_with_the_tessellation_where_it_lies(name: str) -> None:
     layout = layout_of(tiling(name), **JOB)
     kinds = kinds_of(layout.tiles, 1.0, layout.budget.measured, grain=False)
     places = as_laid(layout, kinds, 0j, grain=False)
-    rows = zip(*(part.tolist() for part in places), strict=True)
-    rings = [kinds[k].item.ring * np.exp(1j * np.radians(turn)) + shift for k, turn, shift in rows]
+    rings = [kinds[k].item.ring * np.exp(1j * np.radians(turn)) + shift for k, turn, shift in places.rows()]
     around = [shapely.Polygon(np.column_stack((z.real, z.imag))) for z in rings]
     for shape, contour in zip(around, contour_shapes(layout.contours.paths), strict=True):
         assert shape.buffer(0.02).contains(contour)

@@ -36,8 +36,7 @@ def polygon(ring: Complexes) -> shapely.Polygon:
 
 def shapes(items: list[NestItem], places: NestPlaces) -> np.ndarray:
     """The pieces where they lie."""
-    rows = zip(*(part.tolist() for part in places), strict=True)
-    return np.array([polygon(items[k].ring * unit_at(turn) + shift) for k, turn, shift in rows])
+    return np.array([polygon(items[k].ring * unit_at(turn) + shift) for k, turn, shift in places.rows()])
 
 
 def check(items: list[NestItem], places: NestPlaces) -> None:

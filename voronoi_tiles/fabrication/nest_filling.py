@@ -21,7 +21,7 @@ import numpy as np
 from voronoi_tiles.base.arrays import Complexes, Floats, Ints, plane
 from voronoi_tiles.base.maps import unit_at
 from voronoi_tiles.fabrication.convex_parts import convex_parts, overlaps
-from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces
+from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces, least_counts
 
 _TURNS: Final = 24
 """Turns at which a piece is tried that may be turned as it likes, beside those of pieces of its kind; a count."""
@@ -56,13 +56,14 @@ def fill(
     laid: NestPlaces,
     demand: Ints | None = None,
     outlines: Sequence[Complexes] | None = None,
-    even: float = 0.0,
+    *,
+    even: bool = False,
 ) -> NestPlaces:
     """Further places for items in a region, a shapely polygon, or several, beside those that are `laid`.
 
     As many as fit, or at most as `demand` says (intp, one for each item); the next is always one of which there are
-    the fewest for its share, if it fits, and as long as each item then has a part `even` of its share at least. No two
-    of the items' polygons overlap; in the region are these or, if given, their `outlines` about the same 0.
+    the fewest for its share, if it fits, and if `even`, as long as each item then nearly has its share. No two of the
+    items' polygons overlap; in the region are these or, if given, their `outlines` about the same 0.
     """
     import shapely
 
@@ -70,7 +71,7 @@ def fill(
     left = np.full(len(items), np.iinfo(np.intp).max) if demand is None else demand.copy()
     rings = [_PartedRing.of(item.ring) for item in items]
     within = rings if outlines is None else [_PartedRing.of(ring) for ring in outlines]
-    room = _Room(region, [rings[k].turned(turn).moved(shift) for k, turn, shift in _rows(laid)])
+    room = _Room(region, [rings[k].turned(turn).moved(shift) for k, turn, shift in laid.rows()])
     postures = [
         _Posture(k, turn, rings[k].turned(turn), room.places(rings[k].turned(turn), within[k].turned(turn)))
         for k, item in enumerate(items)
@@ -91,7 +92,7 @@ def fill(
     def may_come(item: int) -> bool:
         """Whether there may be one more of an item: of what lacks there may, even where another lacks more."""
         more = counts + (np.arange(len(items)) == item)
-        need = np.floor(even * share * more.sum())
+        need = even * least_counts(share, int(more.sum()))
         return bool(left[item] > 0 and (counts[item] < need[item] or (more >= need).all()))
 
     found: list[tuple[int, float, complex]] = []
@@ -107,7 +108,7 @@ def fill(
         for other in postures:
             if left[other.item] > 0 and not other.places.is_empty:
                 other.places = shapely.MultiPolygon(_polygons(other.places.difference(no_fit(posture, other, shift))))
-    return NestPlaces(*map(np.array, zip(*found, strict=True))) if found else laid.take(np.zeros(0, np.intp))
+    return NestPlaces(*map(np.array, zip(*found, strict=True))) if found else NestPlaces.none()
 
 
 @dataclass(frozen=True, eq=False)
@@ -245,11 +246,6 @@ def _turns(item: NestItem, known: Floats) -> list[float]:
     if item.turns is not None:
         return list(item.turns)
     return list(dict.fromkeys([*np.unique(known)[:_KNOWN].tolist(), *np.linspace(0.0, 360.0, _TURNS, endpoint=False)]))
-
-
-def _rows(places: NestPlaces) -> list[tuple[int, float, complex]]:
-    """Item, turn and shift of each."""
-    return list(zip(*(part.tolist() for part in places), strict=True))
 
 
 def _polygons(shape: Any) -> list[Any]:

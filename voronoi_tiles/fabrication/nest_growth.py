@@ -12,12 +12,9 @@ import numpy as np
 from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.base.maps import unit_at
 from voronoi_tiles.fabrication.nest_patterns import pattern_layouts
-from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces
+from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces, least_counts
 from voronoi_tiles.fabrication.no_fit import NoFits
 from voronoi_tiles.fabrication.separation import Separation
-
-_EVEN: Final = 0.8
-"""The least part of its share that each kind has; lest there be many of what is small."""
 
 _TURN_DIGITS: Final = 6
 """Decimals of degrees in which ways to lie are told apart."""
@@ -93,14 +90,13 @@ def _grown(items: Sequence[NestItem], size: tuple[float, float], others: Sequenc
 def _best(items: Sequence[NestItem], found: Sequence[NestPlaces]) -> NestPlaces:
     """Those of most pieces; of each kind as many as its share, or nearly, where there are such."""
     share = np.array([item.share for item in items])
-    none = NestPlaces(np.zeros(0, np.intp), np.zeros(0), np.zeros(0, np.complex128))
-    return max(found, key=lambda places: (_is_even(places, share), len(places.item)), default=none)
+    return max(found, key=lambda places: (_is_even(places, share), len(places.item)), default=NestPlaces.none())
 
 
 def _is_even(places: NestPlaces, share: Floats) -> bool:
     """Whether each kind has its share of the pieces, or nearly."""
     counts = np.bincount(places.item, minlength=len(share))
-    return bool((counts >= np.floor(_EVEN * share * counts.sum())).all())
+    return bool((counts >= least_counts(share, int(counts.sum()))).all())
 
 
 class Growth:

@@ -9,7 +9,7 @@ from typing import Any, Final, NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, plane
+from voronoi_tiles.base.arrays import Complexes, Ints, plane
 from voronoi_tiles.fabrication.dressed_tiles import DressedTiles
 from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.nest_search import NestItem
@@ -52,19 +52,24 @@ def kind_keys(period: Period, *, grain: bool) -> list[tuple[int, ...]]:
     return keys
 
 
+def kind_numbers(period: Period, *, grain: bool) -> Ints:
+    """The number of the kind of each tile of a period, in the order of `kinds_of`, intp (n,)."""
+    keys = kind_keys(period, grain=grain)
+    numbers = {key: k for k, key in enumerate(dict.fromkeys(keys))}
+    return np.array([numbers[key] for key in keys], np.intp)
+
+
 def kinds_of(tiles: DressedTiles, gap: float, accuracy: float, *, grain: bool) -> list[NestKind]:
     """The kinds of pieces: those of a site are one, but those turned over, and with a grain, those turned otherwise.
 
     With a grain, a half turn makes no difference.
     """
     period = tiles.period
-    members: dict[tuple[int, ...], list[int]] = {}
-    for tile, key in enumerate(kind_keys(period, grain=grain)):
-        members.setdefault(key, []).append(tile)
+    number = kind_numbers(period, grain=grain)
     kinds: list[NestKind] = []
     first: dict[int, int] = {}
-    for (site, *_), own in members.items():
-        tile, share = own[0], len(own) / len(period.site)
+    for tile in np.unique(number, return_index=True)[1].tolist():
+        site, share = int(period.site[tile]), float((number == number[tile]).mean())
         like = first.setdefault(site, len(kinds))
         if like == len(kinds):
             ring, outline, holes = _polygons(tiles, tile, gap, accuracy)

@@ -142,7 +142,7 @@ def pattern_layouts(
         _band(k, item, own, (size[0], low, top), count)
         for k, (item, own, (low, top)) in enumerate(zip(items, patterns, pairwise(edges.tolist()), strict=True))
     ]
-    return [_joined(parts) for parts in zip(*bands, strict=True)]
+    return [NestPlaces.joined(*parts) for parts in zip(*bands, strict=True)]
 
 
 class _Way(NamedTuple):
@@ -182,7 +182,7 @@ def _band(
         if (most, round(turn) % 180) not in found and len(found) < count:
             found[most, round(turn) % 180] = _laid(item, own.ring, way, room, int(inside.argmax()), turn)
     laid = list(found.values())
-    return [laid[k % len(laid)] if laid else _joined([]) for k in range(count)]
+    return [laid[k % len(laid)] if laid else NestPlaces.none() for k in range(count)]
 
 
 def _laid(
@@ -193,7 +193,7 @@ def _laid(
     for half, (about, places) in enumerate(_orbits(way, ring, room)):
         z = places[move][_inside(about, places[move], room)]
         parts.append(NestPlaces(np.full(len(z), item), np.full(len(z), turn + 180.0 * half), z))
-    return _joined(parts)
+    return NestPlaces.joined(*parts)
 
 
 def _orbits(way: _Way, ring: Complexes, room: tuple[float, float, float]) -> Iterator[tuple[Complexes, Complexes]]:
@@ -224,13 +224,6 @@ def _inside(about: Complexes, z: Complexes, room: tuple[float, float, float]) ->
     width, low, top = room
     wide = (z.real >= -x.min()) & (z.real <= width - x.max())
     return np.asarray(wide & (z.imag >= low - y.min()) & (z.imag <= top - y.max()))
-
-
-def _joined(parts: Sequence[NestPlaces]) -> NestPlaces:
-    """All of some places."""
-    if not parts:
-        return NestPlaces(np.zeros(0, np.intp), np.zeros(0), np.zeros(0, np.complex128))
-    return NestPlaces(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
 def _along(edges: Floats, count: int) -> Complexes:

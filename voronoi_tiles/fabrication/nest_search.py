@@ -15,7 +15,7 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from threading import Thread
 from time import monotonic
-from typing import Any, Final, NamedTuple
+from typing import Any, Final, NamedTuple, Self
 
 import numpy as np
 
@@ -36,6 +36,9 @@ _SHORT_S: Final = 8.0
 
 _HOPE: Final = 1.04
 """By how much more time is hoped to make layouts denser; a factor."""
+
+_EVEN: Final = 0.8
+"""The least part of its share that each kind has, lest there be many of what is small."""
 
 _WATCH_S: Final = 0.1
 """How often the search is looked after; seconds."""
@@ -65,9 +68,28 @@ class NestPlaces(NamedTuple):
     turn: Floats
     shift: Complexes
 
+    @classmethod
+    def none(cls) -> Self:
+        """No places."""
+        return cls(np.zeros(0, np.intp), np.zeros(0), np.zeros(0, np.complex128))
+
+    @classmethod
+    def joined(cls, *parts: NestPlaces) -> Self:
+        """All of some places."""
+        return cls(*(np.concatenate(columns) for columns in zip(cls.none(), *parts, strict=True)))
+
+    def rows(self) -> list[tuple[int, float, complex]]:
+        """Item, turn and shift of each."""
+        return list(zip(*(part.tolist() for part in self), strict=True))
+
     def take(self, which: Ints) -> NestPlaces:
         """Some of them."""
         return NestPlaces(self.item[which], self.turn[which], self.shift[which])
+
+
+def least_counts(share: Floats, count: int) -> Floats:
+    """How many of each kind are among so many pieces at least where each nearly has its share, float64 (n,)."""
+    return np.floor(_EVEN * share * count)
 
 
 def counts_of(items: Sequence[NestItem], count: int) -> Ints:

@@ -17,7 +17,7 @@ from voronoi_tiles.base.values import shown
 from voronoi_tiles.fabrication.dressed_tiles import DressedTiles
 from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.layout import Layout, Piece, PlacedTiles
-from voronoi_tiles.fabrication.nest_kinds import NestKind, kind_keys
+from voronoi_tiles.fabrication.nest_kinds import NestKind, kind_numbers
 from voronoi_tiles.fabrication.nest_search import NestPlaces
 from voronoi_tiles.fabrication.tile_placement import TilePlacement
 from voronoi_tiles.paths.near_items import ROUNDING, near_items
@@ -143,11 +143,9 @@ def piece_at(tiles: DressedTiles, tile: int, about: complex, turn: float, shift:
 
 def as_laid(layout: Layout, kinds: Sequence[NestKind], corner: complex, *, grain: bool) -> NestPlaces:
     """Where the tiles of a tessellation lie, as places of items: so that the middles of their boxes are the same."""
-    keys = kind_keys(layout.period, grain=grain)
-    numbers = {key: k for k, key in enumerate(dict.fromkeys(keys))}
     factor = np.array([layout.tiles.page.after(motion)[0] for motion in layout.period.motion])
     tile = layout.copies.tile[layout.contours.copy]
-    item = np.array([numbers[key] for key in keys], np.intp)[tile]
+    item = kind_numbers(layout.period, grain=grain)[tile]
     unit = factor[tile] / factor[np.array([kind.tile for kind in kinds])[item]]
     box = item_boxes(layout.contours.paths, layout.contours.items)
     rings = [turned * kinds[k].item.ring for k, turned in zip(item.tolist(), unit.tolist(), strict=True)]

@@ -39,10 +39,10 @@ def region_within(outline: Paths, margin: float, accuracy: float) -> Any:
     return solid.difference(holes).buffer(-(margin + accuracy))
 
 
-def lay_in_region(kinds: Sequence[NestKind], region: Any, demand: Ints, even: float) -> NestPlaces:
+def lay_in_region(kinds: Sequence[NestKind], region: Any, demand: Ints, *, even: bool) -> NestPlaces:
     """Places in a region: those of a pattern moved over it as holds most, and what fits beside them.
 
-    Not more than `demand` of each kind (intp), and of each a part `even` of its share where there is room.
+    Not more than `demand` of each kind (intp), and if `even`, of each nearly its share where there is room.
     """
     import shapely
 
@@ -65,7 +65,8 @@ def lay_in_region(kinds: Sequence[NestKind], region: Any, demand: Ints, even: fl
     laid = capped(pattern.take(best), np.minimum(demand, np.ceil(share * len(best)).astype(np.intp)))
     laid = laid._replace(shift=laid.shift + move)
     left = demand - np.bincount(laid.item, minlength=len(items))
-    return joined(laid, fill(items, region, laid, left, [kind.outline for kind in kinds], even))
+    more = fill(items, region, laid, left, [kind.outline for kind in kinds], even=even)
+    return NestPlaces.joined(laid, more)
 
 
 def lay_in_holes(kinds: Sequence[NestKind], laid: NestPlaces, demand: Ints) -> NestPlaces:
@@ -73,25 +74,23 @@ def lay_in_holes(kinds: Sequence[NestKind], laid: NestPlaces, demand: Ints) -> N
     import shapely
 
     items, outlines = [kind.item for kind in kinds], [kind.outline for kind in kinds]
-    found = laid.take(np.zeros(0, np.intp))
+    found = NestPlaces.none()
     while True:
         holes = []
         for number in range(max((len(kind.holes) for kind in kinds), default=0)):
             own = np.flatnonzero([len(kinds[k].holes) > number for k in laid.item.tolist()])
             rings = [kind.holes[number] if len(kind.holes) > number else kind.outline for kind in kinds]
             holes += [shapely.Polygon(plane(ring)) for ring in _turned(laid.take(own), rings)]
-        none = laid.take(np.zeros(0, np.intp))
         left = demand - np.bincount(found.item, minlength=len(kinds))
         if not holes or not left.any():
             return found
-        laid = fill(items, shapely.MultiPolygon(holes), none, left, outlines)
-        found = joined(found, laid)
+        laid = fill(items, shapely.MultiPolygon(holes), NestPlaces.none(), left, outlines)
+        found = NestPlaces.joined(found, laid)
 
 
 def _turned(places: NestPlaces, rings: Sequence[Complexes]) -> list[Complexes]:
     """The polygons of pieces where they lie; `rings` are those of the kinds."""
-    rows = zip(*(part.tolist() for part in places), strict=True)
-    return [rings[k] * unit_at(turn) + shift for k, turn, shift in rows]
+    return [rings[k] * unit_at(turn) + shift for k, turn, shift in places.rows()]
 
 
 def capped(places: NestPlaces, demand: Ints) -> NestPlaces:
@@ -99,8 +98,3 @@ def capped(places: NestPlaces, demand: Ints) -> NestPlaces:
     own = [np.flatnonzero(places.item == k) for k in range(len(demand))]
     first = [one[np.argsort(places.shift.real[one], kind="stable")] for one in own]
     return places.take(np.concatenate([one[:most] for one, most in zip(first, demand.tolist(), strict=True)]))
-
-
-def joined(one: NestPlaces, other: NestPlaces) -> NestPlaces:
-    """Places, and others."""
-    return NestPlaces(*(np.concatenate(parts) for parts in zip(one, other, strict=True)))

@@ -21,10 +21,7 @@ from voronoi_tiles.fabrication.nest_kinds import NestKind, kinds_of, refuse_larg
 from voronoi_tiles.fabrication.nest_places import NESTED_MAX
 from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces, Progress, counts_of, has_search, most_pieces
 from voronoi_tiles.fabrication.nested_pieces import as_laid, misplaced, piece_at, placed
-from voronoi_tiles.fabrication.nested_regions import capped, joined, lay_in_holes, lay_in_region, region_within
-
-EVEN: Final = 0.8
-"""The least part of its share that each kind has where no demand says how many, and no search drops some."""
+from voronoi_tiles.fabrication.nested_regions import capped, lay_in_holes, lay_in_region, region_within
 
 SHEETS_MOST: Final = 1_000
 """Most sheets that pieces are nested on; a count."""
@@ -87,7 +84,7 @@ class Nesting:
             kinds = [
                 self.kinds[k]._replace(item=item) for k, item in zip(which, self._wanted(which, demand), strict=True)
             ]
-            found = lay_in_region(kinds, self.region, left[which], EVEN if demand is None else 0.0)
+            found = lay_in_region(kinds, self.region, left[which], even=demand is None)
             found = found._replace(item=which[found.item])
         elif demand is None:
             known = [] if unnested is None else [as_laid(unnested, self.kinds, self.corner, grain=self.job.grain)]
@@ -96,7 +93,7 @@ class Nesting:
             found = self._demanded(demand, progress, search=search)
         found = self._kept(found)
         left = left - np.bincount(found.item, minlength=len(items))
-        found = self._kept(joined(found, lay_in_holes(self.kinds, found, left)))
+        found = self._kept(NestPlaces.joined(found, lay_in_holes(self.kinds, found, left)))
         return self._laid(found), np.bincount(found.item, minlength=len(items))
 
     def _wanted(self, which: Ints, demand: Ints | None) -> list[NestItem]:
@@ -120,7 +117,7 @@ class Nesting:
             """Not more of each than there shall be; and more where there is room."""
             some = capped(places, demand[which])
             left = demand[which] - np.bincount(some.item, minlength=len(items))
-            return joined(some, fill(items, shapely.box(0.0, 0.0, *self.room), some, left))
+            return NestPlaces.joined(some, fill(items, shapely.box(0.0, 0.0, *self.room), some, left))
 
         found = filled(most_laid(items, self.room))
         if search and len(found.item) < demand.sum():
@@ -147,7 +144,7 @@ class Nesting:
 
     def _laid(self, places: NestPlaces) -> Layout:
         """The layout with pieces at places."""
-        return placed(self.layout, [self._piece(*row) for row in _rows(places)])
+        return placed(self.layout, [self._piece(*row) for row in places.rows()])
 
     def _piece(self, kind: int, turn: float, shift: complex) -> Piece:
         """What a recipe says of a place."""
@@ -218,8 +215,3 @@ def wanted_of(job: Job, names: Sequence[str]) -> list[int] | None:
         if name not in names:
             raise JobError(f"`count`: no site is called {shown(name)}", remedy=f"Its sites are {', '.join(names)}.")
     return [int(asked.get(name, 0)) for name in names]
-
-
-def _rows(places: NestPlaces) -> list[tuple[int, float, complex]]:
-    """Item, turn and shift of each."""
-    return list(zip(*(part.tolist() for part in places), strict=True))

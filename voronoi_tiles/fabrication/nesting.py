@@ -17,10 +17,9 @@ from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.job_options import EFFORT_S, LAYOUTS, JobError
 from voronoi_tiles.fabrication.layout import Layout, Sheet
 from voronoi_tiles.fabrication.nest_places import NESTED_MAX, read_places
-from voronoi_tiles.fabrication.nest_search import Progress, has_search
+from voronoi_tiles.fabrication.nest_search import Progress, has_search, least_counts
 from voronoi_tiles.fabrication.nested_pieces import laid_again
 from voronoi_tiles.fabrication.nested_sheets import (
-    EVEN,
     SHEETS_MOST,
     Nesting,
     counted_sheets,
@@ -165,7 +164,7 @@ def _uneven(layout: Layout) -> list[str]:
     count, share = (
         np.bincount(layout.period.site[which], minlength=len(names)) for which in (layout.copies.tile, slice(None))
     )
-    few = count < np.floor(EVEN * share / share.sum() * count.sum())
+    few = count < least_counts(share / share.sum(), int(count.sum()))
     return [
         f"of {names[k]} there are {count[k]:,}, fewer than its share of the tessellation: `count` says how many of each"
         for k in np.flatnonzero(few).tolist()
