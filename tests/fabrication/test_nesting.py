@@ -21,7 +21,7 @@ from helpers.examples import tiling
 from helpers.sheets import flattened, xy
 
 from voronoi_tiles import Design, Tiling
-from voronoi_tiles.fabrication import nesting, packed_sheets
+from voronoi_tiles.fabrication import nested_sheets, nesting, packed_sheets
 from voronoi_tiles.fabrication.exporting import Exported
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.job_options import JobError
@@ -129,12 +129,34 @@ def test_a_search_begins_with_the_tessellation_where_it_lies(name: str) -> None:
     """What stands for its pieces is around them, turned over or not."""
     layout = layout_of(tiling(name), **JOB)
     kinds = kinds_of(layout.tiles, 1.0, layout.budget.measured, grain=False)
-    places = as_laid(layout, kinds, 0j, grain=False)
+    places = as_laid(layout, layout.tiles, kinds, 0j, grain=False)
     rings = [kinds[k].item.ring * np.exp(1j * np.radians(turn)) + shift for k, turn, shift in places.rows()]
     around = [shapely.Polygon(np.column_stack((z.real, z.imag))) for z in rings]
     for shape, contour in zip(around, contour_shapes(layout.contours.paths), strict=True):
         assert shape.buffer(0.02).contains(contour)
     assert len(around) == len(layout.copies.tile) > 4
+
+
+BIRD = """schema = 1
+group = "p4"
+cell = { a = 60 }
+[[site]]
+strokes = [{ catmull_rom = [[6, 9], [22, 5], [27, 17], [13, 25]] }]
+"""
+"""Tiles that nearly fill a sheet as they lie: the polygons around them reach beyond it."""
+
+
+@pytest.mark.parametrize("search", [{"layout": "auto"}, {"layout": "nested", "effort": 1}])
+def test_no_fewer_are_nested_than_lie_as_in_the_tessellation(
+    search: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A search begins with its places, exactly where they are; so many are also laid where they are counted."""
+    monkeypatch.setattr(nested_sheets, "has_search", lambda: False)
+    tiles = Design.loads(BIRD).tessellate()
+    job: dict[str, Any] = {"sheet": (130.0, 110.0), "margin": 4.0, "kerf": 0.15}
+    count = tiles.make(Job(**job)).pieces.count
+    assert [note for note in tiles.make(Job(**job, **search)).notes if f"would be {count} pieces" in note]
+    assert tiles.make(Job(**job, **search, count=count)).pieces.count == count
 
 
 def moved(layout: Layout, k: int, by: complex) -> Layout:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from itertools import count
 from time import monotonic
 from typing import Final
@@ -36,10 +36,18 @@ _MANY: Final = 64
 _REMEMBERED_MAX: Final = 8
 """Most layouts that are remembered; a count."""
 
-_REMEMBERED: dict[tuple[bytes, ...], NestPlaces] = {}
+_REMEMBERED: dict[tuple[bytes, ...], list[NestPlaces]] = {}
+
+Kept = Callable[[NestPlaces], NestPlaces]
+"""Gives those of some places that are good, lest a layout is chosen for pieces that are left out afterwards."""
 
 
-def most_laid(items: Sequence[NestItem], size: tuple[float, float], others: Sequence[NestPlaces] = ()) -> NestPlaces:
+def most_laid(
+    items: Sequence[NestItem],
+    size: tuple[float, float],
+    others: Sequence[NestPlaces] = (),
+    kept: Kept = lambda places: places,
+) -> NestPlaces:
     """The most pieces that patterns, and what grows of them and of other layouts, lay on a rectangle from 0 to `size`.
 
     What is put in is of the kind that lacks most of its share. All of it is repeatable, and the last few are
@@ -47,11 +55,13 @@ def most_laid(items: Sequence[NestItem], size: tuple[float, float], others: Sequ
     """
     arrays = [item.ring for item in items] + [array for places in others for array in places]
     asked = (repr((size, [item[1:] for item in items])).encode(), *(array.tobytes() for array in arrays))
-    found = _REMEMBERED.pop(asked, None) or _best(items, [growth.places for growth in _grown(items, size, others)])
+    found = _REMEMBERED.pop(asked, None)
+    if found is None:
+        found = [*others, *(growth.places for growth in _grown(items, size, others))]
     _REMEMBERED[asked] = found
     if len(_REMEMBERED) > _REMEMBERED_MAX:
         _REMEMBERED.pop(next(iter(_REMEMBERED)))
-    return found
+    return _best(items, map(kept, found))
 
 
 def most_found(
@@ -61,6 +71,7 @@ def most_found(
     effort: float,
     seed: int,
     progress: Callable[[float], None],
+    kept: Kept = lambda places: places,
 ) -> NestPlaces:
     """The same where each layout grows again and again, for `effort` seconds; `progress` is told of those passed."""
     begun = monotonic()
@@ -71,7 +82,7 @@ def most_found(
         if now >= effort or not growths:
             break
         growths[number % len(growths)].grow((seed + 1) * _SEEDS + number, _AGAIN)
-    return _best(items, [growth.places for growth in growths])
+    return _best(items, map(kept, (*others, *(growth.places for growth in growths))))
 
 
 def _grown(items: Sequence[NestItem], size: tuple[float, float], others: Sequence[NestPlaces]) -> list[Growth]:
@@ -87,7 +98,7 @@ def _grown(items: Sequence[NestItem], size: tuple[float, float], others: Sequenc
     return growths
 
 
-def _best(items: Sequence[NestItem], found: Sequence[NestPlaces]) -> NestPlaces:
+def _best(items: Sequence[NestItem], found: Iterable[NestPlaces]) -> NestPlaces:
     """Those of most pieces; of each kind as many as its share, or nearly, where there are such."""
     share = np.array([item.share for item in items])
     return max(found, key=lambda places: (_is_even(places, share), len(places.item)), default=NestPlaces.none())

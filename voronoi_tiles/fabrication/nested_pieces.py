@@ -10,7 +10,7 @@ from typing import Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Ints
+from voronoi_tiles.base.arrays import Complexes, Ints
 from voronoi_tiles.base.maps import unit_at
 from voronoi_tiles.base.text import counted
 from voronoi_tiles.base.values import shown
@@ -141,14 +141,24 @@ def piece_at(tiles: DressedTiles, tile: int, about: complex, turn: float, shift:
     return Piece(int(tiles.period.site[tile]), conj, angle, complex(x, y))
 
 
-def as_laid(layout: Layout, kinds: Sequence[NestKind], corner: complex, *, grain: bool) -> NestPlaces:
-    """Where the tiles of a tessellation lie, as places of items: so that the middles of their boxes are the same."""
-    factor = np.array([layout.tiles.page.after(motion)[0] for motion in layout.period.motion])
-    tile = layout.copies.tile[layout.contours.copy]
-    item = kind_numbers(layout.period, grain=grain)[tile]
-    unit = factor[tile] / factor[np.array([kind.tile for kind in kinds])[item]]
-    box = item_boxes(layout.contours.paths, layout.contours.items)
-    rings = [turned * kinds[k].item.ring for k, turned in zip(item.tolist(), unit.tolist(), strict=True)]
-    middle = np.array([complex(np.ptp(z.real) / 2 + z.real.min(), np.ptp(z.imag) / 2 + z.imag.min()) for z in rings])
-    place = (box[:, 0] + box[:, 2]) / 2 + 1j * (box[:, 1] + box[:, 3]) / 2
-    return NestPlaces(item, np.degrees(np.angle(unit)), place - middle - corner)
+def as_laid(
+    layout: Layout, tiles: DressedTiles, kinds: Sequence[NestKind], corner: complex, *, grain: bool
+) -> NestPlaces:
+    """Where the tiles of a tessellation lie, as places of items; `tiles` are those that the kinds were found in."""
+    copies, period = layout.copies, layout.period
+    of = layout.contours.copy
+    tile = copies.tile[of]
+    item = kind_numbers(period, grain=grain)[tile]
+    factor, origin = _origins(layout.tiles)
+    own_factor, own_origin = (part[np.array([kind.tile for kind in kinds])][item] for part in _origins(tiles))
+    unit = factor[tile] / own_factor
+    place = origin[tile] + period.shifts(copies.step[of]) + copies.moved_by[of]
+    middle = np.array([kind.middle for kind in kinds])[item]
+    return NestPlaces(item, np.degrees(np.angle(unit)), place - unit * (own_origin - middle) - corner)
+
+
+def _origins(tiles: DressedTiles) -> tuple[Complexes, Complexes]:
+    """How each tile of the period is turned on the page, and where its origin lies, complex128 (n,) both."""
+    placed = [tiles.page.after(motion)[:2] for motion in tiles.period.motion]
+    factor, origin = np.array(placed, np.complex128).T
+    return factor, origin

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Final
 
@@ -29,18 +29,22 @@ SHEETS_MOST: Final = 1_000
 
 @dataclass(frozen=True, eq=False)
 class Nesting:
-    """The kinds of pieces that are nested, a layout whose sheet they are laid on, and how many sheets at most."""
+    """The kinds of pieces that are nested, a layout whose sheet they are laid on, and how many sheets at most.
+
+    `unnested` is the same sheet as the tessellation lies on it: a search begins with its places as well.
+    """
 
     layout: Layout
     job: Job
     kinds: list[NestKind]
     most: int
+    unnested: Layout | None = None
 
     @classmethod
-    def of(cls, layout: Layout, job: Job, most: int = 1) -> Nesting:
+    def of(cls, layout: Layout, job: Job, most: int = 1, unnested: Layout | None = None) -> Nesting:
         """The kinds of pieces of a layout."""
         kinds = kinds_of(layout.tiles, job.side_by_side, layout.budget.measured, grain=job.grain)
-        return cls(layout, job, kinds, most)
+        return cls(layout, job, kinds, most, unnested)
 
     @cached_property
     def region(self) -> Any:
@@ -63,67 +67,79 @@ class Nesting:
         return 0j if self.region is not None else (self.job.margin - self.job.side_by_side / 2) * (1 + 1j)
 
     def sheet(
-        self,
-        demand: Ints | None = None,
-        progress: Progress | None = None,
-        *,
-        search: bool,
-        unnested: Layout | None = None,
+        self, demand: Ints | None = None, progress: Progress | None = None, *, search: bool
     ) -> tuple[Layout, Ints]:
         """A sheet with as many pieces as places are found for, and how many of each kind (intp).
 
-        With `search` they are looked for as long as the job says; what is tried begins also with those of a
-        tessellation, `unnested`. Not more than `demand` of each kind (intp), where that says how many. Sheets that are
-        drawn are not searched. Raises JobError where a piece is larger than the sheet.
+        With `search` they are looked for as long as the job says. Not more than `demand` of each kind (intp), where
+        that says how many. Sheets that are drawn are not searched. Raises JobError where a piece is larger than the
+        sheet.
         """
-        items = [kind.item for kind in self.kinds]
-        left = np.full(len(items), NESTED_MAX) if demand is None else demand
-        which = np.flatnonzero(left)
-        refuse_large([items[k] for k in which.tolist()], self.room, self.job.side_by_side)
-        if self.region is not None:
-            kinds = [
-                self.kinds[k]._replace(item=item) for k, item in zip(which, self._wanted(which, demand), strict=True)
-            ]
-            found = lay_in_region(kinds, self.region, left[which], even=demand is None)
-            found = found._replace(item=which[found.item])
-        elif demand is None:
-            known = [] if unnested is None else [as_laid(unnested, self.kinds, self.corner, grain=self.job.grain)]
-            found = self._searched(items, known, progress) if search else most_laid(items, self.room, known)
-        else:
-            found = self._demanded(demand, progress, search=search)
-        found = self._kept(found)
-        left = left - np.bincount(found.item, minlength=len(items))
-        found = self._kept(NestPlaces.joined(found, lay_in_holes(self.kinds, found, left)))
-        return self._laid(found), np.bincount(found.item, minlength=len(items))
+        which = np.arange(len(self.kinds)) if demand is None else np.flatnonzero(demand)
+        some = replace(self, kinds=self._wanted(which, demand))
+        most = None if demand is None else demand[which]
+        found = some.places(self._tessellated(which), most, progress, search=search)
+        found = found._replace(item=which[found.item])
+        return self._laid(found), np.bincount(found.item, minlength=len(self.kinds))
 
-    def _wanted(self, which: Ints, demand: Ints | None) -> list[NestItem]:
-        """Some of the items, with the shares that a demand gives them."""
-        items = []
+    def places(
+        self, known: Sequence[NestPlaces], demand: Ints | None, progress: Progress | None, *, search: bool
+    ) -> NestPlaces:
+        """Places for all kinds in their proportions, `known` ones or better; not more of each than a demand says."""
+        refuse_large([kind.item for kind in self.kinds], self.room, self.job.side_by_side)
+        left = np.full(len(self.kinds), NESTED_MAX) if demand is None else demand
+        if self.region is not None:
+            found = lay_in_region(self.kinds, self.region, left, even=demand is None)
+        else:
+            found = self._on_rectangle(known, demand, progress, search=search)
+        found = self._kept(found)
+        left = left - np.bincount(found.item, minlength=len(self.kinds))
+        more = self._kept(NestPlaces.joined(found, lay_in_holes(self.kinds, found, left)))
+        return max(found, more, key=lambda places: len(places.item))
+
+    def _wanted(self, which: Ints, demand: Ints | None) -> list[NestKind]:
+        """Some of the kinds, with the shares that a demand gives them."""
+        kinds = []
         for k in which.tolist():
             item = self.kinds[k].item
             at = np.flatnonzero(which == item.like)
             share = item.share if demand is None else int(demand[k]) / int(demand.sum())
-            items.append(item._replace(share=share, like=int(at[0]) if len(at) else None))
-        return items
+            item = item._replace(share=share, like=int(at[0]) if len(at) else None)
+            kinds.append(self.kinds[k]._replace(item=item))
+        return kinds
 
-    def _demanded(self, demand: Ints, progress: Progress | None, *, search: bool) -> NestPlaces:
-        """Places on a rectangle for at most so many of each kind, in these proportions."""
+    def _tessellated(self, which: Ints) -> list[NestPlaces]:
+        """The places of some kinds in the tessellation, where there is one."""
+        if self.unnested is None:
+            return []
+        laid = as_laid(self.unnested, self.layout.tiles, self.kinds, self.corner, grain=self.job.grain)
+        laid = laid.take(np.flatnonzero(np.isin(laid.item, which)))
+        return [laid._replace(item=np.searchsorted(which, laid.item))]
+
+    def _on_rectangle(
+        self, known: Sequence[NestPlaces], demand: Ints | None, progress: Progress | None, *, search: bool
+    ) -> NestPlaces:
+        """Places on a rectangle, in the kinds' proportions; for not more of each than a demand says."""
         import shapely
 
-        which = np.flatnonzero(demand)
-        items = self._wanted(which, demand)
+        items = [kind.item for kind in self.kinds]
+        if demand is None and search:
+            return self._searched(items, known, progress)
+        found = most_laid(items, self.room, known, self._kept)
+        if demand is None:
+            return found
 
         def filled(places: NestPlaces) -> NestPlaces:
             """Not more of each than there shall be; and more where there is room."""
-            some = capped(places, demand[which])
-            left = demand[which] - np.bincount(some.item, minlength=len(items))
+            some = capped(places, demand)
+            left = demand - np.bincount(some.item, minlength=len(items))
             return NestPlaces.joined(some, fill(items, shapely.box(0.0, 0.0, *self.room), some, left))
 
-        found = filled(most_laid(items, self.room))
+        found = filled(found)
         if search and len(found.item) < demand.sum():
-            more = self._searched(items, [found], progress)
+            more = self._searched(items, [*known, found], progress)
             found = max(found, filled(more), key=lambda places: len(places.item))
-        return found._replace(item=which[found.item])
+        return found
 
     def _searched(
         self, items: Sequence[NestItem], known: Sequence[NestPlaces], progress: Progress | None
@@ -137,7 +153,7 @@ class Nesting:
             if progress is not None:
                 progress(min(now, effort), effort)
 
-        found = most_found(items, self.room, known, own, seed, tell)
+        found = most_found(items, self.room, known, own, seed, tell, self._kept)
         if own < effort:
             found = most_pieces(items, self.room, found, effort - own, seed, lambda now: tell(own + now))
         return found

@@ -67,9 +67,8 @@ def arranged(lay: Callable[..., Layout], job: Job, sheet: Sheet, progress: Progr
     if saved is not None:
         again = laid_again(base, saved.pieces, job.layout, grain=job.grain)
         return Arranged((again,), saved.doubts(base.design, job.layout))
-    if job.count is not None:
-        return _counted(base, job, progress)
-    return _densest(base, partial(lay, job=plain, sheet=sheet), job, progress)
+    nest = _densest if job.count is None else _counted
+    return nest(base, partial(lay, job=plain, sheet=sheet), job, progress)
 
 
 def _base(lay: Callable[..., Layout], plain: Job, sheet: Sheet) -> Layout:
@@ -101,7 +100,7 @@ def _of_stock(lay: Callable[..., Layout], job: Job) -> Nesting:
     return Nesting.of(base, one_sheet, job.sheets or SHEETS_MOST)
 
 
-def _counted(base: Layout, job: Job, progress: Progress | None) -> Arranged:
+def _counted(base: Layout, lay: Callable[[], Layout], job: Job, progress: Progress | None) -> Arranged:
     """So many pieces of each site as a job asks for, on its sheets."""
     crowd = _crowd(base)
     if crowd is not None:
@@ -109,7 +108,8 @@ def _counted(base: Layout, job: Job, progress: Progress | None) -> Arranged:
     wanted = wanted_of(job, [site.name for site in base.design.noded])
     assert wanted is not None, "there is a count"
     search = job.layout == "nested"
-    nesting = Nesting.of(base, job, job.sheets or 1)
+    unnested, _ = _tried(lay)
+    nesting = Nesting.of(base, job, job.sheets or 1, unnested)
     sheets = counted_sheets(nesting, demand_of_sites(nesting, wanted), progress, search=search)
     said = [_UNSEARCHED] if search and not has_search() and not isinstance(job.sheet, str) else []
     said += [f"{counted(len(sheets), 'sheet')}: {'; '.join(map(_counts, sheets))}"] if len(sheets) > 1 else []
@@ -123,15 +123,10 @@ def _densest(base: Layout, lay: Callable[[], Layout], job: Job, progress: Progre
         if job.layout == "auto":
             return Arranged((lay(),))
         raise crowd
-    unnested: Layout | None = None
-    refusal: JobError | None = None
-    try:
-        unnested = lay()
-    except JobError as error:
-        refusal = error  # what is hooked, or does not fit as it lies, may fit by itself
+    unnested, refusal = _tried(lay)
     fewer = 0 if unnested is None else len(unnested.copies.tile)
     search = job.layout == "nested"
-    nested, _ = Nesting.of(base, job).sheet(unnested=unnested, progress=progress, search=search)
+    nested, _ = Nesting.of(base, job, unnested=unnested).sheet(progress=progress, search=search)
     count = len(nested.pieces)
     said = [_UNSEARCHED] if search and not has_search() else []
     if unnested is not None and count <= fewer:
@@ -145,6 +140,14 @@ def _densest(base: Layout, lay: Callable[[], Layout], job: Job, progress: Progre
     as_drawn = counted(0, "piece") if unnested is None else _counts(unnested)
     said.append(f"nested are {_counts(nested)}: as in the tessellation there would be {as_drawn}")
     return Arranged((nested,), tuple(said))
+
+
+def _tried(lay: Callable[[], Layout]) -> tuple[Layout, None] | tuple[None, JobError]:
+    """What `lay` lays, or its refusal: what is hooked, or does not fit as it lies, may fit by itself."""
+    try:
+        return lay(), None
+    except JobError as error:
+        return None, error
 
 
 def _crowd(base: Layout) -> JobError | None:
