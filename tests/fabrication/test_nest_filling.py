@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import shapely
 
 from voronoi_tiles.base.arrays import Complexes, plane
+from voronoi_tiles.fabrication import nested_regions
 from voronoi_tiles.fabrication.convex_parts import convex_parts, overlaps
 from voronoi_tiles.fabrication.nest_filling import fill
 from voronoi_tiles.fabrication.nest_kinds import NestKind
 from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces
-from voronoi_tiles.fabrication.nested_regions import lay_in_region
+from voronoi_tiles.fabrication.nested_regions import lay_in_holes, lay_in_region
 
 BAY = np.array([0, 10, 10 + 10j, 6 + 10j, 6 + 8j, 8 + 8j, 8 + 2j, 2 + 2j, 2 + 8j, 5 + 8j, 5 + 10j, 10j])
 """A room with a door that is narrower than it; corners of it lie on one line."""
@@ -127,6 +130,35 @@ def test_a_drawn_region_holds_each_kind_by_its_share() -> None:
     assert region.buffer(1e-4).contains(shapely.union_all(pieces))
     assert (counts >= np.floor(0.8 * counts.sum() / 3)).all(), counts
     assert sum(piece.area for piece in pieces) > 0.6 * region.area
+
+
+def test_holes_are_filled_once_for_all_pieces_of_a_kind(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of 24 frames each has one of two others in its hole, and not one more than is asked for; few holes are filled."""
+    rings = [np.asarray(SQUARE * 2, np.complex128), SQUARE, np.asarray(ELL * 0.9, np.complex128)]
+    kinds = [NestKind(0, 0j, NestItem(ring, 1 / 3, None), ring, ()) for ring in rings]
+    kinds[0] = kinds[0]._replace(holes=(np.asarray(SQUARE * 1.1, np.complex128),))
+    places = NestPlaces(np.zeros(24, np.intp), np.arange(24) * 15.0, np.arange(24) * (50 + 7j))
+    filled: list[int] = []
+
+    def counted(*args: Any, **named: Any) -> NestPlaces:
+        """Fill, and say how many holes."""
+        filled.append(shapely.get_num_geometries(args[1]))
+        return fill(*args, **named)
+
+    monkeypatch.setattr(nested_regions, "fill", counted)
+    for demand, wanted in (([99, 99, 99], 24), ([0, 3, 2], 5), ([0, 0, 0], 0)):
+        inner = lay_in_holes(kinds, places, np.array(demand))
+        counts = np.bincount(inner.item, minlength=3)
+        assert counts.sum() == wanted
+        assert (counts <= demand).all()
+        assert abs(counts[1] - counts[2]) <= 1
+        pieces = shapes([kind.item for kind in kinds], inner)
+        holes = [shapely.affinity.rotate(polygon(SQUARE * 1.1), turn, origin=(0, 0)) for turn in places.turn]
+        holes = [shapely.affinity.translate(hole, z.real, z.imag) for hole, z in zip(holes, places.shift, strict=True)]
+        within = shapely.contains(shapely.buffer(holes, 1e-6)[:, None], np.array(pieces, object))
+        assert within.any(axis=0).all()
+        assert within.sum(axis=1).max(initial=0) <= 1
+    assert sum(filled) <= 8
 
 
 def test_pieces_are_laid_beside_those_that_lie_there_the_lowest_place_first() -> None:

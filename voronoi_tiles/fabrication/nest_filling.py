@@ -58,16 +58,18 @@ def fill(
     outlines: Sequence[Complexes] | None = None,
     *,
     even: bool = False,
+    beside: Ints | int = 0,
 ) -> NestPlaces:
     """Further places for items in a region, a shapely polygon, or several, beside those that are `laid`.
 
     As many as fit, or at most as `demand` says (intp, one for each item); the next is always one of which there are
     the fewest for its share, if it fits, and if `even`, as long as each item then nearly has its share. No two of the
-    items' polygons overlap; in the region are these or, if given, their `outlines` about the same 0.
+    items' polygons overlap; in the region are these or, if given, their `outlines` about the same 0. `beside` says how
+    many there are of each elsewhere.
     """
     import shapely
 
-    counts, share = np.bincount(laid.item, minlength=len(items)), np.array([item.share for item in items])
+    counts, share = beside + np.bincount(laid.item, minlength=len(items)), np.array([item.share for item in items])
     left = np.full(len(items), np.iinfo(np.intp).max) if demand is None else demand.copy()
     rings = [_PartedRing.of(item.ring) for item in items]
     within = rings if outlines is None else [_PartedRing.of(ring) for ring in outlines]

@@ -82,6 +82,10 @@ class NestPlaces(NamedTuple):
         """Item, turn and shift of each."""
         return list(zip(*(part.tolist() for part in self), strict=True))
 
+    def moved(self, turn: float, shift: complex) -> NestPlaces:
+        """All of them turned about 0 by degrees, and moved."""
+        return NestPlaces(self.item, (self.turn + turn) % 360.0, self.shift * unit_at(turn) + shift)
+
     def take(self, which: Ints) -> NestPlaces:
         """Some of them."""
         return NestPlaces(self.item[which], self.turn[which], self.shift[which])

@@ -13,7 +13,7 @@ from voronoi_tiles.base.maps import unit_at
 from voronoi_tiles.fabrication.nest_filling import fill
 from voronoi_tiles.fabrication.nest_kinds import NestKind
 from voronoi_tiles.fabrication.nest_patterns import pattern_layouts
-from voronoi_tiles.fabrication.nest_search import NestPlaces
+from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces
 from voronoi_tiles.fabrication.no_fit import NoFits
 from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.conversion import to_lines
@@ -70,22 +70,36 @@ def lay_in_region(kinds: Sequence[NestKind], region: Any, demand: Ints, *, even:
 
 
 def lay_in_holes(kinds: Sequence[NestKind], laid: NestPlaces, demand: Ints) -> NestPlaces:
-    """Places in the holes of pieces that are laid, and in the holes of those; not more than `demand` of each kind."""
+    """Places in the holes of pieces that are laid, and in the holes of those; not more than `demand` of each kind.
+
+    Pieces of a kind have the same in them, as long as the same kinds are wanted, in the same order of need.
+    """
     import shapely
 
     items, outlines = [kind.item for kind in kinds], [kind.outline for kind in kinds]
-    found = NestPlaces.none()
-    while True:
-        holes = []
-        for number in range(max((len(kind.holes) for kind in kinds), default=0)):
-            own = np.flatnonzero([len(kinds[k].holes) > number for k in laid.item.tolist()])
-            rings = [kind.holes[number] if len(kind.holes) > number else kind.outline for kind in kinds]
-            holes += [shapely.Polygon(plane(ring)) for ring in _turned(laid.take(own), rings)]
-        left = demand - np.bincount(found.item, minlength=len(kinds))
-        if not holes or not left.any():
-            return found
-        laid = fill(items, shapely.MultiPolygon(holes), NestPlaces.none(), left, outlines)
+    share = np.array([item.share for item in items])
+    known: dict[tuple[int, ...], NestPlaces] = {}
+    found, left, counts = NestPlaces.none(), demand, np.bincount(laid.item, minlength=len(items))
+    while len(laid.item) and left.any():
+        inner = []
+        for k, turn, shift in laid.rows():
+            for number, hole in enumerate(kinds[k].holes):
+                key = k, number, *np.argsort((counts + 1) / share, kind="stable").tolist(), *(left > 0).tolist()
+                if key not in known or (_counts(known[key], items) > left).any():
+                    known[key] = fill(
+                        items, shapely.Polygon(plane(hole)), NestPlaces.none(), left, outlines, beside=counts
+                    )
+                inner.append(known[key].moved(turn, shift))
+                more = _counts(inner[-1], items)
+                left, counts = left - more, counts + more
+        laid = NestPlaces.joined(*inner)
         found = NestPlaces.joined(found, laid)
+    return found
+
+
+def _counts(places: NestPlaces, items: Sequence[NestItem]) -> Ints:
+    """How many there are of each item."""
+    return np.bincount(places.item, minlength=len(items))
 
 
 def _turned(places: NestPlaces, rings: Sequence[Complexes]) -> list[Complexes]:
