@@ -130,6 +130,31 @@ def test_pieces_that_overlap_are_moved_apart_or_it_is_said_that_they_are_not() -
             assert found.tried >= 3000
 
 
+@pytest.mark.parametrize("kernels", ["", "numpy"])
+def test_without_a_search_it_is_said_whether_pieces_overlap(kernels: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """No line is tried, and none is moved."""
+    monkeypatch.setenv("VORONOI_TILES_KERNELS", kernels)
+    for shift, apart in ((30j, True), (5 + 1j, False)):
+        two = NestPlaces(np.zeros(2, np.intp), np.zeros(2), np.array([10 + 8j, 10 + 8j + shift]))
+        growth = Growth(ITEMS[:1], ROOM, two, NoFits([HOOK]))
+        found = growth._separation.separated(growth._kind, growth._way, growth._place, seed=1, effort=0)
+        assert (found.apart, found.tried) == (apart, 0)
+        assert found.place.tolist() == two.shift.tolist()
+
+
+def test_on_a_sheet_that_is_lower_by_a_little_the_kernels_find_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pieces of a tessellation may fit though their polygons do not: there is less than no room for these."""
+    five = NestPlaces(np.zeros(5, np.intp), np.zeros(5), 20 + 5j + 3 * np.arange(5))
+    found = []
+    for kernels in ("", "numpy"):
+        monkeypatch.setenv("VORONOI_TILES_KERNELS", kernels)
+        growth = Growth(ITEMS[:1], (140.0, 11.9), five, NoFits([HOOK]))
+        found.append(growth._separation.separated(growth._kind, growth._way, growth._place, seed=1, effort=400))
+    assert found[0].tried == found[1].tried > 0
+    assert found[0].apart is found[1].apart is True
+    assert found[0].place.tobytes() == found[1].place.tobytes()
+
+
 def test_pieces_that_no_way_to_lie_has_room_for_are_left_out() -> None:
     """The mirrored one is too long for this sheet where nothing else turns it; and of none nothing grows."""
     bar = np.array([0, 50, 50 + 4j, 4j]) - (25 + 2j)

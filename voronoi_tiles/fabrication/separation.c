@@ -166,8 +166,8 @@ static void move_piece(Sheet *s, int64_t i, int64_t from, int64_t to, int64_t li
     s->way[i] = best_way;
 }
 
-/* Move pieces until none overlaps another, or `effort` lines were tried; gives how many were, negative where some
-   still overlap. A piece of kind k may lie in the ways range[k] ... of the next. */
+/* Move pieces until none overlaps another, or `effort` lines were tried; gives how many were, or where some still
+   overlap, -1 less as many. A piece of kind k may lie in the ways range[k] ... of the next. */
 int64_t pieces_separate(int64_t ways, int64_t pieces, const int64_t *first, const double *edges, const double *boxes,
                         const double *rooms, const int64_t *range, const int64_t *kind, int64_t *way, double *place,
                         double *weight, double *depths, double *levels, double *spans, int64_t *order, int64_t seed,
@@ -187,7 +187,7 @@ int64_t pieces_separate(int64_t ways, int64_t pieces, const int64_t *first, cons
         if (most == 0.0)
             return s.tried;
         if (s.tried >= effort)
-            return -s.tried;
+            return -s.tried - 1;
         for (i = 0; i < pieces; i++) {
             int too_near = 0;
             for (j = 0; j < pieces; j++) {

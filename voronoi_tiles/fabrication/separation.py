@@ -98,7 +98,7 @@ class Separation:
         tables = self._slab_first, self._slab_edges, self.boxes, self.rooms, self.range
         scratch = depths, np.empty(most + 1), np.empty(3 * pieces * (most // 2 + 1)), np.empty(pieces, np.int64)
         tried = compiled(ways, pieces, *tables, kind, way, place, weight, *scratch, state, _LINES, effort)
-        return Separated(way, place, tried >= 0, abs(tried))
+        return Separated(way, place, tried >= 0, tried if tried >= 0 else -1 - tried)
 
 
 class _SeparationByNumpy:
@@ -208,7 +208,10 @@ class _SeparationByNumpy:
                     break
                 axis = k % 2
                 low, high = room[1 - axis], room[3 - axis]
-                across = min(max(x if axis else y, low), high) if k < 2 else low + self.random_share() * (high - low)
+                here = x if axis else y
+                # A room may be narrower than 0, by a little.
+                held = low if here < low else min(here, high)
+                across = held if k < 2 else low + self.random_share() * (high - low)
                 at = self.on_line(i, other, axis, across, y if axis else x)
                 place = (across, at) if axis else (at, across)
                 cost = self.overlap(i, other, place)
