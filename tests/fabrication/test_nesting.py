@@ -11,7 +11,8 @@ from dataclasses import replace
 from functools import cache
 from io import BytesIO
 from pathlib import Path
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -30,7 +31,7 @@ from voronoi_tiles.fabrication.nest_kinds import kinds_of
 from voronoi_tiles.fabrication.nest_patterns import piece_patterns
 from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces, most_pieces
 from voronoi_tiles.fabrication.nested_pieces import as_laid, misplaced, placed
-from voronoi_tiles.fabrication.nested_sheets import Nesting
+from voronoi_tiles.fabrication.nested_sheets import Nesting, counted_sheets
 from voronoi_tiles.fabrication.no_fit import no_fit
 from voronoi_tiles.fabrication.product import _Plan
 from voronoi_tiles.formats.recipe import recipe_of
@@ -468,8 +469,16 @@ def test_as_many_as_asked_for_and_no_more_are_nested() -> None:
 def test_each_wood_is_nested_on_sheets_of_its_own(tmp_path: Path) -> None:
     """As many pieces of each colour and kind as rows have of it, on fewer sheets; each file lays its pieces again."""
     job: dict[str, Any] = {"sheet": (200, 200), "stock": (160.0, 110.0), "margin": 5, "kerf": 0.2, "pack": True}
+    searched: list[bool] = []
+
+    def unsearched(*given: Any, search: bool) -> list[Layout]:
+        """The sheets without the search that was asked for."""
+        searched.append(search)
+        return counted_sheets(*given, search=False)
+
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(packed_sheets, "has_search", lambda: False)
+        patch.setattr(packed_sheets, "counted_sheets", unsearched)
+        patch.setattr(nesting, "has_search", lambda: False)  # ours is made all the same
         rows, nested = (
             hooks().export(tmp_path / f"{name}.svg", job=Job(**{**job, "colours": "handedness", **more}))
             for name, more in (("rows", {}), ("wood", {"layout": "nested"}))
@@ -482,6 +491,8 @@ def test_each_wood_is_nested_on_sheets_of_its_own(tmp_path: Path) -> None:
         names = [(re.findall(r"colour(\d)", path)[0], one.pieces) for path, one in written if one is not None]
         return Counter((colour, bool(over)) for colour, pieces in names for over in pieces.turned_over)
 
+    assert searched == [True] * 3
+    assert all(one is not None and any("pip install spyrrow" in note for note in one.notes) for _, one in nested)
     assert of_wood(rows) == of_wood(nested)
     assert len(nested) <= len(rows)
     path = nested[0].path
@@ -489,7 +500,78 @@ def test_each_wood_is_nested_on_sheets_of_its_own(tmp_path: Path) -> None:
     assert (tmp_path / "again.svg").read_bytes() == Path(path).read_bytes()
 
 
-@pytest.mark.parametrize("count", ["x", "", "bird=-1", "bird=0", "bird=1,bird=2", "bird=10001", True, {"bird": 1.5}])
+class Slow:
+    """Stands for a Nesting of two kinds: at most so many pieces go on a sheet; `asked` is how many it was to hold."""
+
+    def __init__(self, holds: int, most: int) -> None:
+        self.layout = SimpleNamespace(sheet=SimpleNamespace(width=100.0, height=100.0), tile_areas=np.array([90.0, 9]))
+        self.kinds = [SimpleNamespace(tile=0), SimpleNamespace(tile=1)]
+        self.holds, self.most = holds, most
+        self.asked: list[int] = []
+
+    def sheet(self, demand: Any, *_: Any, **__: Any) -> tuple[Any, Any]:
+        """A sheet with the first of what is asked for."""
+        self.asked.append(int(demand.sum()))
+        first = np.minimum(demand, self.holds)
+        return first, np.array([first[0], min(demand[1], self.holds - first[0])])
+
+
+def sheets_of(nest: Slow, *demand: int) -> list[Any]:
+    """So many pieces of each kind on sheets."""
+    return counted_sheets(cast("Nesting", nest), np.array(demand), search=False)
+
+
+def test_what_does_not_fit_on_the_most_sheets_is_refused() -> None:
+    """Also where as many sheets may be used as are ever nested on: no piece is left out."""
+    assert len(sheets_of(Slow(1, most=1_000), 1_000, 0)) == 1_000
+    with pytest.raises(JobError, match=r"1,000 of 1,001 pieces .* more than 1,000. Use a larger sheet"):
+        sheets_of(Slow(1, most=1_000), 1_001, 0)
+    with pytest.raises(JobError, match=r"1,000 of 2,000 pieces .* would take 2\. Use `sheets=2`"):
+        sheets_of(Slow(1_000, most=1), 2_000, 0)
+    with pytest.raises(JobError, match=r"`sheets=1001` are more than pieces are nested on, 1,000"):
+        Job(**JOB, layout="nested", count=1, sheets=1_001)
+
+
+def test_a_sheet_is_not_asked_for_more_pieces_than_are_nested() -> None:
+    """What is counted is what is wanted: a sheet for a hundred large pieces would hold a thousand small ones."""
+    nest = Slow(100, most=99)
+    assert len(sheets_of(nest, 4_000, 100)) == 41
+    assert max(nest.asked) <= 1_000
+    with pytest.raises(JobError, match="about 1,111 pieces, and 1,000 are the most"):
+        sheets_of(nest, 0, 50)
+
+
+@pytest.mark.parametrize(
+    ("given", "kept"),
+    [
+        ("a=b=2", (("a=b", 2),)),
+        ("x,y=3, z = 0", (("x,y", 3), ("z", 0))),
+        ({"x,y": 3, "=": "4"}, (("x,y", 3), ("=", 4))),
+        (" 40", 40),
+    ],
+)
+def test_counts_are_read_once_whatever_sites_are_called(given: Any, kept: Any) -> None:
+    """Names may hold the signs that part them; what was read is read again, also from a recipe."""
+    job = Job(**JOB, layout="nested", count=given)
+    assert job.count == kept
+    assert Job(**json.loads(json.dumps(job.recipe()))) == replace(job) == job
+
+
+def test_a_site_with_an_equals_sign_is_counted() -> None:
+    """By its name, and refused by another that begins like it."""
+    tiles = Design.loads(PAIR.replace('"moth"', '"a=b"')).tessellate()
+    assert tiles.make(Job(**JOB, layout="auto", count="a=b=2")).pieces.site.tolist() == [1, 1]
+    with pytest.raises(JobError, match="no site is called 'a'"):
+        tiles.make(Job(**JOB, layout="auto", count="a=2"))
+
+
+@pytest.mark.parametrize(
+    "count",
+    [
+        *("x", "", "bird=-1", "bird=0", "bird=1,bird=2", "bird=10001", "1_000", "bird=1_0", "bird=1,moth", "=3", 0),
+        *(True, {"bird": 1.5}, {}, ["bird"], 2.0),
+    ],
+)
 def test_counts_that_cannot_be_are_refused(count: Any) -> None:
     """With what can be given instead."""
     with pytest.raises(JobError, match=r"Give a number for every site, 40, or for some, bird=40,moth=12"):
@@ -516,8 +598,9 @@ def test_counts_of_what_is_not_nested_are_refused(job: dict[str, Any], message: 
 def test_several_sheets_are_no_single_drawing() -> None:
     """They need a file's name to begin with."""
     job = Job(**JOB, layout="auto", count="bird=8,moth=20", sheets=2)
-    with pytest.raises(JobError, match="a file for each sheet is several drawings"):
-        pair().make(job)
+    for one in (job, replace(job, only_colour=0)):
+        with pytest.raises(JobError, match="a file for each sheet is several drawings"):
+            pair().make(one)
     with pytest.raises(JobError, match="`sheets`: several files need a name"):
         pair().export("-", job=job, file_format="svg")
 

@@ -6,7 +6,7 @@ from typing import cast, get_args
 
 from voronoi_tiles.fabrication.job_fields import Into, JobFields
 from voronoi_tiles.fabrication.job_limits import APART_MM, FRAME_MM
-from voronoi_tiles.fabrication.job_options import JobError
+from voronoi_tiles.fabrication.job_options import SHEETS_MOST, JobError
 
 __all__ = ["Job", "JobError"]
 
@@ -214,6 +214,11 @@ class Job(JobFields):
     def _check_count(self) -> None:
         """Refuse a count of what is not nested."""
         for wrong, message, remedy in (
+            (
+                (self.sheets or 0) > SHEETS_MOST,
+                f"`sheets={self.sheets}` are more than pieces are nested on, {SHEETS_MOST:,}",
+                "Give fewer.",
+            ),
             (
                 self.count is None and self.sheets is not None and not (self.pack and self.layout == "nested"),
                 "`sheets` are for a `count` of pieces, or for those of colours that are packed and nested",

@@ -113,7 +113,7 @@ class JobFields:
         EFFORT_S, read_effort, "How long a search for places takes [default: 30].", kind="number", shown="SECONDS"
     )
     seed: Option[int | str, int] = Option(0, read_seed, "Where that search begins.", kind="number", shown="N")
-    count: Option[Quantities, str | None] = Option(
+    count: Option[Quantities, int | tuple[tuple[str, int], ...] | None] = Option(
         None,
         read_quantities,
         "Nest so many pieces of each site, bird=40,moth=12, or of every one [default: as many as fit].",

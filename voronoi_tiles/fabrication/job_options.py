@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import KW_ONLY, dataclass
 from numbers import Integral
 from typing import Any, Final, Generic, Literal, TypeAlias, TypeVar, cast, get_args
@@ -27,6 +28,9 @@ SHEET_MIN: Final = 0.1
 
 COUNT_MAX: Final = 10_000
 """Most pieces that a scale or a sheet is looked for; a count."""
+
+SHEETS_MOST: Final = 1_000
+"""Most sheets that pieces are nested on; a count."""
 
 COLOURS_MAX: Final = 32
 """Most colours that are asked for; a count."""
@@ -52,7 +56,7 @@ Kind = Literal["length", "angle", "word", "flag", "text", "number"]
 
 SheetSize: TypeAlias = tuple[float, float] | str | os.PathLike[str] | None
 Rates: TypeAlias = float | str | Mapping[str, float] | None
-Quantities: TypeAlias = int | str | Mapping[str, int] | None
+Quantities: TypeAlias = int | str | Mapping[str, int] | Sequence[tuple[str, int]] | None
 Offset: TypeAlias = complex | tuple[float | str, float | str] | str | None
 
 
@@ -264,25 +268,52 @@ def read_rates(name: str, value: Any) -> str | None:
     return text
 
 
-def read_quantities(name: str, value: Any) -> str | None:
-    """Read how many pieces there shall be of every site, or of some by their names; a text. Raises JobError."""
+def read_quantities(name: str, value: Any) -> int | tuple[tuple[str, int], ...] | None:
+    """Read how many pieces there shall be of every site, or of some, by their names. Raises JobError."""
     if value is None:
         return None
-    rows = (
-        value.items() if isinstance(value, Mapping) else [part.rpartition("=")[::2] for part in str(value).split(",")]
-    )
-    try:
-        asked = [(str(site).strip(), int(str(count).strip())) for site, count in rows]
-    except ValueError:
-        asked = []
-    sites = [site for site, _ in asked]
-    known = len(set(sites)) == len(sites) and (all(sites) or len(sites) == 1)
-    if not (asked and known and all(0 <= count <= COUNT_MAX for _, count in asked) and any(n for _, n in asked)):
+    asked: int | tuple[tuple[str, int], ...] = 0
+    with suppress(TypeError, ValueError):
+        asked = _quantities(value)
+    if not asked:
         raise JobError(
             f"`{name}` {shown(value)} cannot be",
             remedy=f"Give a number for every site, 40, or for some, bird=40,moth=12, up to {COUNT_MAX:,}.",
         )
-    return ",".join(f"{site}={count}" if site else str(count) for site, count in asked)
+    return asked
+
+
+def _quantities(value: Any) -> int | tuple[tuple[str, int], ...]:
+    """A number for all, or names with numbers, of a text, a mapping or pairs. Raises TypeError, ValueError."""
+    if isinstance(value, Integral) or (isinstance(value, str) and "=" not in value):
+        return _quantity(value)
+    rows = _named(value) if isinstance(value, str) else value.items() if isinstance(value, Mapping) else value
+    asked = {str(site): _quantity(count) for site, count in rows}
+    if len(asked) < len(rows) or "" in asked or not any(asked.values()):
+        raise ValueError
+    return tuple(asked.items())
+
+
+def _named(text: str) -> list[tuple[str, str]]:
+    """The names and numbers of a text; names may hold the signs that part them. Raises ValueError."""
+    rows, begun = [], ""
+    for part in text.split(","):
+        site, _, count = (begun + part).rpartition("=")
+        begun = "" if count.strip().isdigit() else f"{begun}{part},"
+        if not begun:
+            rows.append((site.strip(), count))
+    if begun:
+        raise ValueError
+    return rows
+
+
+def _quantity(value: object) -> int:
+    """A number of pieces, also none. Raises ValueError."""
+    if isinstance(value, str) and value.isascii() and value.strip().isdigit() and len(value) < 9:
+        value = int(value)
+    if isinstance(value, bool) or not isinstance(value, Integral) or not 0 <= int(value) <= COUNT_MAX:
+        raise ValueError
+    return int(value)
 
 
 def read_offset(name: str, value: Any) -> complex | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
@@ -13,8 +13,8 @@ from voronoi_tiles.base.arrays import Ints
 from voronoi_tiles.base.text import counted
 from voronoi_tiles.base.values import shown
 from voronoi_tiles.fabrication.job import Job
-from voronoi_tiles.fabrication.job_options import JobError
-from voronoi_tiles.fabrication.layout import Layout, Piece
+from voronoi_tiles.fabrication.job_options import SHEETS_MOST, JobError
+from voronoi_tiles.fabrication.layout import Layout, Piece, Sheet
 from voronoi_tiles.fabrication.nest_filling import fill
 from voronoi_tiles.fabrication.nest_growth import most_found, most_laid
 from voronoi_tiles.fabrication.nest_kinds import NestKind, kinds_of, refuse_large
@@ -22,9 +22,6 @@ from voronoi_tiles.fabrication.nest_places import NESTED_MAX
 from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces, Progress, counts_of, has_search, most_pieces
 from voronoi_tiles.fabrication.nested_pieces import as_laid, misplaced, piece_at, placed
 from voronoi_tiles.fabrication.nested_regions import capped, lay_in_holes, lay_in_region, region_within
-
-SHEETS_MOST: Final = 1_000
-"""Most sheets that pieces are nested on; a count."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -187,25 +184,42 @@ def counted_sheets(nesting: Nesting, demand: Ints, progress: Progress | None = N
 
     Sheets are alike as long as so many pieces are left.
     """
+    areas = nesting.layout.tile_areas[[kind.tile for kind in nesting.kinds]]
+    many = crowd(nesting.layout.sheet, float(np.average(areas, weights=demand)))
+    if many is not None:
+        raise many
     left, most = demand, nesting.most
     sheets: list[Layout] = []
     fitted, count = 0, np.zeros(len(left), np.intp)
     while left.any() and len(sheets) < SHEETS_MOST:
         if not sheets or (count > left).any():
-            layout, count = nesting.sheet(left, progress, search=search and len(sheets) < most)
+            few = left if left.sum() <= NESTED_MAX else left * NESTED_MAX // left.sum()
+            layout, count = nesting.sheet(few, progress, search=search and len(sheets) < most)
         if not count.any():
             raise JobError("no places were found for any piece", remedy="Give a longer `effort`, or a larger sheet.")
         sheets.append(layout)
         left = left - count
         fitted += int(count.sum()) if len(sheets) <= most else 0
-    if len(sheets) > most:
-        many = f"{len(sheets):,}" if not left.any() else f"more than {SHEETS_MOST:,}"
+    if left.any() or len(sheets) > most:
+        take = f"more than {SHEETS_MOST:,}" if left.any() else f"{len(sheets):,}"
+        use = "" if left.any() else f"`sheets={len(sheets)}`, "
         raise JobError(
             f"{fitted:,} of {counted(int(demand.sum()), 'piece')} fit on {counted(most, 'sheet')}, and all would "
-            f"take {many}",
-            remedy=f"Use `sheets={len(sheets)}`, a larger sheet, or a smaller margin or gap.",
+            f"take {take}",
+            remedy=f"Use {use}a larger sheet, or a smaller margin or gap.",
         )
     return sheets
+
+
+def crowd(sheet: Sheet, area: float) -> JobError | None:
+    """What is wrong with a sheet that would hold too many pieces, of a mean area in square millimetres, if anything."""
+    about = sheet.width * sheet.height / area
+    if about <= NESTED_MAX:
+        return None
+    return JobError(
+        f"the sheet would hold about {about:,.0f} pieces, and {NESTED_MAX:,} are the most that are nested",
+        remedy="Take a smaller sheet or a larger design, or `layout='tessellated'`.",
+    )
 
 
 def demand_of_sites(nesting: Nesting, wanted: Sequence[int]) -> Ints:
@@ -224,10 +238,10 @@ def wanted_of(job: Job, names: Sequence[str]) -> list[int] | None:
     """How many pieces of each site a job asks for; None where it does not say. Raises JobError for unknown names."""
     if job.count is None:
         return None
-    if "=" not in job.count:
-        return [int(job.count)] * len(names)
-    asked = dict(part.split("=") for part in job.count.split(","))
+    if isinstance(job.count, int):
+        return [job.count] * len(names)
+    asked = dict(job.count)
     for name in asked:
         if name not in names:
             raise JobError(f"`count`: no site is called {shown(name)}", remedy=f"Its sites are {', '.join(names)}.")
-    return [int(asked.get(name, 0)) for name in names]
+    return [asked.get(name, 0) for name in names]

@@ -14,18 +14,12 @@ import numpy as np
 
 from voronoi_tiles.base.text import counted
 from voronoi_tiles.fabrication.job import Job
-from voronoi_tiles.fabrication.job_options import EFFORT_S, LAYOUTS, JobError
+from voronoi_tiles.fabrication.job_options import EFFORT_S, LAYOUTS, SHEETS_MOST, JobError
 from voronoi_tiles.fabrication.layout import Layout, Sheet
-from voronoi_tiles.fabrication.nest_places import NESTED_MAX, read_places
+from voronoi_tiles.fabrication.nest_places import read_places
 from voronoi_tiles.fabrication.nest_search import Progress, has_search, least_counts
 from voronoi_tiles.fabrication.nested_pieces import laid_again
-from voronoi_tiles.fabrication.nested_sheets import (
-    SHEETS_MOST,
-    Nesting,
-    counted_sheets,
-    demand_of_sites,
-    wanted_of,
-)
+from voronoi_tiles.fabrication.nested_sheets import Nesting, counted_sheets, crowd, demand_of_sites, wanted_of
 from voronoi_tiles.fabrication.packed_sheets import stock
 
 _UNSEARCHED: Final = (
@@ -56,7 +50,8 @@ def arranged(lay: Callable[..., Layout], job: Job, sheet: Sheet, progress: Progr
     if not (job.nests or job.count is not None or pulled):
         return Arranged((lay(job=plain, sheet=sheet),))
     if job.pack:
-        return Arranged((lay(job=plain, sheet=sheet),), (), _of_stock(lay, job))
+        said = () if has_search() else (_UNSEARCHED,)
+        return Arranged((lay(job=plain, sheet=sheet),), said, _of_stock(lay, job))
     if job.gap is None and not job.kerf:
         plain = replace(plain, gap=job.side_by_side)
     saved = None if job.layout in LAYOUTS else read_places(job.layout)
@@ -94,17 +89,11 @@ def _of_stock(lay: Callable[..., Layout], job: Job) -> Nesting:
         gap=job.side_by_side if job.gap is None and not job.kerf else job.gap,
     )
     base = _base(lay, replace(one_sheet, grain=False, effort=EFFORT_S, seed=0), page)
-    crowd = _crowd(base)
-    if crowd is not None:
-        raise crowd
     return Nesting.of(base, one_sheet, job.sheets or SHEETS_MOST)
 
 
 def _counted(base: Layout, lay: Callable[[], Layout], job: Job, progress: Progress | None) -> Arranged:
     """So many pieces of each site as a job asks for, on its sheets."""
-    crowd = _crowd(base)
-    if crowd is not None:
-        raise crowd
     wanted = wanted_of(job, [site.name for site in base.design.noded])
     assert wanted is not None, "there is a count"
     search = job.layout == "nested"
@@ -118,11 +107,11 @@ def _counted(base: Layout, lay: Callable[[], Layout], job: Job, progress: Progre
 
 def _densest(base: Layout, lay: Callable[[], Layout], job: Job, progress: Progress | None) -> Arranged:
     """The pieces of `base` nested on its sheet, or as `lay` lays them where that is as good; and what is to be said."""
-    crowd = _crowd(base)
-    if crowd is not None:
+    many = crowd(base.sheet, float(base.tile_areas.mean()))
+    if many is not None:
         if job.layout == "auto":
             return Arranged((lay(),))
-        raise crowd
+        raise many
     unnested, refusal = _tried(lay)
     fewer = 0 if unnested is None else len(unnested.copies.tile)
     search = job.layout == "nested"
@@ -148,17 +137,6 @@ def _tried(lay: Callable[[], Layout]) -> tuple[Layout, None] | tuple[None, JobEr
         return lay(), None
     except JobError as error:
         return None, error
-
-
-def _crowd(base: Layout) -> JobError | None:
-    """What is wrong with a sheet that would hold more pieces than can be nested; None with others."""
-    about = base.sheet.width * base.sheet.height / float(base.tile_areas.mean())
-    if about <= NESTED_MAX:
-        return None
-    return JobError(
-        f"the sheet would hold about {about:,.0f} pieces, and {NESTED_MAX:,} are the most that are nested",
-        remedy="Take a smaller sheet or a larger design, or `layout='tessellated'`.",
-    )
 
 
 def _uneven(layout: Layout) -> list[str]:

@@ -15,7 +15,7 @@ from voronoi_tiles.fabrication.engraving import piece_numbers
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.layout import Layout, PlacedTiles, Sheet
 from voronoi_tiles.fabrication.nest_kinds import kind_keys
-from voronoi_tiles.fabrication.nest_search import Progress, has_search
+from voronoi_tiles.fabrication.nest_search import Progress
 from voronoi_tiles.fabrication.nested_sheets import Nesting, counted_sheets
 from voronoi_tiles.fabrication.packing import pack_pieces
 from voronoi_tiles.fabrication.region import Region
@@ -97,7 +97,7 @@ def nest_colours(
     for number in np.unique(colour[layout.copies.whole]).tolist():
         tile = layout.copies.tile[(colour == number) & layout.copies.whole]
         demand = np.bincount(kind[tile], minlength=len(nesting.kinds))
-        sheets = counted_sheets(nesting, demand, progress, search=has_search())
+        sheets = counted_sheets(nesting, demand, progress, search=True)
         page, area = nesting.layout.sheet, fsum(layout.tile_areas[tile].tolist())
         share = area / (len(sheets) * page.width * page.height)
         found.append(PackedColour(number, tuple(sheets), share, layout.job.colours != "none"))

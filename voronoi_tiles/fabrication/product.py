@@ -149,7 +149,7 @@ def make(
     Raises JobError where the job cannot be done, DesignError where the preset or the sheet's drawing is broken.
     """
     form = _format(file_format)
-    if job.several and (job.only_colour is None or job.pack):
+    if job.several and (job.only_colour is None or job.pack or job.sheets is not None):
         what, other = ("sheet", "leave `sheets` out") if job.sheets is not None else ("colour", "use `into='layers'`")
         raise JobError(
             f"a file for each {what} is several drawings, and one is asked for",
