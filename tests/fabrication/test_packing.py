@@ -16,10 +16,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from voronoi_tiles import Design, Tiling
+from voronoi_tiles.designs.starters import starter
+from voronoi_tiles.fabrication.engraving import piece_numbers
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.job_options import JobError
+from voronoi_tiles.fabrication.packed_sheets import pack_colours
 from voronoi_tiles.fabrication.packing import pack_pieces
-from voronoi_tiles.fabrication.product import Product, make_several
+from voronoi_tiles.fabrication.product import Product, _Plan, make_several
 from voronoi_tiles.preflight import preflight
 
 
@@ -93,7 +96,7 @@ def test_packed_sheets_have_all_pieces_apart_and_as_they_are(name: str, job: dic
             assert forms.total() == wanted[colour].total()
             assert sum((forms & wanted[colour]).values()) >= 0.8 * forms.total()  # a tenth may round either way
     else:
-        whole = tiles.make(Job(sheet=sheet, margin=margin + job["kerf"] / 2, rotate=job.get("rotate", 0.0)))
+        whole = tiles.make(Job(sheet=sheet, margin=margin, rotate=job.get("rotate", 0.0)))
         assert sum(forms.total() for forms in by_colour.values()) == len(whole.pieces.site)
 
 
@@ -162,15 +165,39 @@ def test_labels_and_art_move_with_the_pieces(tmp_path: Any) -> None:
 
 def test_numbers_are_those_of_the_picture() -> None:
     """The labels of all packed sheets together are the numbers of all tiles, each once."""
-    from voronoi_tiles.fabrication.packed_sheets import pack_colours
-    from voronoi_tiles.fabrication.product import _Plan
-
     tiles = tiling("p4-hook")
     job = Job(sheet=(200.0, 150.0), colours=3, pack=True, labels="number")
     plan = _Plan.of(tiles.design, tiles.tessellation, job, "svg")
     sheets = [sheet for one in pack_colours(plan.layout, plan.colouring) for sheet in one.sheets]
     numbers = np.concatenate([sheet.numbers for sheet in sheets if sheet.numbers is not None])
     assert sorted(numbers.tolist()) == list(range(1, len(plan.layout.copies.tile) + 1))
+
+
+@pytest.mark.parametrize(
+    ("group", "job", "form"),
+    [
+        ("p4", {}, "svg"),
+        ("p4m", {}, "svg"),
+        ("p6", {"rotate": 20.0, "fillet": 0.5}, "dxf"),
+        ("p2", {"frame": 8.0}, "svg"),
+        ("p4", {"pieces": 20}, "svg"),
+    ],
+)
+def test_the_picture_without_a_kerf_draws_the_numbers(group: str, job: dict[str, Any], form: str) -> None:
+    """The same job without `pack` and `kerf` has the same tiles in the same places, by the same numbers."""
+    tiles = starter(group).tessellate()
+    job = {"sheet": (200.0, 150.0) if form == "dxf" else (300.0, 200.0), "labels": "number", **job}
+
+    def numbered(**more: Any) -> dict[int, tuple[int, ...]]:
+        """Which tile of the tessellation has which number."""
+        layout = _Plan.of(tiles.design, tiles.tessellation, Job(**job, **more), form).layout
+        numbers = layout.numbers if layout.numbers is not None else piece_numbers(layout, layout.contours)
+        rows = zip(layout.copies.tile.tolist(), layout.copies.step.tolist(), strict=True)
+        return {number: (tile, *step) for number, (tile, step) in zip(numbers.tolist(), rows, strict=True)}
+
+    drawn = numbered()
+    assert len(drawn) > 10
+    assert numbered(pack=True, kerf=0.3) == numbered(pack=True, kerf=0.0) == drawn
 
 
 @pytest.mark.parametrize("name", ["p4-hook", pytest.param("cmm-scroll", marks=pytest.mark.slow)])

@@ -59,7 +59,9 @@ def pack_colours(layout: Layout, colouring: TileColouring) -> list[PackedColour]
     slack = _COARSE * job.side_by_side
     shapes = [_polygon(to_lines(rings, accuracy=slack)) for rings in layout.tiles.all_rings()]
     colour = colouring.of_copies(np.arange(len(layout.copies.tile)))
-    numbers = piece_numbers(layout, layout.contours) if job.labels == "number" else None
+    numbers = layout.numbers
+    if job.labels == "number" and numbers is None:
+        numbers = piece_numbers(layout, layout.contours)
     found = []
     for number in np.unique(colour[layout.copies.whole]).tolist():
         copies = np.flatnonzero((colour == number) & layout.copies.whole)

@@ -6,7 +6,6 @@ import json
 import os
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import partial
 from io import BytesIO, RawIOBase
 from math import fsum
 from typing import Any, BinaryIO, Final
@@ -18,8 +17,6 @@ from voronoi_tiles.base.arrays import Bools, offsets_of, ranges
 from voronoi_tiles.base.files import refuse_overwriting, writing
 from voronoi_tiles.base.text import counted
 from voronoi_tiles.designs.design import Design
-from voronoi_tiles.fabrication.accuracy import AccuracyBudget
-from voronoi_tiles.fabrication.arc_fitting import curve_fit
 from voronoi_tiles.fabrication.artwork import Works
 from voronoi_tiles.fabrication.curve_choice import curve_converter, file_curves
 from voronoi_tiles.fabrication.cutting import Cut, cut_once, cut_pieces, cut_shapes, toured
@@ -31,14 +28,12 @@ from voronoi_tiles.fabrication.inventory import Inventory, cut_free, inventory
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.job_notes import doubled, unnested, untabbed, without_effect
 from voronoi_tiles.fabrication.job_options import LAYOUTS
-from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout, lay_out
+from voronoi_tiles.fabrication.laying import laid
+from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout
 from voronoi_tiles.fabrication.nest_places import places_text
 from voronoi_tiles.fabrication.nest_search import Progress
 from voronoi_tiles.fabrication.nested_sheets import Nesting
-from voronoi_tiles.fabrication.nesting import arranged
 from voronoi_tiles.fabrication.packed_sheets import PackedColour, nest_colours, pack_colours
-from voronoi_tiles.fabrication.sheets import read_sheet
-from voronoi_tiles.fabrication.sizing import sized
 from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_tiles
 from voronoi_tiles.formats.burns import Burn, Role
 from voronoi_tiles.formats.page import Drawing, Layer, Work, fitting_page
@@ -228,14 +223,7 @@ class _Plan:
         curves = file_curves(job, preset, form)
         if form == "gcode":
             preset.burns(["cut"], job.feed, job.power)  # before anything is computed for nothing
-        if job.pieces is None:
-            budget = AccuracyBudget.of(job, curves, form)
-            fit = curve_fit(job, curves, budget, design.unit_mm)
-            lay = partial(lay_out, design, tessellation, budget=budget, fit=fit)
-            sheets, said, nesting = arranged(lay, job, read_sheet(job, budget), progress)
-        else:
-            layout, found = sized(design, tessellation, job, curves, form)
-            sheets, said, nesting = (layout,), (found,), None
+        sheets, said, nesting = laid(design, tessellation, job, curves, form, progress)
         layout = sheets[0]
         colours = colour_tiles(layout.tessellation, job.scheme, layout.period)
         said += tuple(unnested(job))
