@@ -27,6 +27,7 @@ from voronoi_tiles.fabrication.exporting import Exported
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.layout import Layout, Piece
+from voronoi_tiles.fabrication.nest_growth import most_laid
 from voronoi_tiles.fabrication.nest_kinds import kinds_of
 from voronoi_tiles.fabrication.nest_patterns import piece_patterns
 from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces, most_pieces
@@ -201,9 +202,10 @@ def test_places_that_do_not_fit_a_job_are_refused(tmp_path: Path) -> None:
     with pytest.raises(JobError, match="cannot be read: No such file"):
         tiles.make(Job(**JOB, layout=tmp_path / "none.svg"))
     broken = tmp_path / "broken.svg"
-    broken.write_text(nested().replace('places="[[', 'places="[[nan, '))
-    with pytest.raises(JobError, match="damaged"):
-        tiles.make(Job(**JOB, layout=broken))
+    for wrong in ('places="[[nan, ', 'numbered_from="0" places="[[', 'numbered_from="one" places="[['):
+        broken.write_text(nested().replace('places="[[', wrong))
+        with pytest.raises(JobError, match="damaged"):
+            tiles.make(Job(**JOB, layout=broken))
     with pytest.raises(OSError, match=r"nested\.svg"):
         tiles.export(path, job=Job(**JOB, layout=path))
 
@@ -676,6 +678,32 @@ def test_numbers_run_kind_by_kind(tmp_path: Path) -> None:
     over = [laid.pieces[k].over for k in np.argsort(laid.numbers).tolist()]
     assert over == sorted(over)
     assert 0 < sum(over) < len(over)
+
+
+@pytest.mark.parametrize(
+    "more",
+    [
+        {"layout": "auto", "count": 9, "sheets": 2},
+        {"layout": "nested", "pack": True, "colours": 2, "sheet": (90, 90), "stock": (70, 50)},
+    ],
+    ids=["sheets", "woods"],
+)
+def test_numbers_run_through_all_sheets_and_woods(more: dict[str, Any], tmp_path: Path) -> None:
+    """Each number once; a sheet that its file lays again has the same."""
+    job: dict[str, Any] = {"sheet": (70, 50), "margin": 2, "kerf": 0.2, "labels": "number"}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Nesting, "_searched", lambda self, items, known, _: most_laid(items, self.room, known))
+        written = squares().export(tmp_path / "all.svg", job=Job(**{**job, **more}))
+    assert len(written) > 1
+    count = 0
+    for path, product in written:
+        assert product is not None
+        laid = layout_of(squares(), **job, layout=path)
+        assert laid.numbers is not None
+        assert sorted(laid.numbers.tolist()) == list(range(count + 1, count + product.pieces.count + 1))
+        count += product.pieces.count
+        squares().export(tmp_path / "again.svg", job=Job(**job, layout=path))
+        assert (tmp_path / "again.svg").read_bytes() == Path(path).read_bytes()
 
 
 def test_a_pipe_is_no_file_with_places(tmp_path: Path) -> None:

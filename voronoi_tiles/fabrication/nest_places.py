@@ -11,20 +11,24 @@ from voronoi_tiles.base.errors import why_not_opened
 from voronoi_tiles.base.files import is_special
 from voronoi_tiles.base.values import shown
 from voronoi_tiles.designs.design import Design
-from voronoi_tiles.fabrication.job_options import SHEET_MAX, JobError
-from voronoi_tiles.fabrication.layout import Piece
+from voronoi_tiles.fabrication.job_options import SHEET_MAX, SHEETS_MOST, JobError
+from voronoi_tiles.fabrication.layout import Layout, Piece
 from voronoi_tiles.formats.recipe import recipe_of
 from voronoi_tiles.formats.shapes import BYTES_MAX
 
 NESTED_MAX: Final = 1_000
 """Most pieces that are nested; a count. Their check takes a minute, and at a border so long there is little to gain."""
 
+_FIRST: Final = "numbered_from"
+"""The key of the first number in recipes of sheets that are not the first."""
+
 
 class SavedPlaces(NamedTuple):
-    """The pieces of a file, none where they lie as in the tessellation; and the text of its design."""
+    """The pieces of a file, none where they lie as in the tessellation; the text of its design; the first number."""
 
     pieces: tuple[Piece, ...]
     design: str
+    first: int = 1
 
     def doubts(self, design: Design, name: str) -> tuple[str, ...]:
         """What there is to say where another design is laid as the file has it."""
@@ -54,13 +58,14 @@ def read_places(name: str) -> SavedPlaces:
         rows = json.loads(recipe["places"])
         count = len(rows)
         pieces = tuple(_piece(*row) for row in list(rows)[:NESTED_MAX])
+        first = int(recipe.get(_FIRST, "1"))
     except (ValueError, TypeError, AttributeError, OverflowError, RecursionError):
         raise damaged from None
-    if not pieces:
+    if not pieces or not 1 <= first <= NESTED_MAX * SHEETS_MOST:
         raise damaged
     if count > NESTED_MAX:
         raise JobError(f"`layout`: {shown(name)} has {count:,} places, and {NESTED_MAX:,} are the most", remedy=remedy)
-    return SavedPlaces(pieces, recipe["design"])
+    return SavedPlaces(pieces, recipe["design"], first)
 
 
 def _piece(site: object, over: object, turn: object, x: object, y: object) -> Piece:
@@ -73,6 +78,10 @@ def _piece(site: object, over: object, turn: object, x: object, y: object) -> Pi
     return Piece(site, bool(over), degrees, complex(*place))
 
 
-def places_text(pieces: tuple[Piece, ...]) -> str:
-    """What a recipe says of places, JSON."""
-    return json.dumps([[k, int(over), turn, place.real, place.imag] for k, over, turn, place in pieces])
+def places_recipe(layout: Layout) -> dict[str, str]:
+    """What a recipe says of where nested pieces lie, and of their first number where that is not 1; JSON."""
+    if not layout.pieces or layout.numbers is None:
+        return {}
+    rows = [[k, int(over), turn, place.real, place.imag] for k, over, turn, place in layout.pieces]
+    first = int(layout.numbers.min())
+    return {"places": json.dumps(rows), **({_FIRST: str(first)} if first > 1 else {})}

@@ -81,6 +81,16 @@ def placed(layout: Layout, pieces: Sequence[Piece]) -> Layout:
     )
 
 
+def numbered_on(sheets: Sequence[Layout], first: int) -> list[Layout]:
+    """Sheets of nested pieces, numbered through from a number on."""
+    found = []
+    for sheet in sheets:
+        assert sheet.numbers is not None, "pieces at places have numbers"
+        found.append(replace(sheet, numbers=sheet.numbers - sheet.numbers.min() + first))
+        first += len(sheet.pieces)
+    return found
+
+
 def _is_along(piece: Piece, tiles: DressedTiles) -> bool:
     """Whether a piece is turned as a tile of its kind in the tessellation, or by half a turn against that."""
     for site, motion in zip(tiles.period.site.tolist(), tiles.period.motion, strict=True):

@@ -18,7 +18,7 @@ from voronoi_tiles.fabrication.job_options import EFFORT_S, LAYOUTS, SHEETS_MOST
 from voronoi_tiles.fabrication.layout import Layout, Sheet
 from voronoi_tiles.fabrication.nest_places import read_places
 from voronoi_tiles.fabrication.nest_search import Progress, has_search, least_counts
-from voronoi_tiles.fabrication.nested_pieces import laid_again
+from voronoi_tiles.fabrication.nested_pieces import laid_again, numbered_on
 from voronoi_tiles.fabrication.nested_sheets import Nesting, counted_sheets, crowd, demand_of_sites, wanted_of
 from voronoi_tiles.fabrication.packed_sheets import stock
 
@@ -61,7 +61,7 @@ def arranged(lay: Callable[..., Layout], job: Job, sheet: Sheet, progress: Progr
     base = _base(lay, plain, sheet)
     if saved is not None:
         again = laid_again(base, saved.pieces, job.layout, grain=job.grain)
-        return Arranged((again,), saved.doubts(base.design, job.layout))
+        return Arranged(tuple(numbered_on([again], saved.first)), saved.doubts(base.design, job.layout))
     nest = _densest if job.count is None else _counted
     return nest(base, partial(lay, job=plain, sheet=sheet), job, progress)
 
@@ -99,7 +99,7 @@ def _counted(base: Layout, lay: Callable[[], Layout], job: Job, progress: Progre
     search = job.layout == "nested"
     unnested, _ = _tried(lay)
     nesting = Nesting.of(base, job, job.sheets or 1, unnested)
-    sheets = counted_sheets(nesting, demand_of_sites(nesting, wanted), progress, search=search)
+    sheets = numbered_on(counted_sheets(nesting, demand_of_sites(nesting, wanted), progress, search=search), 1)
     said = [_UNSEARCHED] if search and not has_search() and not isinstance(job.sheet, str) else []
     said += [f"{counted(len(sheets), 'sheet')}: {'; '.join(map(_counts, sheets))}"] if len(sheets) > 1 else []
     return Arranged(tuple(sheets), tuple(said))

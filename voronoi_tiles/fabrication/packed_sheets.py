@@ -16,6 +16,7 @@ from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.layout import Layout, PlacedTiles, Sheet
 from voronoi_tiles.fabrication.nest_kinds import kind_keys
 from voronoi_tiles.fabrication.nest_search import Progress
+from voronoi_tiles.fabrication.nested_pieces import numbered_on
 from voronoi_tiles.fabrication.nested_sheets import Nesting, counted_sheets
 from voronoi_tiles.fabrication.packing import pack_pieces
 from voronoi_tiles.fabrication.region import Region
@@ -90,16 +91,17 @@ def nest_colours(
 ) -> list[PackedColour]:
     """Nest the whole tiles of each colour. Raises JobError where a piece is larger than a sheet, or there are too few.
 
-    A piece may lie as any of its kind: those of a site that are all turned over, or none.
+    A piece may lie as any of its kind: those of a site that are all turned over, or none. They are numbered through.
     """
     keys = kind_keys(layout.period, grain=nesting.job.grain)
     kind = np.array([list(dict.fromkeys(keys)).index(key) for key in keys])
     colour = colouring.of_copies(np.arange(len(layout.copies.tile)))
-    found = []
+    found, first = [], 1
     for number in np.unique(colour[layout.copies.whole]).tolist():
         tile = layout.copies.tile[(colour == number) & layout.copies.whole]
         demand = np.bincount(kind[tile], minlength=len(nesting.kinds))
-        sheets = counted_sheets(nesting, demand, progress, search=True)
+        sheets = numbered_on(counted_sheets(nesting, demand, progress, search=True), first)
+        first += len(tile)
         page, area = nesting.layout.sheet, fsum(layout.tile_areas[tile].tolist())
         share = area / (len(sheets) * page.width * page.height)
         found.append(PackedColour(number, tuple(sheets), share, layout.job.colours != "none"))

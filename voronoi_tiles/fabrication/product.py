@@ -30,7 +30,7 @@ from voronoi_tiles.fabrication.job_notes import doubled, unnested, untabbed, wit
 from voronoi_tiles.fabrication.job_options import LAYOUTS
 from voronoi_tiles.fabrication.laying import laid
 from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout
-from voronoi_tiles.fabrication.nest_places import places_text
+from voronoi_tiles.fabrication.nest_places import places_recipe
 from voronoi_tiles.fabrication.nest_search import Progress
 from voronoi_tiles.fabrication.nested_sheets import Nesting
 from voronoi_tiles.fabrication.packed_sheets import PackedColour, nest_colours, pack_colours
@@ -382,7 +382,5 @@ def _page(layers: list[Layer], layout: Layout, job: Job) -> Drawing:
         low, high = boxes[:, :2].min(axis=0) - job.margin, boxes[:, 2:].max(axis=0) + job.margin
         width, height, corner = fitting_page(*low.tolist(), *high.tolist())
         layers = [replace(layer, paths=layer.paths.moved(1.0, -corner)) for layer in layers]
-    recipe = {**design_recipe(design), "job": json.dumps(job.recipe(), sort_keys=True)}
-    if layout.pieces:
-        recipe["places"] = places_text(layout.pieces)
+    recipe = {**design_recipe(design), "job": json.dumps(job.recipe(), sort_keys=True), **places_recipe(layout)}
     return Drawing(width, height, tuple(layers), f"{design.name} ({design.group.name})", recipe)
