@@ -109,6 +109,23 @@ def test_a_3mf_file_that_is_broken_has_no_recipe(cut: int, model: SolidModel, tm
     assert recipe_of((tmp_path / "b.zip").read_bytes()) == {}
 
 
+@pytest.mark.parametrize("way", [zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_BZIP2, zipfile.ZIP_LZMA])
+@pytest.mark.parametrize("wrong", ["encrypted", "broken"])
+def test_a_zip_archive_that_cannot_be_read_has_no_recipe(way: int, wrong: str, tmp_path: Path) -> None:
+    """Whatever it is packed by: the bit that says encrypted is set, or bytes in the middle are others."""
+    with zipfile.ZipFile(path := tmp_path / "a.3mf", "w", way) as package:
+        package.writestr("3D/3dmodel.model", '<metadata name="vt:design">schema = 1</metadata>' + "padding " * 40)
+        begin = len("3D/3dmodel.model") + 30
+    assert recipe_of(path.read_bytes()) == {"design": "schema = 1"}
+    data = bytearray(path.read_bytes())
+    if wrong == "encrypted":
+        for head, at in ((b"PK\3\4", 6), (b"PK\1\2", 8)):
+            data[data.index(head) + at] |= 1
+    else:
+        data[begin : begin + 40] = b"\xff" * 40
+    assert recipe_of(bytes(data)) == {}
+
+
 def test_a_name_may_hold_anything(tmp_path: Path) -> None:
     """It is a text of XML."""
     design = tiling("p4").design

@@ -8,6 +8,7 @@ import re
 import zlib
 from collections.abc import Mapping
 from io import BytesIO
+from lzma import LZMAError
 from typing import Any, Final
 from zipfile import BadZipFile, ZipFile
 
@@ -50,8 +51,8 @@ def recipe_of(data: bytes) -> Mapping[str, str]:
         if notes := _LIGHTBURN.search(tail):
             lines = html.unescape((notes[1] or notes[2] or b"").decode()).splitlines()
             return dict(line.split(": ", 1) for line in lines if ": " in line)
-    except (ValueError, RecursionError, BadZipFile, KeyError, NotImplementedError, EOFError, zlib.error):
-        pass
+    except (ValueError, KeyError, RuntimeError, OSError, EOFError, BadZipFile, zlib.error, LZMAError):
+        pass  # of zip archives: what is encrypted, broken, or packed by a way that is not known
     return {}
 
 
