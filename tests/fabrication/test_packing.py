@@ -280,6 +280,7 @@ def test_a_frame_with_a_kerf_is_cut_beside_its_pieces() -> None:
     files = make_several(squares().design, squares().tessellation, job)
     assert [name for name, _ in files] == ["1", "frame"]
     pieces, frame = (contour_shapes(cuts(product)) for _, product in files)
+    assert f"a frame, {(81.7**2 - 60**2) / 90**2:.1%} of 90 x 90 mm" in files[1][1].summary()
     (around,) = frame
     (opening,) = around.interiors
     assert shapely.Polygon(opening).area == pytest.approx((3 * 20 - 0.3) ** 2, abs=0.01)

@@ -76,10 +76,11 @@ def report_text(figures: dict[str, Any]) -> str:
             coloured = "on as many tiles each, or nearly, no neighbours alike"
         case scheme:
             coloured = f"by {scheme}"
+    it = "the sheet drawn there" if use["sheet"] < sheet["area"] else "it"
     page.head(
         {
             "design": f"{printable(figures['design'])}, {figures['group']}",
-            "page": f"{sheet['width']:.6g} x {sheet['height']:.6g} mm, {use['share']:.1%} of it tiles, "
+            "page": f"{sheet['width']:.6g} x {sheet['height']:.6g} mm, {use['share']:.1%} of {it} tiles, "
             f"{use['whole_share']:.1%} whole ones",
             "pieces": f"{pieces['count']:,}{framed}, {pieces['whole']:,} of them whole tiles, "
             f"{pieces['turned_over']:,} turned over",

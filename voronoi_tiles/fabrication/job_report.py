@@ -87,13 +87,13 @@ def report_figures(
             strict=True,
         )
     )
-    area = drawing.width * drawing.height
+    area = product.sheet_area
     used = pieces.tile_area
     whole = fsum(pieces.area[pieces.whole].tolist())
     return {
         "design": design.name,
         "group": design.group.name,
-        "page": {"width": drawing.width, "height": drawing.height, "area": area},
+        "page": {"width": drawing.width, "height": drawing.height, "area": drawing.width * drawing.height},
         "pieces": {
             "count": pieces.count,
             "frame": pieces.frame,
@@ -113,7 +113,7 @@ def report_figures(
         "colours": product.colours,
         "colouring": product.scheme,
         "packing": list(packing),
-        "use": {"tiles": used, "share": used / area, "whole_tiles": whole, "whole_share": whole / area},
+        "use": {"sheet": area, "tiles": used, "share": used / area, "whole_tiles": whole, "whole_share": whole / area},
         "cut": {
             "length": fsum(row["length"] for row in cuts),
             "pierces": sum(row["paths"] for row in cuts),

@@ -39,6 +39,7 @@ from voronoi_tiles.formats.burns import Burn, Role
 from voronoi_tiles.formats.page import Drawing, Layer, Work, fitting_page
 from voronoi_tiles.formats.presets import FORMATS, DxfStyle, DxfVersion, Format, Preset, load_preset
 from voronoi_tiles.formats.writing import write_drawing
+from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.vector.tessellation import Tessellation
 
@@ -58,7 +59,8 @@ class Product:
 
     `notes` say in sentences what was guessed and left out of drawings, and lost to kerf or fillet; `colours` is how
     many the whole tessellation takes by the `scheme` of the job, None where it asks for none: the fewest; `files` are
-    those that it was made from, which `save` does not overwrite.
+    those that it was made from, which `save` does not overwrite. `bounded` is the area of a sheet that is drawn, square
+    millimetres.
     """
 
     form: Format
@@ -73,6 +75,12 @@ class Product:
     dxf_version: DxfVersion
     spline_edges: bool
     hints: tuple[str, ...] = ()
+    bounded: float | None = None
+
+    @property
+    def sheet_area(self) -> float:
+        """The area of the sheet, what a drawing bounds or the whole page; square millimetres."""
+        return self.drawing.width * self.drawing.height if self.bounded is None else self.bounded
 
     def __repr__(self) -> str:
         return f"<Product {self.form}: {self._outcome()}>"
@@ -105,11 +113,12 @@ class Product:
         cuts = [layer.paths for layer in self.drawing.layers if layer.work == "cut"]
         length = fsum(float(paths.lengths.sum()) for paths in cuts) / 1000
         strokes = sum(map(len, cuts))
-        area = self.drawing.width * self.drawing.height
+        area = self.pieces.tile_area if self.pieces.count else fsum(self.pieces.area.tolist())
+        drawn = "" if self.bounded is None else "the sheet drawn on "
         colours = len(np.unique(self.pieces.colour[self.pieces.site != FRAME]))
         woods = f", {colours} colours" if self.scheme is not None and colours > 1 else ""
         return (
-            f"{self.pieces.counted}, {self.pieces.tile_area / area:.1%} of {self.drawing.width:.5g} x "
+            f"{self.pieces.counted}, {area / self.sheet_area:.1%} of {drawn}{self.drawing.width:.5g} x "
             f"{self.drawing.height:.5g} mm, {length:.3g} m of cuts in {counted(strokes, 'path')}{woods}"
         )
 
@@ -297,6 +306,7 @@ class _Plan:
             dxf_version=job.dxf_version,
             spline_edges=preset.spline_edges,
             hints=self.hints,
+            bounded=None if layout.sheet.outline is None else fsum(ring_areas(layout.sheet.outline).tolist()),
         )
 
     @property
