@@ -34,7 +34,7 @@ from voronoi_tiles.fabrication.nest_search import NestItem, NestPlaces, most_pie
 from voronoi_tiles.fabrication.nested_pieces import as_laid, misplaced, placed
 from voronoi_tiles.fabrication.nested_sheets import Nesting, counted_sheets
 from voronoi_tiles.fabrication.no_fit import no_fit
-from voronoi_tiles.fabrication.product import _Plan
+from voronoi_tiles.fabrication.product import _Plan, make_several
 from voronoi_tiles.formats.recipe import recipe_of
 
 HOOKS = """schema = 1
@@ -281,7 +281,8 @@ def test_labels_and_art_turn_with_their_pieces(tmp_path: Path) -> None:
         ({"sheet": None}, "needs a sheet"),
         ({"fit": "clip"}, "nests whole tiles"),
         ({"gap": 0.0}, "would cut where pieces touch twice"),
-        ({"pieces": 9}, "as many `pieces` as fit"),
+        ({"pieces": 9}, "nests in full size, and `pieces` scales the tessellation .* Use `count=9`"),
+        ({"pack": True, "layout": "a.svg"}, "of a file, .* Leave out `pack`, .* give the size of the stock as `sheet`"),
         ({"offset": 3j}, "by an `offset`"),
         ({"colours": 3}, "parts neighbours"),
         ({"edges": "once", "kerf": 0.0}, "`layout` needs `edges='pieces'`"),
@@ -401,6 +402,11 @@ def test_a_place_is_that_of_the_tile_as_it_is_drawn() -> None:
         ({"effort": 5}, "`effort` changes nothing without `layout='nested'`"),
         ({"seed": 5, "layout": "auto", "fit": "clip"}, "`seed` changes nothing without `layout='nested'`"),
         ({"layout": "auto", "offset": 3j}, "pieces are not nested: `layout='auto'` moves every piece anew"),
+        ({"layout": "auto", "pack": True, "colours": 3}, "nests no woods, as `layout='nested'` does with `pack`"),
+        (
+            {"layout": "auto", "pieces": 9},
+            "`pieces` scales the tessellation until so many fit as it lies. Use `count=9`",
+        ),
         ({"layout": "nested", "seed": 5, "sheet": OFFCUT, "count": 1}, "without a search: `effort` and `seed` change"),
         ({"layout": "auto", "kerf": 0}, "is for those that a `kerf` or a `gap` pulls apart"),
     ],
@@ -409,7 +415,8 @@ def test_what_changes_nothing_about_nesting_is_said(job: dict[str, Any], said: s
     """Options of a search that is not made, and `auto` where it has nothing to do."""
     if "sheet" in job:
         job = {**job, "sheet": offcut(tmp_path)}
-    assert [note for note in hooks().make(Job(**{**JOB, **job})).notes if said in note]
+    made = make_several(hooks().design, hooks().tessellation, Job(**{**JOB, **job}))[0][1]
+    assert [note for note in made.notes if said in note]
     assert not [note for note in hooks().make(Job(**JOB)).notes if "nest" in note or "changes nothing" in note]
 
 
@@ -614,6 +621,7 @@ def test_pieces_are_nested_on_an_offcut_with_a_hole(tmp_path: Path) -> None:
     edge = shapely.Polygon(OFFCUT[0], OFFCUT[1:])
     shapes = np.array(contour_shapes(cuts(made)))
     assert len(shapes) == 7
+    assert f"{7 * 400 / edge.area:.1%} of the sheet drawn on 120 x 90 mm" in made.summary()
     assert edge.contains(shapes).all()
     assert shapely.distance(edge.boundary, shapes).min() >= 3 - 1e-6
     one, two = np.triu_indices(len(shapes), 1)

@@ -130,9 +130,22 @@ class Job(JobFields):
             (self.sheet is None, "needs a sheet", "Give its size, `sheet='600x300mm'`, or a drawing of it."),
             (self.fit != "whole", f"nests whole tiles, and `fit='{self.fit}'` is more", "Use `fit='whole'`."),
             (self.gap == 0.0, "with a `gap` of 0 would cut where pieces touch twice", "Use `gap='1mm'`."),
-            (self.pieces is not None, "lays as many `pieces` as fit", "Leave `pieces` out."),
+            (
+                self.pieces is not None,
+                "nests in full size, and `pieces` scales the tessellation until so many fit as it lies",
+                f"Use `count={self.pieces}` instead.",
+            ),
             (self.offset is not None, "moves every piece anew, and none by an `offset`", "Leave it out."),
-            (self.pack, "nests all pieces, and `pack` packs each colour", "Use one of the two."),
+            (
+                self.pack and self.layout == "auto",
+                "nests no woods, as `layout='nested'` does with `pack`",
+                "Use that.",
+            ),
+            (
+                self.pack,
+                "lays the pieces of a file, and `pack` those of a picture",
+                "Leave out `pack`, `colours` and `stock`, and give the size of the stock as `sheet`.",
+            ),
             (self.split is not None, "parts neighbours, by which tiles get `colours`", "Leave these out."),
         ):
             if wrong:

@@ -48,7 +48,8 @@ def unnested(job: Job) -> list[str]:
     if drawn and any(getattr(job, name) != Job.options()[name].default for name in ("effort", "seed")):
         said.append("a sheet that is drawn is nested without a search: `effort` and `seed` change nothing")
     if job.layout == "auto" and job.not_nestable is not None:
-        said.append(f"pieces are not nested: `layout='auto'` {job.not_nestable[0]}")
+        why, remedy = job.not_nestable
+        said.append(f"pieces are not nested: `layout='auto'` {why}. {remedy.rstrip('.')}")
     elif job.layout == "auto" and not job.apart:
         said.append("pieces are not nested: `layout='auto'` is for those that a `kerf` or a `gap` pulls apart")
     return said
