@@ -23,6 +23,7 @@ from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.packed_sheets import pack_colours
 from voronoi_tiles.fabrication.packing import pack_pieces
 from voronoi_tiles.fabrication.product import Product, _Plan, make_several
+from voronoi_tiles.formats.presets import Format
 from voronoi_tiles.preflight import preflight
 
 
@@ -183,7 +184,7 @@ def test_numbers_are_those_of_the_picture() -> None:
         ("p4", {"pieces": 20}, "svg"),
     ],
 )
-def test_the_picture_without_a_kerf_draws_the_numbers(group: str, job: dict[str, Any], form: str) -> None:
+def test_the_picture_without_a_kerf_draws_the_numbers(group: str, job: dict[str, Any], form: Format) -> None:
     """The same job without `pack` and `kerf` has the same tiles in the same places, by the same numbers."""
     tiles = starter(group).tessellate()
     job = {"sheet": (200.0, 150.0) if form == "dxf" else (300.0, 200.0), "labels": "number", **job}

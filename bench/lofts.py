@@ -7,15 +7,15 @@ distances are written here, in numpy, for the nearest copies; they share nothing
 time, ours with the proof.
 
     pip install scikit-image
-    python bench/solids.py                     the comparison, and the cost of more layers
-    python bench/solids.py --write             also: the tables into bench/README.md
+    python bench/lofts.py                     the comparison, and the cost of more layers
+    python bench/lofts.py --write             also: the tables into bench/README.md
 """
 
 from __future__ import annotations
 
 import argparse
 import time
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 from report import machine, published, table
@@ -124,8 +124,9 @@ def distance(place: Complexes) -> Floats:
 
 def marching_cubes(step: float) -> tuple[Floats, Ints]:
     """The peer's mesh of the tile's walls; its ends, at which it is open, are left out."""
-    from skimage.measure import marching_cubes as surface
+    from skimage import measure
 
+    surface: Any = measure.marching_cubes
     side = np.arange(-0.75 * A, 0.75 * A, step)
     heights = np.linspace(0.0, HEIGHT, round(HEIGHT / step) + 1)
     plane = (CENTRE + side[:, None] + 1j * side).ravel()
