@@ -111,7 +111,7 @@ def test_a_region_with_holes_and_parts_is_filled_until_nothing_fits() -> None:
 def test_items_that_lack_are_laid_though_others_lack_as_well() -> None:
     """Two items are missing beside one of which there are many: all three have their part of their share at last."""
     items = [NestItem(ring, 1 / 3, (0.0,)) for ring in (SQUARE, ELL, np.asarray(SQUARE / 2, np.complex128))]
-    laid = NestPlaces(np.full(9, 2), np.zeros(9), np.arange(9) * 6 + 3 + 3j)
+    laid = NestPlaces(np.full(9, 2), np.zeros(9), np.array([6 * k + 3 + 3j for k in range(9)]))
     places = fill(items, shapely.box(0, 0, 60, 34), laid, even=True)
     counts = np.bincount(np.append(laid.item, places.item), minlength=3)
     assert overlap(shapes(items, laid) + shapes(items, places)) < 1e-6
@@ -137,7 +137,8 @@ def test_holes_are_filled_once_for_all_pieces_of_a_kind(monkeypatch: pytest.Monk
     rings = [np.asarray(SQUARE * 2, np.complex128), SQUARE, np.asarray(ELL * 0.9, np.complex128)]
     kinds = [NestKind(0, 0j, NestItem(ring, 1 / 3, None), ring, ()) for ring in rings]
     kinds[0] = kinds[0]._replace(holes=(np.asarray(SQUARE * 1.1, np.complex128),))
-    places = NestPlaces(np.zeros(24, np.intp), np.arange(24) * 15.0, np.arange(24) * (50 + 7j))
+    numbers = np.arange(24.0)
+    places = NestPlaces(np.zeros(24, np.intp), numbers * 15, np.asarray(numbers * (50 + 7j), np.complex128))
     filled: list[int] = []
 
     def counted(*args: Any, **named: Any) -> NestPlaces:
@@ -153,8 +154,7 @@ def test_holes_are_filled_once_for_all_pieces_of_a_kind(monkeypatch: pytest.Monk
         assert (counts <= demand).all()
         assert abs(counts[1] - counts[2]) <= 1
         pieces = shapes([kind.item for kind in kinds], inner)
-        holes = [shapely.affinity.rotate(polygon(SQUARE * 1.1), turn, origin=(0, 0)) for turn in places.turn]
-        holes = [shapely.affinity.translate(hole, z.real, z.imag) for hole, z in zip(holes, places.shift, strict=True)]
+        holes = shapes([NestItem(kinds[0].holes[0], 1.0, None)], places)
         within = shapely.contains(shapely.buffer(holes, 1e-6)[:, None], np.array(pieces, object))
         assert within.any(axis=0).all()
         assert within.sum(axis=1).max(initial=0) <= 1

@@ -144,7 +144,7 @@ def test_without_a_search_it_is_said_whether_pieces_overlap(kernels: str, monkey
 
 def test_on_a_sheet_that_is_lower_by_a_little_the_kernels_find_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     """Pieces of a tessellation may fit though their polygons do not: there is less than no room for these."""
-    five = NestPlaces(np.zeros(5, np.intp), np.zeros(5), 20 + 5j + 3 * np.arange(5))
+    five = NestPlaces(np.zeros(5, np.intp), np.zeros(5), np.array([20 + 3 * k + 5j for k in range(5)]))
     found = []
     for kernels in ("", "numpy"):
         monkeypatch.setenv("VORONOI_TILES_KERNELS", kernels)

@@ -50,8 +50,9 @@ def most_laid(
 ) -> NestPlaces:
     """The most pieces that patterns, and what grows of them and of other layouts, lay on a rectangle from 0 to `size`.
 
-    What is put in is of the kind that lacks most of its share. All of it is repeatable, and the last few are
-    remembered, as in the studio one job follows another that differs in something else.
+    What is put in is of the kind that lacks most of its share; of a layout counts what is `kept`. All of it is
+    repeatable, and the last few are remembered, as in the studio one job follows another that differs in something
+    else.
     """
     arrays = [item.ring for item in items] + [array for places in others for array in places]
     asked = (repr((size, [item[1:] for item in items])).encode(), *(array.tobytes() for array in arrays))
