@@ -67,6 +67,7 @@ def test_copies_around_one_are_apart_and_of_other_colours(around: SolidModel) ->
     ("options", "message"),
     [
         ({"height": 5}, "`height` is that of [solid]"),
+        ({"height": 3}, "`height` is that of [solid]"),
         ({"clearance": 0.2}, "`clearance` is for prisms"),
         ({"chamfer": 0.2}, "`chamfer` is for prisms"),
         ({"sheet": "200x200mm"}, "`sheet` is for prisms"),

@@ -82,7 +82,7 @@ def prove_prisms(prisms: Sequence[Prism], period: Period, job: SolidJob) -> Pris
     if apart is not None and apart < job.clearance * (1 - _ROUNDING):
         raise ProofError(f"neighbours are {apart:.4g} mm apart, and not the clearance of {job.clearance:g} mm")
     if filled and not job.chamfer:
-        slab = period.lattice.det * job.height
+        slab = period.lattice.det * job.thickness
         error = abs(fsum(volumes) - slab) / slab
         if error > VOLUME_TOLERANCE:
             raise ProofError(f"the volume of the solids is {error:.1g} off, relative to the cell's")
@@ -100,8 +100,8 @@ def prove_copies(meshes: Sequence[TriangleMesh], tiles: Ints, prisms: Sequence[P
     volumes = [mesh.volume for mesh in own]
     for mesh, tile in zip(meshes, tiles.tolist(), strict=True):
         low, high = mesh.vertices[:, 2].min(), mesh.vertices[:, 2].max()
-        if (low, high) != (0.0, job.height):
-            raise ProofError(f"a solid stands from {low:.6g} to {high:.6g} mm, and not from 0 to {job.height:g} mm")
+        if (low, high) != (0.0, job.thickness):
+            raise ProofError(f"a solid stands from {low:.6g} to {high:.6g} mm, and not from 0 to {job.thickness:g} mm")
         if not mesh.is_closed:
             raise ProofError("a solid is not closed")
         size = float(np.abs(mesh.vertices).max()) + float(np.abs(own[tile].vertices).max())
@@ -119,9 +119,9 @@ def _excess(prism: Prism, volume: float, job: SolidJob) -> float:
     """
     outer, slack = prism.outer.area, _slack(prism.outer, job.chords)
     inner = outer if prism.inner is None else prism.inner.area
-    most = outer * job.height
+    most = outer * job.thickness
     least = most - 2 * job.chamfer * (outer - inner)
-    if not least - slack * job.height <= volume <= most + slack * job.height:
+    if not least - slack * job.thickness <= volume <= most + slack * job.thickness:
         raise ProofError(f"a solid has {volume:.6g} cubic millimetres, and not {least:.6g} to {most:.6g}")
     return max(volume - most, least - volume, 0.0) / most
 

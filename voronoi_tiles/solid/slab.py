@@ -134,7 +134,7 @@ class Slab:
         rings, items = self.lines.own_outlines
         areas = self.layout.tile_areas
         forward = np.repeat(self.lines.rings.forward, self.lines.edges.counts[self.lines.rings.edge])
-        height, chamfer = self.job.height, self.job.chamfer
+        height, chamfer = self.job.thickness, self.job.chamfer
         found = []
         for tile in range(len(self.lines.site)):
             own = np.arange(items[tile], items[tile + 1])

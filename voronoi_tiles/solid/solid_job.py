@@ -46,7 +46,12 @@ class SolidJob:
     SolidJob(height=5.0, clearance=0.2)
     """
 
-    height: Length = length(HEIGHT_MM, "How high the solids are [default: 3mm].", least=HEIGHT_MIN, shown="HEIGHT")
+    height: Option[float | str | None, float | None] = length(
+        None,
+        "How high the solids are [default: 3mm; a design with a [solid] says it].",
+        least=HEIGHT_MIN,
+        shown="HEIGHT",
+    )
     clearance: Length = length(
         0.0, "Leave this much between neighbours: each tile is drawn in by half of it, so that printed ones fit."
     )
@@ -79,9 +84,9 @@ class SolidJob:
     )
 
     def __post_init__(self) -> None:
-        if 2 * self.chamfer >= self.height:
+        if 2 * self.chamfer >= self.thickness:
             raise JobError(
-                f"two rims with `chamfer='{self.chamfer:g}mm'` leave nothing of a `height` of {self.height:g} mm",
+                f"two rims with `chamfer='{self.chamfer:g}mm'` leave nothing of a `height` of {self.thickness:g} mm",
                 remedy="Use a smaller `chamfer`, or more `height`.",
             )
         for name in ("chamfer", "clearance"):
@@ -107,6 +112,11 @@ class SolidJob:
         return Job(
             sheet=self.sheet, margin=self.margin, rotate=self.rotate, gap=gap, colours=self.colours, edges="pieces"
         )
+
+    @property
+    def thickness(self) -> float:
+        """How high prisms are; millimetres."""
+        return HEIGHT_MM if self.height is None else self.height
 
     @property
     def chords(self) -> float:

@@ -28,7 +28,7 @@ from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.solid.dowel_holes import BoredLayout, place_holes
 from voronoi_tiles.solid.events import LoftError
-from voronoi_tiles.solid.extrusion_proof import prove_prisms
+from voronoi_tiles.solid.extrusion_proof import prove_copies, prove_prisms
 from voronoi_tiles.solid.mesh import TriangleMesh
 from voronoi_tiles.solid.motion import Motion
 from voronoi_tiles.solid.pieces import SolidPiece
@@ -142,7 +142,9 @@ class Stack:
         pieces = []
         for sheet, slab, own in zip(self.sheets, slabs, prisms, strict=True):
             up = np.array([0.0, 0.0, (sheet.number - 1) * self.thickness])
-            for site, mesh in zip(slab.layout.site.tolist(), slab.meshes(own, corner), strict=True):
+            meshes = list(slab.meshes(own, corner))
+            prove_copies(meshes, slab.layout.copies.tile, own, flat)
+            for site, mesh in zip(slab.layout.site.tolist(), meshes, strict=True):
                 raised = TriangleMesh(mesh.vertices + up, mesh.triangles)
                 pieces.append(SolidPiece(f"{names[site]} {sheet.number}", names[site], site, raised))
         error = max(proof.volume_error or 0.0 for proof in proofs)

@@ -75,10 +75,10 @@ def _refuse_prisms(job: SolidJob) -> None:
         if name == "height":
             raise JobError("`height` is that of [solid], which the design has", remedy="Change it there.")
         if name != "accuracy":
-            raise JobError(
-                f"`{name}` is for prisms, and the design has a [solid]",
-                remedy="Leave it out; a slicer keeps printed pieces apart by its compensation in x and y.",
+            apart = (
+                "; a slicer keeps printed pieces apart by its compensation in x and y" if name == "clearance" else ""
             )
+            raise JobError(f"`{name}` is for prisms, and the design has a [solid]", remedy=f"Leave it out{apart}.")
 
 
 def _said(loft: Loft, proof: SolidProof) -> str:
