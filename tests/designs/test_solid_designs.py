@@ -123,6 +123,7 @@ def test_moving_a_design_moves_its_solid() -> None:
         ("z = 10", "site = 'bird'", "key[0].z: is missing"),
         ("z = 10", "z = 10\nsite = 'fish'", "key[0].site: there is no site 'fish'. Name one of bird."),
         ("z = 10", "zz = 10", "key[0]: unknown key 'zz'"),
+        ("z = 10\n", "z = 10\n[[key]]\nz = 12\n", 'key[0].strokes: is missing. Write those of site "bird"'),
         (
             "{ segment = [[5, 3], [25, 13]] }",
             "{ polyline = [[5, 3], [9, 9], [25, 13]] }",

@@ -155,6 +155,12 @@ def test_a_size_is_for_a_picture(tmp_path: Path) -> None:
     assert not list(tmp_path.iterdir())
 
 
+def test_the_smallest_picture_is_a_pixel() -> None:
+    """The shorter side has one, too."""
+    flat = TriangleMesh(BOX.vertices * np.array([1.0, 1.0, 0.1]), BOX.triangles)
+    assert picture([SolidPiece("box", "box", 0, flat)], ["#000000"], 1).shape == (1, 1, 3)
+
+
 @pytest.mark.parametrize("size", [0, 5000, 3.5, True])
 def test_a_size_that_cannot_be_is_refused(size: int) -> None:
     """With what to give."""

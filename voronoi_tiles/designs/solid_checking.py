@@ -18,8 +18,8 @@ from voronoi_tiles.designs import schema
 LAYERS: Final = 41
 """How many heights have exact tiles where nobody says; a count."""
 
-LAYERS_MAX: Final = 10_000
-"""Most of them; a count. A millimetre of a print has 20 at most."""
+LAYERS_MAX: Final = 2_000
+"""Most of them; a count. They take about ten seconds; a millimetre of a print has 20 at most."""
 
 TRAVEL_MAX: Final = 100.0
 """The longest way of a point from the bottom to the top; relative to the square root of the cell's area. Each part of
@@ -190,8 +190,8 @@ def _read_key(
             raise DesignError(
                 f"the height {z:g} comes after {keys[-1].z / scale:g}", remedy="Write keys from the bottom to the top."
             )
+    listed = values.required(table, "strokes", f'Write those of site "{site.name}" as they are at this height.')
     with values.within("strokes"):
-        listed = values.required(table, "strokes", f'Write those of site "{site.name}" as they are at this height.')
         written, drawn = site.read(listed)
         if len(drawn) != len(site.drawn):
             raise DesignError(

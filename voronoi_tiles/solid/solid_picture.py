@@ -83,7 +83,7 @@ class _Camera(NamedTuple):
         margin = _MARGIN * float((high - low).max())
         low, high = low - margin, high + margin
         scale = size / float((high - low).max())
-        width, height = np.maximum(np.ceil((high - low) * scale), 1).astype(int).tolist()
+        width, height = np.maximum(np.ceil((high - low) * scale), _FINER).astype(int).tolist()
         return cls(axes, scale, low, width, height)
 
     def __call__(self, corners: Floats) -> Floats:
