@@ -12,8 +12,6 @@ import click
 from voronoi_tiles.cli.common import SCALE, as_options
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.job_options import JobError, Option
-from voronoi_tiles.solid.solid_job import SolidJob
-from voronoi_tiles.solid.stack_job import StackJob
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
@@ -164,6 +162,9 @@ def with_job(command: Command) -> Command:
 
 def with_solid_job(command: Command) -> Command:
     """Add the options of solids and of stacks; the command gets `job`, of a stack where there are sheets."""
+    from voronoi_tiles.solid.solid_job import SolidJob
+    from voronoi_tiles.solid.stack_job import StackJob
+
     solids, stacks = SolidJob.options(), StackJob.options()
     options = {**stacks, **solids}
 

@@ -6,7 +6,7 @@ from typing import cast, get_args
 
 from voronoi_tiles.fabrication.job_fields import Into, JobFields
 from voronoi_tiles.fabrication.job_limits import APART_MM, FRAME_MM
-from voronoi_tiles.fabrication.job_options import SHEETS_MOST, JobError
+from voronoi_tiles.fabrication.job_options import SHEETS_MOST, JobError, explained
 
 __all__ = ["Job", "JobError"]
 
@@ -252,4 +252,4 @@ class Job(JobFields):
                 raise JobError(message, remedy=remedy)
 
 
-Job.__doc__ = f"{Job.__doc__}\n" + "\n".join(f"    - `{name}`: {option.help}" for name, option in Job.options().items())
+Job.__doc__ = explained(Job)

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from dataclasses import dataclass, fields
-from typing import Any, Literal
+from dataclasses import dataclass
+from typing import Literal
 
 from voronoi_tiles.fabrication.job_limits import (
     ACCURACY_MIN,
@@ -21,6 +20,7 @@ from voronoi_tiles.fabrication.job_options import (
     Length,
     Offset,
     Option,
+    OptionTable,
     Quantities,
     Rates,
     SheetSize,
@@ -52,7 +52,7 @@ Into = Literal["layers", "files"]
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class JobFields:
+class JobFields(OptionTable):
     """The options of a job, each checked by itself."""
 
     sheet: Option[SheetSize, tuple[float, float] | str | None] = Option(
@@ -208,29 +208,3 @@ class JobFields:
 
     def _refuse_contradictions(self) -> None:
         """Refuse options that cannot be together: none as far as fields go."""
-
-    def __repr__(self) -> str:
-        return f"Job({', '.join(f'{name}={value!r}' for name, value in self._said())})"
-
-    @classmethod
-    def options(cls) -> dict[str, Option[Any, Any]]:
-        """The options by their names, in the order of the fields."""
-        return {field.name: vars(JobFields)[field.name] for field in fields(cls)}
-
-    def recipe(self) -> dict[str, Any]:
-        """What differs from the defaults, in the types of JSON."""
-        return {
-            name: [value.real, value.imag]
-            if isinstance(value, complex)
-            else list(value)
-            if isinstance(value, tuple)
-            else value
-            for name, value in self._said()
-        }
-
-    def _said(self) -> Iterator[tuple[str, Any]]:
-        """The options that differ from their defaults."""
-        for name, option in self.options().items():
-            value = getattr(self, name)
-            if value != option.default:
-                yield name, value

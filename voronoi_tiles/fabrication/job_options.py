@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import KW_ONLY, dataclass
+from dataclasses import KW_ONLY, dataclass, fields
+from inspect import getattr_static
 from numbers import Integral
 from typing import Any, Final, Generic, Literal, TypeAlias, TypeVar, cast, get_args
 
@@ -84,6 +85,41 @@ class Option(Generic[Given, Kept]):
 
     def __set__(self, job: object, value: Given) -> None:
         job.__dict__[self.name] = self.read(self.name, value)
+
+
+class OptionTable:
+    """The base of dataclasses whose fields are options: they say what differs from its default."""
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{name}={value!r}' for name, value in self._said())})"
+
+    @classmethod
+    def options(cls) -> dict[str, Option[Any, Any]]:
+        """The options by their names, in the order of the fields."""
+        return {field.name: getattr_static(cls, field.name) for field in fields(cast("Any", cls))}
+
+    def _said(self) -> Iterator[tuple[str, Any]]:
+        """The options that differ from their defaults."""
+        for name, option in self.options().items():
+            value = getattr(self, name)
+            if value != option.default:
+                yield name, value
+
+    def recipe(self) -> dict[str, Any]:
+        """What differs from the defaults, in the types of JSON."""
+        return {
+            name: [value.real, value.imag]
+            if isinstance(value, complex)
+            else list(value)
+            if isinstance(value, tuple)
+            else value
+            for name, value in self._said()
+        }
+
+
+def explained(job: type[OptionTable]) -> str:
+    """The docstring of a job, and a line of each option."""
+    return "\n".join((job.__doc__ or "", *(f"    - `{name}`: {one.help}" for name, one in job.options().items())))
 
 
 Length: TypeAlias = Option[float | str, float]

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import partial
-from typing import Any, Final
+from typing import Final
 
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.job_limits import ACCURACY_MIN
@@ -14,7 +13,9 @@ from voronoi_tiles.fabrication.job_options import (
     JobError,
     Length,
     Option,
+    OptionTable,
     SheetSize,
+    explained,
     length,
     read_angle,
     read_colours,
@@ -35,7 +36,7 @@ _STEEP: Final = 4.0
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class SolidJob:
+class SolidJob(OptionTable):
     """What is to be made of a tiling as solids; lengths are numbers of millimetres or texts with a unit, "3mm".
 
     Without a `sheet` one of each tile is made. Raises JobError for values that cannot be, and that contradict each
@@ -97,14 +98,6 @@ class SolidJob:
                 )
         self.flat  # noqa: B018 - what cannot be laid out is refused here
 
-    def __repr__(self) -> str:
-        return f"SolidJob({', '.join(f'{name}={value!r}' for name, value in self._said())})"
-
-    @classmethod
-    def options(cls) -> dict[str, Option[Any, Any]]:
-        """The options by their names, in the order of the fields."""
-        return {field.name: vars(cls)[field.name] for field in fields(cls)}
-
     @property
     def flat(self) -> Job:
         """The job that lays the tiles out; what drawing them in makes room for needs no pulling apart."""
@@ -128,23 +121,10 @@ class SolidJob:
         """Whether anything lies within the tiles' outlines: by half a clearance, or by a chamfer."""
         return self.clearance > 0.0 or self.chamfer > 0.0
 
-    def recipe(self) -> dict[str, Any]:
-        """What differs from the defaults, in the types of JSON."""
-        return {name: list(value) if isinstance(value, tuple) else value for name, value in self._said()}
-
     @property
     def files(self) -> tuple[str, ...]:
         """The files that it reads: the sheet's drawing."""
         return (os.fspath(self.sheet),) if isinstance(self.sheet, str) else ()
 
-    def _said(self) -> Iterator[tuple[str, Any]]:
-        """The options that differ from their defaults."""
-        for name, option in self.options().items():
-            value = getattr(self, name)
-            if value != option.default:
-                yield name, value
 
-
-SolidJob.__doc__ = f"{SolidJob.__doc__}\n" + "\n".join(
-    f"    - `{name}`: {option.help}" for name, option in SolidJob.options().items()
-)
+SolidJob.__doc__ = explained(SolidJob)

@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Any, Final
 
 from voronoi_tiles.base.values import shown
 from voronoi_tiles.fabrication.job import Job
-from voronoi_tiles.fabrication.job_options import SHEET_MIN, JobError, Length, Option, Rates, length
+from voronoi_tiles.fabrication.job_options import (
+    SHEET_MIN,
+    JobError,
+    Length,
+    Option,
+    OptionTable,
+    Rates,
+    explained,
+    length,
+)
 
 SHEETS_MAX: Final = 200
 """Most sheets of a stack; a count. All their files are open at once."""
@@ -26,7 +34,7 @@ def read_sheets(name: str, value: object) -> int:
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class StackJob:
+class StackJob(OptionTable):
     """What is to be made of a stack; lengths are numbers of millimetres or texts with a unit, "3mm".
 
     Raises JobError for values that cannot be, and that contradict each other.
@@ -65,32 +73,11 @@ class StackJob:
                 remedy="Use a thicker `dowel`.",
             )
 
-    def __repr__(self) -> str:
-        return f"StackJob({', '.join(f'{name}={value!r}' for name, value in self._said())})"
-
-    @classmethod
-    def options(cls) -> dict[str, Option[Any, Any]]:
-        """The options by their names, in the order of the fields."""
-        return {field.name: vars(cls)[field.name] for field in fields(cls)}
-
     @property
     def cut(self) -> Job:
         """The job of each sheet: one of each tile, with the sheet's number."""
         own = {name: value for name, value in self._said() if name not in ("sheets", "dowel")}
         return Job(**own, labels="number", art="none")
 
-    def recipe(self) -> dict[str, Any]:
-        """What differs from the defaults, in the types of JSON."""
-        return dict(self._said())
 
-    def _said(self) -> Iterator[tuple[str, Any]]:
-        """The options that differ from their defaults."""
-        for name, option in self.options().items():
-            value = getattr(self, name)
-            if value != option.default:
-                yield name, value
-
-
-StackJob.__doc__ = f"{StackJob.__doc__}\n" + "\n".join(
-    f"    - `{name}`: {option.help}" for name, option in StackJob.options().items()
-)
+StackJob.__doc__ = explained(StackJob)
