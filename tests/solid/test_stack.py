@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import manifold3d
 import numpy as np
 import pytest
 
@@ -194,7 +195,37 @@ def test_a_thinner_dowel_that_is_advised_has_room() -> None:
         stack(design, StackJob(sheets=2, dowel=advised + 0.02))
 
 
-def test_what_is_cut_alone_is_no_solid(made: Stack) -> None:
-    """A solid has no holes for dowels: that is said and not passed over."""
-    with pytest.raises(JobError, match="`dowel` is for sheets that are cut"):
+def test_what_is_cut_alone_is_no_solid() -> None:
+    """That is said and not passed over."""
+    made = stack(Design.loads(TWIST), StackJob(sheets=2, kerf=0.1))
+    with pytest.raises(JobError, match="`kerf` is for sheets that are cut"):
         _ = made.model
+
+
+def test_a_solid_has_the_holes_of_its_dowels() -> None:
+    """A dowel goes through the sheets of a tile where the report says; holes are no wider than the accuracy allows."""
+    made = stack(Design.loads(TWIST), StackJob(sheets=SHEETS, dowel=DOWEL, accuracy=0.01, rotate=33))
+    turn = complex(np.exp(1j * np.radians(33)))
+    told = np.array([complex(x, y) for x, y in made.report()["holes"]["bird"]]) * turn
+    shifts = []
+    for k, piece in enumerate(made.model.pieces):
+        assert piece.mesh.is_closed
+        solid = manifold3d.Manifold(manifold3d.Mesh64(piece.mesh.vertices, piece.mesh.triangles.astype(np.uint64)))
+        assert (solid.status(), solid.genus()) == (manifold3d.Error.NoError, 2)
+        rings = [
+            ring.copy().view(np.complex128)[:, 0] for ring in solid.slice(HEIGHT * (k + 0.5) / SHEETS).to_polygons()
+        ]
+        holes = sorted(rings, key=lambda ring: float(np.ptp(ring.real)))[:2]
+        centres = np.array([ring.mean() for ring in holes])
+        centres = centres[np.argsort(centres.imag)]
+        shifts += (centres - told[np.argsort(told.imag)]).tolist()
+        bored = 0.0
+        for ring in holes:
+            sides = np.column_stack((ring, np.roll(ring, -1)))
+            apothem = np.abs(sides.mean(axis=1) - ring.mean())
+            assert apothem.min() >= DOWEL / 2 - 1e-9
+            assert np.abs(ring - ring.mean()).max() <= DOWEL / 2 + 0.01
+            bored += abs(float((sides[:, 0].conj() * sides[:, 1]).imag.sum())) / 2
+        share = CELL**2 / 4 - bored
+        assert solid.volume() == pytest.approx(share * HEIGHT / SHEETS, rel=1e-9)
+    assert np.abs(np.array(shifts) - shifts[0]).max() < 1e-6

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import click
 
@@ -17,11 +17,14 @@ from voronoi_tiles.cli.common import (
     say_written,
 )
 from voronoi_tiles.cli.options import with_scale, with_solid_job
+from voronoi_tiles.cli.progress_bar import progress_bar
 
 if TYPE_CHECKING:
     from voronoi_tiles.designs.design import Design
+    from voronoi_tiles.formats.presets import Format
     from voronoi_tiles.solid.solid_job import SolidJob
     from voronoi_tiles.solid.solid_model import SolidFormat, SolidModel
+    from voronoi_tiles.solid.stack import Stack
     from voronoi_tiles.solid.stack_job import StackJob
 
 _SUFFIXES = (".3mf", ".stl", ".png")
@@ -95,7 +98,8 @@ def solid(
     with reporting(design):
         loaded = load(design, quiet=quiet)
         if isinstance(job, StackJob):
-            figures = _stack(loaded, job, output, file_format, size, mass, quiet=quiet)
+            cut, form = _stack(loaded, job, output, file_format, size, quiet=quiet)
+            figures = cut.report(mass, form) if reports else {}
         else:
             around = picture and job.sheet is None
             made = _model(loaded, job, around=around)
@@ -134,24 +138,28 @@ def _stack(
     output: str,
     file_format: SolidFormat | None,
     size: int | None,
-    density: float,
     *,
     quiet: bool,
-) -> dict[str, Any]:
-    """Write a stack, as files to cut or as a solid, and say what was written; its figures."""
+) -> tuple[Stack, Format | None]:
+    """Write a stack, as files to cut or as a solid, and say what was written; the format of what is cut."""
+    from voronoi_tiles.fabrication.exporting import format_of
+    from voronoi_tiles.formats.presets import FORMATS
     from voronoi_tiles.solid.stack import stack
 
-    made = stack(design, job)
-    figures = made.report(density)
+    with progress_bar("tiles of sheets", quiet=quiet) as progress:
+        made = stack(design, job, progress)
+    form = None
     if file_format is not None or output.lower().endswith(_SUFFIXES):
         _save(made.model, output, file_format, size, quiet=quiet)
     else:
-        written = made.export(output)
+        form = format_of(output, FORMATS)
+        with progress_bar("drawing sheets", quiet=quiet) as progress:
+            written = made.export(output, form, progress)
         if not quiet:
             for note in dict.fromkeys(note for _, product in written if product for note in product.notes):
                 say(as_options(note))
             for path, product in written:
                 say_written(path, product and as_options(product.summary()))
     if not quiet:
-        say(made.summary())
-    return figures
+        say(made.summary(form))
+    return made, form

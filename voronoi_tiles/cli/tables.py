@@ -168,6 +168,7 @@ def stack_text(figures: dict[str, Any]) -> str:
     page.head(
         {
             "stack": f"{figures['height']:.5g} mm high, of sheets of {figures['thickness']:.5g} mm",
+            "stacks": ", ".join(f"{count:,} {printable(name)}" for name, count in figures["stacks"].items()),
             "volume": f"{figures['volume'] / 1000:.4g} cm³",
             "mass": f"{figures['mass']:.4g} g, at {figures['density']:g} g/cm³",
         }

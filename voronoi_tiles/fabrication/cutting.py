@@ -36,6 +36,28 @@ class Cut:
     items: Ints | None = None
 
 
+def of_colour(contours: Contours, colouring: TileColouring, job: Job) -> Contours:
+    """The pieces of the only colour that is asked for."""
+    if job.only_colour is None:
+        return contours
+    chosen = np.flatnonzero(colouring.of_copies(contours.copy) == job.only_colour)
+    if not len(chosen):
+        raise JobError(
+            f"no piece has the `only_colour` {job.only_colour}",
+            remedy=f"Colours are 0 to {colouring.count - 1}, a sheet has perhaps not all of them, and -1 is its frame.",
+        )
+    rings = ranges(contours.items[chosen], np.diff(contours.items)[chosen])
+    items = offsets_of(np.diff(contours.items)[chosen])
+    loose = None if contours.loose is None else contours.loose[rings]
+    return Contours(contours.paths.take(rings), items, contours.copy[chosen], contours.area[chosen], loose)
+
+
+def cut_lines(layout: Layout, job: Job) -> list[Cut]:
+    """Every line once, after holes that are bored."""
+    bores = [Cut("inner", "", None, toured(layout.bores))] if len(layout.bores) else []
+    return [*bores, Cut("cut", "", None, cut_once(layout, job))]
+
+
 def cut_once(layout: Layout, job: Job) -> Paths:
     """Every line once: what lies between tiles in the fewest trails, then the rings around them."""
     strands = layout.lines()
@@ -88,6 +110,7 @@ def cut_pieces(contours: Contours, colouring: TileColouring, job: Job) -> list[C
     """
     depth = _depths(contours.paths, nested=job.nests)
     outer = depth == 0
+    loose = np.zeros(len(depth), np.bool_) if contours.loose is None else contours.loose
     of = np.repeat(np.arange(len(contours.copy)), np.diff(contours.items))
     colour = colouring.of_copies(contours.copy)
     cuts = []
@@ -97,11 +120,14 @@ def cut_pieces(contours: Contours, colouring: TileColouring, job: Job) -> list[C
             picked = np.flatnonzero(chosen & in_group[of])
             if not len(picked):
                 continue
-            by_depth = [picked[depth[picked] == n] for n in np.unique(depth[picked])[::-1].tolist()]
+            bored, held = picked[loose[picked]], picked[~loose[picked]]
+            by_depth = [held[depth[held] == n] for n in np.unique(depth[held])[::-1].tolist()]
             paths = Paths.concatenate([toured(contours.paths.take(own)) for own in by_depth])
-            if job.tabs > 0.0:
+            if job.tabs > 0.0 and len(paths):
                 # The beam takes half a kerf from either end of a bridge.
                 paths = _tabbed(paths, job.tabs + job.kerf)
+            if len(bored):
+                paths = Paths.concatenate([toured(contours.paths.take(bored)), paths])
             cuts.append(Cut(role, suffix, group, paths))
     return cuts
 

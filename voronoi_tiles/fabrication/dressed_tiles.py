@@ -45,18 +45,28 @@ class PageMap:
 
 @dataclass(frozen=True, eq=False)
 class DressedTiles:
-    """The rings of a period's tiles on the page, as they are cut; the tiles of one site are images of the first."""
+    """The rings of a period's tiles on the page, as they are cut; the tiles of one site are images of the first.
+
+    `pulled_by` are the points by which tiles are pulled apart, None for the middles of their boxes.
+    """
 
     period: Period
     page: PageMap
     compensation: Compensation
+    pulled_by: Complexes | None = None
     _rings: dict[int, Paths] = field(default_factory=dict)
     _spacing: dict[float, Spacing] = field(default_factory=dict)
 
     def moved(self, shift: complex) -> DressedTiles:
         """The same elsewhere on the page."""
         rings = {tile: rings.moved(1.0, shift) for tile, rings in self._rings.items()}
-        return replace(self, period=self.period.placed(1.0, shift), page=self.page.moved(shift), _rings=rings)
+        by = None if self.pulled_by is None else self.pulled_by + shift
+        period, page = self.period.placed(1.0, shift), self.page.moved(shift)
+        return replace(self, period=period, page=page, pulled_by=by, _rings=rings)
+
+    def pulled(self, points: Complexes) -> DressedTiles:
+        """The same that are pulled apart by other points, one for each tile of the period."""
+        return replace(self, pulled_by=points, _spacing={})
 
     def compensated(self, compensation: Compensation) -> DressedTiles:
         """The same tiles with another compensation."""
@@ -88,11 +98,11 @@ class DressedTiles:
         return self._spacing[accuracy]
 
     def centres(self) -> Complexes:
-        """The middles of the tiles' boxes."""
-        return self._centres
+        """The points by which tiles are pulled apart."""
+        return self._centres if self.pulled_by is None else self.pulled_by
 
     @cached_property
     def _centres(self) -> Complexes:
-        """The same, found once."""
+        """The middles of the tiles' boxes, found once."""
         boxes = np.array([rings.bounds for rings in self.all_rings()])
         return np.asarray((boxes[:, 0] + boxes[:, 2]) / 2 + 1j * (boxes[:, 1] + boxes[:, 3]) / 2)

@@ -69,7 +69,9 @@ def _labels(layout: Layout, contours: Contours) -> tuple[Paths, int]:
     numbers = np.arange(len(pieces)) + 1 if layout.numbers is None else layout.numbers[contours.copy[pieces]]
     names = [printable(site.name) for site in layout.design.noded]
     sites = layout.site[contours.copy[pieces]]
-    texts = [str(numbers[k]) if job.labels == "number" else names[sites[k]] for k in range(len(pieces))]
+    texts = [
+        layout.numbered(int(numbers[k])) if job.labels == "number" else names[sites[k]] for k in range(len(pieces))
+    ]
     unit = {text: fitting_height(text, 1.0, _WANTED) if text.strip() else 1.0 for text in set(texts)}
     height = np.array([unit[text] for text in texts]) * room[pieces] * _ROOM
     height = 2.0 ** (np.floor(np.log2(np.maximum(height, 1e-9)) * _SIZES) / _SIZES)
@@ -88,10 +90,15 @@ def piece_numbers(layout: Layout, contours: Contours) -> Ints:
 
 
 def _read(layout: Layout, contours: Contours, place: Complexes) -> Ints:
-    """The pieces of tiles as one reads: from left to right, line by line from above; lines are half a tile high."""
+    """The pieces of tiles as one reads."""
     pieces = np.flatnonzero(contours.copy >= 0)
-    line = np.round(-place[pieces].imag / (0.5 * float(np.sqrt(np.median(layout.tile_areas)))))
-    return pieces[np.lexsort((place[pieces].real, line))]
+    return pieces[reading_order(place[pieces], layout)]
+
+
+def reading_order(place: Complexes, layout: Layout) -> Ints:
+    """The order of places from left to right, line by line from above; lines are half a tile high."""
+    line = np.round(-place.imag / (0.5 * float(np.sqrt(np.median(layout.tile_areas)))))
+    return np.lexsort((place.real, line))
 
 
 def _label_places(layout: Layout, contours: Contours) -> tuple[Complexes, Floats]:

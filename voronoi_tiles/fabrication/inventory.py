@@ -9,7 +9,7 @@ import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Floats, Ints
 from voronoi_tiles.base.text import counted
-from voronoi_tiles.fabrication.layout import FRAME, Layout, piece_areas
+from voronoi_tiles.fabrication.layout import FRAME, Layout
 from voronoi_tiles.fabrication.tile_colouring import TileColouring
 
 
@@ -56,7 +56,7 @@ def cut_free(layout: Layout, colouring: TileColouring) -> Inventory:
     copy, area = whole, layout.tile_areas[layout.copies.tile[whole]]
     rest = layout.rest()
     if rest is not None:
-        copy, area = np.append(copy, rest.tile), np.append(area, piece_areas(rest))
+        copy, area = np.append(copy, rest.tile), np.append(area, layout.rest_areas(rest))
     return inventory(layout, colouring, copy, area)
 
 

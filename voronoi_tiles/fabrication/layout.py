@@ -20,11 +20,10 @@ from voronoi_tiles.fabrication.dressed_tiles import DressedTiles, PageMap
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.job_options import SHEET_MAX
 from voronoi_tiles.fabrication.kerf import Compensation
-from voronoi_tiles.fabrication.region import Region
+from voronoi_tiles.fabrication.region import Region, inset
 from voronoi_tiles.fabrication.spacing import FARTHEST, UNSTRETCHED, Stretch, pulled_apart
 from voronoi_tiles.fabrication.tile_placement import TilePlacement, place_tiles, whole_tiles
 from voronoi_tiles.paths.areas import item_areas
-from voronoi_tiles.paths.offset import OffsetError, offset
 from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.paths.segments import item_boxes
 from voronoi_tiles.vector.complex.period import Period
@@ -90,13 +89,15 @@ class Contours:
     """Closed pieces: piece k are the rings items[k] up to items[k + 1], outer ones first.
 
     `copy` is the tile on the page that each is, or is part of; FRAME for parts of a frame. `area` is what each has
-    without fillet and kerf, square millimetres.
+    without fillet and kerf, square millimetres. What `loose` rings (bool) enclose falls out, whatever tabs there are;
+    None where there are no such.
     """
 
     paths: Paths
     items: Ints
     copy: Ints
     area: Floats
+    loose: Bools | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -180,7 +181,7 @@ class Layout:
             paths = Paths.concatenate([paths, done.paths])
             items = np.concatenate((items, items[-1] + done.items[1:]))
             copy = np.concatenate((copy, done.tile))
-            area = np.append(area, piece_areas(rest)[of] * share)
+            area = np.append(area, self.rest_areas(rest)[of] * share)
         return Contours(paths, items, copy, area)
 
     def rest(self) -> ClosedPieces | None:
@@ -194,6 +195,19 @@ class Layout:
             outlines, items = self.spaced.outlines(self.copies.tile[cut], self.copies.step[cut])
             rest = clipped_pieces(self.strands, cut, outlines, items)
         return rest if len(rest.tile) else None
+
+    def rest_areas(self, rest: ClosedPieces) -> Floats:
+        """The areas of the pieces of `rest`, square millimetres."""
+        return piece_areas(rest)
+
+    @property
+    def bores(self) -> Paths:
+        """Holes that are cut into pieces, and are no tile's: closed paths, clockwise."""
+        return Paths.empty()
+
+    def numbered(self, number: int) -> str:
+        """The text by which a piece with a number is labelled."""
+        return str(number)
 
     @cached_property
     def tile_areas(self) -> Floats:
@@ -288,13 +302,13 @@ def _filled(
     """Fill a sheet with tiles that are spread by a stretch."""
     region = sheet.region
     assert region is not None
-    field = _inset(region, job.frame_width) if job.frame_width > 0.0 else region
-    spaced = _spaced(tiles, sheet, stretch)
+    field = inset(region, job.frame_width) if job.frame_width > 0.0 else region
+    spaced = spaced_period(tiles, sheet, stretch)
     if job.offset is None and job.fit != "clip":
         tiles = tiles.moved(stretch.inverse(best_shift(spaced, field, rough=rough)))
-        spaced = _spaced(tiles, sheet, stretch)
+        spaced = spaced_period(tiles, sheet, stretch)
     placement = _placement(spaced, field, job)
-    copies = _pulled(tiles, placement, sheet, stretch)
+    copies = pulled(tiles, placement, sheet, stretch)
     return Layout(design, tessellation, job, sheet, budget, tiles, spaced, placement, copies, stretch)
 
 
@@ -311,7 +325,7 @@ def _refuse_crowd(period: Period, region: Region) -> None:
         )
 
 
-def _spaced(tiles: DressedTiles, sheet: Sheet, stretch: Stretch) -> Period:
+def spaced_period(tiles: DressedTiles, sheet: Sheet, stretch: Stretch) -> Period:
     """The period where it is cut."""
     period = tiles.period
     return period if stretch.is_identity else pulled_apart(period, tiles.centres(), sheet.centre, stretch)
@@ -366,7 +380,7 @@ def _in_a_row(tiles: DressedTiles, placement: TilePlacement, job: Job) -> Placed
     return PlacedTiles(placement.tile, placement.step, placement.whole, moves)
 
 
-def _pulled(tiles: DressedTiles, placement: TilePlacement, sheet: Sheet, stretch: Stretch) -> PlacedTiles:
+def pulled(tiles: DressedTiles, placement: TilePlacement, sheet: Sheet, stretch: Stretch) -> PlacedTiles:
     """Tiles on a sheet, and how far each is pulled."""
     moves = np.zeros(len(placement.tile), np.complex128)
     if not stretch.is_identity:
@@ -378,23 +392,3 @@ def _pulled(tiles: DressedTiles, placement: TilePlacement, sheet: Sheet, stretch
 def piece_areas(pieces: ClosedPieces) -> Floats:
     """The area of each piece, its holes taken off."""
     return item_areas(pieces.paths, pieces.items)
-
-
-def _inset(region: Region, width: float) -> Region:
-    """What is left of a region inside a frame of this width. Raises JobError where nothing is."""
-    left, bottom, right, top = region.bounds
-    if region.is_rectangle and 2 * width < min(right - left, top - bottom):
-        return Region.rectangle(left + width, bottom + width, right - width, top - width)
-    try:
-        border = offset(region.border, -width).paths
-    except OffsetError as error:
-        raise JobError(
-            f"the sheet's outline leaves no frame of {width:g} mm: {error}",
-            remedy="Use another `frame`, `fit='whole'` or `fit='clip'`.",
-        ) from error
-    if not len(border):
-        raise JobError(
-            f"the sheet is too small for a frame of {width:g} mm",
-            remedy="Take a larger sheet, a narrower `frame`, or `fit='whole'`.",
-        )
-    return Region(border)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from io import BytesIO, RawIOBase
 from math import fsum
@@ -13,13 +13,13 @@ from typing import Any, BinaryIO, Final
 import numpy as np
 
 from voronoi_tiles.base.arguments import path_name
-from voronoi_tiles.base.arrays import Bools, offsets_of, ranges
+from voronoi_tiles.base.arrays import Bools
 from voronoi_tiles.base.files import refuse_overwriting, writing
 from voronoi_tiles.base.text import counted
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.artwork import Works
 from voronoi_tiles.fabrication.curve_choice import curve_converter, file_curves
-from voronoi_tiles.fabrication.cutting import Cut, cut_once, cut_pieces, cut_shapes, toured
+from voronoi_tiles.fabrication.cutting import Cut, cut_lines, cut_pieces, cut_shapes, of_colour, toured
 from voronoi_tiles.fabrication.demands import as_demanded
 from voronoi_tiles.fabrication.engraving import engrave
 from voronoi_tiles.fabrication.exact import design_recipe
@@ -29,7 +29,7 @@ from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.job_notes import doubled, unnested, untabbed, without_effect
 from voronoi_tiles.fabrication.job_options import LAYOUTS
 from voronoi_tiles.fabrication.laying import laid
-from voronoi_tiles.fabrication.layout import FRAME, Contours, Layout
+from voronoi_tiles.fabrication.layout import FRAME, Layout
 from voronoi_tiles.fabrication.nest_places import places_recipe
 from voronoi_tiles.fabrication.nest_search import Progress
 from voronoi_tiles.fabrication.nested_sheets import Nesting
@@ -144,11 +144,8 @@ def make(
     job: Job,
     file_format: str = "svg",
     progress: Progress | None = None,
-    finish: Callable[[Layout], Layout] = lambda layout: layout,
 ) -> Product:
     """Make what a job asks for, in the curves that a format takes; `progress` is told of a search for places.
-
-    Pieces that lie in their places are changed by `finish`.
 
     Raises JobError where the job cannot be done, DesignError where the preset or the sheet's drawing is broken.
     """
@@ -160,7 +157,28 @@ def make(
             remedy=f"Export it to a file's name, or {other}.",
         )
     plan = _Plan.of(design, tessellation, job, form, progress)
-    return plan.on(finish(plan.layout)).product(plan.layout.job)
+    return plan.product(plan.layout.job)
+
+
+def make_together(
+    design: Design,
+    tessellations: Iterable[Tessellation],
+    job: Job,
+    file_format: str,
+    finish: Callable[[Sequence[Layout]], Sequence[Layout]],
+    progress: Progress | None = None,
+) -> list[Product]:
+    """Make a drawing of each of some tessellations, whose layouts `finish` changes all together.
+
+    `progress` is told how many are made. Raises what `make` does.
+    """
+    plans = [_Plan.of(design, tessellation, job, _format(file_format)) for tessellation in tessellations]
+    made = []
+    for plan, sheet in zip(plans, finish([plan.layout for plan in plans]), strict=True):
+        made.append(replace(plan.on(sheet), hints=()).product(sheet.job))
+        if progress is not None:
+            progress(len(made), len(plans))
+    return made
 
 
 def make_several(
@@ -278,11 +296,11 @@ class _Plan:
         """Draw what a job asks for, which is that of the plan, or one of its colours."""
         layout, colouring, preset = self.layout, self.colouring, self.preset
         if job.cuts_pieces:
-            contours = _of_colour(layout.contours, colouring, job)
+            contours = of_colour(layout.contours, colouring, job)
             cuts = (cut_shapes if self.solid else cut_pieces)(contours, colouring, job)
             pieces = inventory(layout, colouring, contours.copy, contours.area)
         else:
-            cuts = [Cut("cut", "", None, cut_once(layout, job))]
+            cuts = cut_lines(layout, job)
             contours = None
             pieces = cut_free(layout, colouring)
         shown = _shown(colouring, layout, job)
@@ -326,21 +344,6 @@ def _format(name: str) -> Format:
     if name not in FORMATS:
         raise JobError(f"no drawing can be made as {name!r}", remedy=f"Use one of {', '.join(FORMATS)}.")
     return name
-
-
-def _of_colour(contours: Contours, colouring: TileColouring, job: Job) -> Contours:
-    """The pieces of the only colour that is asked for."""
-    if job.only_colour is None:
-        return contours
-    chosen = np.flatnonzero(colouring.of_copies(contours.copy) == job.only_colour)
-    if not len(chosen):
-        raise JobError(
-            f"no piece has the `only_colour` {job.only_colour}",
-            remedy=f"Colours are 0 to {colouring.count - 1}, a sheet has perhaps not all of them, and -1 is its frame.",
-        )
-    rings = ranges(contours.items[chosen], np.diff(contours.items)[chosen])
-    items = offsets_of(np.diff(contours.items)[chosen])
-    return Contours(contours.paths.take(rings), items, contours.copy[chosen], contours.area[chosen])
 
 
 def _shown(colouring: TileColouring, layout: Layout, job: Job) -> Bools:

@@ -9,6 +9,8 @@ import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
 from voronoi_tiles.base.box_index import BoxIndex
+from voronoi_tiles.fabrication.job_options import JobError
+from voronoi_tiles.paths.offset import OffsetError, offset
 from voronoi_tiles.paths.paths import LINE, Paths
 from voronoi_tiles.paths.segments import boxes, corners, point_at, tangent_at
 from voronoi_tiles.paths.winding import winding
@@ -119,3 +121,23 @@ def beside_border(border: Paths, pieces: Ints, close: float) -> tuple[Complexes,
     place = point_at(border, pieces, middle)
     aside = 1j * tangent_at(border, pieces, middle) * (_BESIDE * close)
     return place + aside, place - aside
+
+
+def inset(region: Region, width: float) -> Region:
+    """What is left of a region inside a frame of this width. Raises JobError where nothing is."""
+    left, bottom, right, top = region.bounds
+    if region.is_rectangle and 2 * width < min(right - left, top - bottom):
+        return Region.rectangle(left + width, bottom + width, right - width, top - width)
+    try:
+        border = offset(region.border, -width).paths
+    except OffsetError as error:
+        raise JobError(
+            f"the sheet's outline leaves no frame of {width:g} mm: {error}",
+            remedy="Use another `frame`, `fit='whole'` or `fit='clip'`.",
+        ) from error
+    if not len(border):
+        raise JobError(
+            f"the sheet is too small for a frame of {width:g} mm",
+            remedy="Take a larger sheet, a narrower `frame`, or `fit='whole'`.",
+        )
+    return Region(border)

@@ -87,17 +87,56 @@ class Spacing:
         that take least room first; the first that parts all tiles is then made as small as it can be. Raises ValueError
         for tiles that none of them parts: those in a hole of another.
         """
+        return common_stretch([self], gap)
+
+    def neighbourhood(self, gap: float, *, coarse: bool = False) -> _Neighbourhood:
+        """The pairs of tiles that a gap is about; `coarse`, of simpler contours."""
         import shapely
 
-        fine = _Neighbourhood(self._shapes, self._centres, self._basis, gap)
-        if fine.too_near(1.0, 0j) is None:
-            return UNSTRETCHED
-        p, q = _tried(_FIRST * gap / float(np.abs(fine.apart).max()))
-        coarse = _Neighbourhood(shapely.simplify(self._shapes, _COARSE * gap), self._centres, self._basis, gap)
-        best = coarse.first_clear(p, q)
-        if best is None:
-            raise ValueError("a tile lies within another, and cannot be pulled out")
-        return fine.fitted(float(p[best]), complex(q[best]))
+        shapes = shapely.simplify(self._shapes, _COARSE * gap) if coarse else self._shapes
+        return _Neighbourhood(shapes, self._centres, self._basis, gap)
+
+
+def common_stretch(spacings: Sequence[Spacing], gap: float) -> Stretch:
+    """The stretch after which contours are `gap` apart in each of some layouts with one lattice; as Spacing.stretch."""
+    fine = [spacing.neighbourhood(gap) for spacing in spacings]
+    if all(one.too_near(1.0, 0j) is None for one in fine):
+        return UNSTRETCHED
+    p, q = _tried(_FIRST * gap / max(float(np.abs(one.apart).max()) for one in fine))
+    best = _first_clear([spacing.neighbourhood(gap, coarse=True) for spacing in spacings], p, q)
+    if best is None:
+        raise ValueError("a tile lies within another, and cannot be pulled out")
+    return _fitted(fine, float(p[best]), complex(q[best]))
+
+
+def _first_clear(some: Sequence[_Neighbourhood], p: Floats, q: Complexes) -> int | None:
+    """The first of some stretches that parts all pairs of all neighbourhoods; None where none does."""
+    first, before = 0, -1
+    while first != before:
+        before = first
+        for one in some:
+            clear = one.first_clear(p[first:], q[first:])
+            if clear is None:
+                return None
+            first += clear
+    return first
+
+
+def _fitted(some: Sequence[_Neighbourhood], p: float, q: complex) -> Stretch:
+    """The least stretch of a kind that parts all pairs of all neighbourhoods, near one that nearly does."""
+
+    def clear(part: float) -> bool:
+        """Whether one that moves everything by so much of it does."""
+        return all(one.too_near(1 + part * (p - 1), part * q) is None for one in some)
+
+    high = 1.0
+    while not clear(high):
+        high *= 1 + (_GROWTH - 1) / 10
+    low = 1 / _GROWTH
+    for _ in range(_BISECTIONS):
+        middle = (low + high) / 2
+        low, high = (low, middle) if clear(middle) else (middle, high)
+    return Stretch(1 + high * (p - 1), high * q)
 
 
 def _tried(first: float) -> tuple[Floats, Complexes]:
@@ -149,22 +188,6 @@ class _Neighbourhood:
             shift = self.step[pair] + _moves(p[left], q[left], self.apart[pair])
             left = left[np.abs(shift - self._between[-1]) >= _SURELY * self.gap]
         return None
-
-    def fitted(self, p: float, q: complex) -> Stretch:
-        """The least stretch of a kind that parts all pairs, near one that nearly does."""
-
-        def clear(part: float) -> bool:
-            """Whether one that moves everything by so much of it does."""
-            return self.too_near(1 + part * (p - 1), part * q) is None
-
-        high = 1.0
-        while not clear(high):
-            high *= 1 + (_GROWTH - 1) / 10
-        low = 1 / _GROWTH
-        for _ in range(_BISECTIONS):
-            middle = (low + high) / 2
-            low, high = (low, middle) if clear(middle) else (middle, high)
-        return Stretch(1 + high * (p - 1), high * q)
 
     def too_near(self, p: float, q: complex) -> int | None:
         """A pair that a stretch leaves nearer than the gap; None where it parts all."""

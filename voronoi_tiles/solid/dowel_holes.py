@@ -1,21 +1,18 @@
-"""Holes for dowels: where they lie within a tile at all heights, and sheets that have them."""
+"""Holes for dowels: where they lie within a tile at all heights."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
-from functools import cached_property
 from math import cos, pi
-from typing import Any, Final, Self
+from typing import Any, Final
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, plane
 from voronoi_tiles.fabrication.job import JobError
-from voronoi_tiles.fabrication.layout import Contours, Layout
 from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.conversion import to_lines
-from voronoi_tiles.paths.paths import ARC, Paths
+from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.solid.face_triangles import polygons
 
 WALL_MM: Final = 1.0
@@ -94,53 +91,3 @@ def _farthest(common: Any, diameter: float) -> Complexes | None:
     if apart[one, other] < diameter + wall_of(diameter):
         return None
     return np.asarray(corners[[one, other]])
-
-
-@dataclass(frozen=True, eq=False)
-class BoredLayout(Layout):
-    """A layout of one of each tile whose pieces have holes: `holes` are the centres in each site, where it is drawn.
-
-    Each is complex128 (n,), in millimetres; `diameter` is what holes have when they are cut.
-    """
-
-    holes: tuple[Complexes, ...] = ()
-    diameter: float = 0.0
-
-    @classmethod
-    def of(cls, layout: Layout, holes: Sequence[Complexes], diameter: float) -> Self:
-        """A layout with holes."""
-        own = {field.name: getattr(layout, field.name) for field in fields(Layout)}
-        return cls(**own, holes=tuple(holes), diameter=diameter)
-
-    @cached_property
-    def contours(self) -> Contours:
-        """The closed contours of all pieces, the holes among them, which lose what the kerf adds."""
-        plain = super().contours
-        radius = (self.diameter - self.job.kerf) / 2
-        turn = self.tiles.page.factor / abs(self.tiles.page.factor)
-        parts, counts, left = [], [], plain.area.copy()
-        for k, copy in enumerate(plain.copy.tolist()):
-            rings = plain.paths.take(np.arange(plain.items[k], plain.items[k + 1]))
-            own = self.holes[int(self.site[copy])]
-            centres = own * turn + self.tiles.page.shift + self.copies.moved_by[copy]
-            parts += [rings, circles(centres, radius)]
-            counts.append(len(rings) + len(own))
-            left[k] -= len(own) * pi * self.diameter**2 / 4
-        items = np.append(0, np.cumsum(counts)).astype(np.intp)
-        return Contours(Paths.concatenate(parts), items, plain.copy, left)
-
-
-def circles(centres: Complexes, radius: float) -> Paths:
-    """Circles as holes are: clockwise, of two arcs each."""
-    start = np.column_stack((centres + radius, centres - radius)).ravel()
-    end = np.column_stack((centres - radius, centres + radius)).ravel()
-    control = np.zeros((len(start), 2), np.complex128)
-    control[:, 0] = np.column_stack((centres - 1j * radius, centres + 1j * radius)).ravel()
-    return Paths(
-        start,
-        end,
-        control,
-        np.full(len(start), ARC, np.uint8),
-        2 * np.arange(len(centres) + 1),
-        np.ones(len(centres), np.bool_),
-    )

@@ -60,7 +60,8 @@ class SolidJob(OptionTable):
     sheet: Option[SheetSize, tuple[float, float] | str | None] = Option(
         None,
         read_sheet,
-        "Fill a print bed, 200x200mm, or what the paths of an SVG or DXF file bound [default: one of each tile].",
+        "Fill a print bed, or with `sheets` boards to cut: 200x200mm, or what the paths of an SVG or DXF file bound "
+        "[default: one of each tile].",
         kind="text",
         shown="WxH|FILE",
     )

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from math import fsum, pi
-from typing import Any
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -21,12 +21,15 @@ from voronoi_tiles.fabrication.exact import design_recipe
 from voronoi_tiles.fabrication.exporting import Exported, format_of, numbered, refuse_stream, write_all
 from voronoi_tiles.fabrication.job_options import JobError
 from voronoi_tiles.fabrication.layout import Layout
-from voronoi_tiles.fabrication.product import Product, make
-from voronoi_tiles.formats.presets import FORMATS, Format
+from voronoi_tiles.fabrication.nest_search import Progress
+from voronoi_tiles.fabrication.product import Product, make_together
+from voronoi_tiles.formats.presets import FORMATS, Format, load_preset
 from voronoi_tiles.groups.periodic_colouring import palette
 from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.paths import Paths
-from voronoi_tiles.solid.dowel_holes import BoredLayout, place_holes
+from voronoi_tiles.solid.bores import bored
+from voronoi_tiles.solid.common_places import laid_together
+from voronoi_tiles.solid.dowel_holes import place_holes
 from voronoi_tiles.solid.events import LoftError
 from voronoi_tiles.solid.extrusion_proof import prove_copies, prove_prisms
 from voronoi_tiles.solid.mesh import TriangleMesh
@@ -37,8 +40,12 @@ from voronoi_tiles.solid.solid_job import HEIGHT_MIN, SolidJob
 from voronoi_tiles.solid.solid_model import SolidModel
 from voronoi_tiles.solid.solid_report import DENSITY
 from voronoi_tiles.solid.stack_job import StackJob
+from voronoi_tiles.solid.stack_layout import StackLayout, hole_centres
 from voronoi_tiles.vector.proof import proved_tiles
 from voronoi_tiles.vector.tessellation import Tessellation
+
+_OF_SOLIDS: Final = ("sheets", "dowel", "margin", "rotate", "accuracy")
+"""The options that are for solids, too."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,6 +61,13 @@ class StackSheet:
     outlines: tuple[Paths, ...]
 
 
+class _Made(NamedTuple):
+    """The drawings of all sheets, and how many stacks there are of each site by its name."""
+
+    products: tuple[Product, ...]
+    stacks: dict[str, int]
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Stack:
     """A design that stands as sheets, proved: each has the exact tiles of the strokes at the middle of its height.
@@ -67,56 +81,86 @@ class Stack:
     thickness: float
     sheets: tuple[StackSheet, ...]
     holes: tuple[Complexes, ...]
+    _files: dict[Format, _Made] = field(default_factory=dict)
 
     def __repr__(self) -> str:
-        return f"<Stack: {self.summary()}>"
+        return f"<Stack: {counted(len(self.sheets), 'sheet')} of {self.thickness:.5g} mm>"
 
-    def summary(self) -> str:
-        """Say in a line what a maker needs to know of the sheets."""
+    def summary(self, file_format: Format | None = None) -> str:
+        """Say in a line what a maker needs to know of the sheets, in files of a format, None for the preset's first."""
         text = f"{counted(len(self.sheets), 'sheet')}, 1 the lowest, each {self.thickness:.5g} mm thick"
+        if self.job.sheet is not None:
+            stacks = self.stacks(file_format)
+            each = f" ({', '.join(f'{n} {name}' for name, n in stacks.items())})" if len(stacks) > 1 else ""
+            clipped = ", whole and clipped ones" if self.job.fit == "clip" else ""
+            text += f": {counted(sum(stacks.values()), 'stack')}{each}{clipped}, pieces are numbered sheet.stack"
         if self.holes:
             apart = min(float(abs(own[1] - own[0])) for own in self.holes)
             more = " or more" if len(self.holes) > 1 else ""
             text += (
-                f"; 2 holes in a tile, {apart:.4g} mm{more} apart, for dowels of {self.job.dowel:g} mm, "
-                f"{self.thickness * len(self.sheets):.5g} mm long"
+                f"; 2 holes in a {'whole ' if self.job.fit == 'clip' else ''}tile, {apart:.4g} mm{more} apart, "
+                f"for dowels of {self.job.dowel:g} mm, {self.thickness * len(self.sheets):.5g} mm long"
             )
         return text
 
-    def products(self, file_format: Format = "svg") -> list[Product]:
-        """The drawing of each sheet, with its number engraved. Raises JobError where the job cannot be done."""
-        drawn = any(art is not None for art in self.design.art)
-        notes = ("art is left out of sheets: it is drawn for the lowest tile",) if drawn else ()
-        made = []
-        for sheet in self.sheets:
-            finish = self._finish(sheet.number)
-            product = make(self.design, sheet.tessellation, self.job.cut, file_format, finish=finish)
-            own = json.dumps({**self.job.recipe(), "sheet": sheet.number}, sort_keys=True)
-            drawing = replace(product.drawing, recipe={**product.drawing.recipe, "stack": own})
-            made.append(replace(product, drawing=drawing, notes=(*product.notes, *notes)))
-        return made
+    def stacks(self, file_format: Format | None = None) -> dict[str, int]:
+        """How many stacks there are of each site, by its name, in files of a format, None for the preset's first."""
+        return dict(self._made(file_format).stacks)
 
-    def export(self, path: str | os.PathLike[str], file_format: Format | None = None) -> tuple[Exported, ...]:
+    def products(self, file_format: Format = "svg", progress: Progress | None = None) -> list[Product]:
+        """The drawing of each sheet, with its number engraved, on full sheets also that of the stack.
+
+        All sheets have the same stacks in the same places. `progress` is told how many sheets are drawn. Raises
+        JobError where the job cannot be done.
+        """
+        return list(self._made(file_format, progress).products)
+
+    def export(
+        self,
+        path: str | os.PathLike[str],
+        file_format: Format | None = None,
+        progress: Progress | None = None,
+    ) -> tuple[Exported, ...]:
         """Write a file for each sheet, with its number before the suffix: all of them, whole, or none.
 
-        The format is that of the suffix, or `file_format`. Raises OutputError, and JobError where the job cannot be
-        done.
+        The format is that of the suffix, or `file_format`; `progress` is told how many sheets are drawn. Raises
+        OutputError, and JobError where the job cannot be done.
         """
         name = path_name("path", path)
         form = format_of(name, FORMATS) if file_format is None else file_format
         refuse_stream(name, "sheets")
-        products = self.products(form)
+        products = self.products(form, progress)
         return write_all(numbered(name, [(str(k + 1), product) for k, product in enumerate(products)]))
 
-    def _finish(self, sheet: int) -> Callable[[Layout], Layout]:
-        """What numbers the pieces of a sheet, and bores them."""
+    def _made(self, file_format: Format | None, progress: Progress | None = None) -> _Made:
+        """The sheets in a format, made once."""
+        form = load_preset(self.job.preset).first_format if file_format is None else file_format
+        if form not in self._files:
+            self._files[form] = self._make(form, progress)
+        return self._files[form]
 
-        def finish(layout: Layout) -> Layout:
-            """The layout with the number of the sheet on all pieces, and holes."""
-            layout = replace(layout, numbers=np.full(len(layout.copies.tile), sheet))
-            return layout if self.job.dowel is None else BoredLayout.of(layout, self.holes, self.job.dowel)
+    def _make(self, form: Format, progress: Progress | None) -> _Made:
+        """The sheets in a format."""
+        drawn = any(art is not None for art in self.design.art)
+        notes = ("art is left out of sheets: it is drawn for the lowest tile",) if drawn else ()
+        layouts: list[StackLayout] = []
 
-        return finish
+        def finish(apart: Sequence[Layout]) -> list[StackLayout]:
+            """The layouts of all sheets with the same stacks, and with numbers and holes."""
+            for sheet, layout in zip(self.sheets, laid_together(apart), strict=True):
+                layouts.append(StackLayout.of(layout, sheet.number, self.holes, self.job.dowel))
+            return layouts
+
+        tiles = [sheet.tessellation for sheet in self.sheets]
+        made = make_together(self.design, tiles, self.job.cut, form, finish, progress)
+        products = []
+        for sheet, product in zip(self.sheets, made, strict=True):
+            own = json.dumps({**self.job.recipe(), "sheet": sheet.number}, sort_keys=True)
+            drawing = replace(product.drawing, recipe={**product.drawing.recipe, "stack": own})
+            products.append(replace(product, drawing=drawing, notes=(*product.notes, *notes)))
+        names = [site.name for site in self.design.noded]
+        pairs = {pair for layout in layouts for pair in layout.stacks}
+        return _Made(tuple(products), {name: sum(site == k for site, _ in pairs) for k, name in enumerate(names)})
 
     @cached_property
     def model(self) -> SolidModel:
@@ -125,7 +169,7 @@ class Stack:
         Raises JobError where the job asks for what is cut alone.
         """
         for name in self.job.recipe():
-            if name not in ("sheets", "margin", "rotate", "accuracy"):
+            if name not in _OF_SOLIDS:
                 raise JobError(
                     f"`{name}` is for sheets that are cut, and this is a solid", remedy="Leave it out, or write svg."
                 )
@@ -143,11 +187,19 @@ class Stack:
         for sheet, slab, own in zip(self.sheets, slabs, prisms, strict=True):
             up = np.array([0.0, 0.0, (sheet.number - 1) * self.thickness])
             meshes = list(slab.meshes(own, corner))
-            prove_copies(meshes, slab.layout.copies.tile, own, flat)
+            tiles = slab.layout.copies.tile
+            prove_copies(meshes, tiles, own, flat)
+            if self.job.dowel is not None:
+                radius, centres = self.job.dowel / 2, hole_centres(slab.layout, self.holes)
+                meshes = [
+                    bored(mesh, own[tile], places + corner, radius, flat.chords)
+                    for mesh, tile, places in zip(meshes, tiles.tolist(), centres, strict=True)
+                ]
             for site, mesh in zip(slab.layout.site.tolist(), meshes, strict=True):
                 raised = TriangleMesh(mesh.vertices + up, mesh.triangles)
                 pieces.append(SolidPiece(f"{names[site]} {sheet.number}", names[site], site, raised))
         error = max(proof.volume_error or 0.0 for proof in proofs)
+        holes = "" if self.job.dowel is None else f"; holes of {self.job.dowel:g} mm or a little more taken off"
         return SolidModel(
             title=f"{self.design.name} ({self.design.group.name})",
             pieces=tuple(pieces),
@@ -155,15 +207,17 @@ class Stack:
             recipe={**design_recipe(self.design), "stack": json.dumps(self.job.recipe(), sort_keys=True)},
             proof={"sheets": [proof.document() for proof in proofs]},
             proved=f"each sheet: closed; volume = cell area x thickness (relative error {error:.1g}); "
-            "all points of outlines are neighbours', bit for bit",
+            f"all points of outlines are neighbours', bit for bit{holes}",
             files=tuple(self.design.files),
         )
 
-    def report(self, density: float = DENSITY) -> dict[str, Any]:
+    def report(self, density: float = DENSITY, file_format: Format | None = None) -> dict[str, Any]:
         """What the sheets come to, in the types of JSON; millimetres, square and cubic ones, grams.
 
-        "holes" are the centres of the dowels' holes of each site, in the plane of the design. `density` is in grams per
-        cubic centimetre. Raises ArgumentError for one that is no positive number.
+        "sheets" has the area of one tile of each site in each sheet, "stacks" how many stacks there are of each; volume
+        and mass are those of all pieces of tiles. "holes" are the centres of the dowels' holes of each site, in the
+        plane of the design. `density` is in grams per cubic centimetre, the format of files as in `stacks`. Raises
+        ArgumentError for a density that is no positive number, JobError where the job cannot be done.
         """
         density = number("density", density, "Give grams per cubic centimetre, such as 0.7.", least=1e-6)
         names = [site.name for site in self.design.noded]
@@ -178,7 +232,8 @@ class Stack:
             for sheet in self.sheets
             for name, rings in zip(names, sheet.outlines, strict=True)
         ]
-        volume = fsum(row["area"] for row in rows) * self.thickness
+        made = self._made(file_format)
+        volume = fsum(product.pieces.tile_area for product in made.products) * self.thickness
         return {
             "thickness": self.thickness,
             "height": self.thickness * len(self.sheets),
@@ -190,12 +245,13 @@ class Stack:
             "density": density,
             "volume": volume,
             "mass": volume / 1000 * density,
+            "stacks": dict(made.stacks),
             "sheets": rows,
         }
 
 
-def stack(design: Design, job: StackJob) -> Stack:
-    """A design that stands as a stack of sheets, all tiles proved.
+def stack(design: Design, job: StackJob, progress: Progress | None = None) -> Stack:
+    """A design that stands as a stack of sheets, all tiles proved; `progress` is told how many sheets are.
 
     Raises ArgumentError for a design that is flat, LoftError with the height where copies meet in a sheet, JobError
     where sheets are too thin or dowels have no room, ProofError where tiles fail their proof.
@@ -220,6 +276,8 @@ def stack(design: Design, job: StackJob) -> Stack:
             ) from None
         outlines = tuple(record.outline.paths.moved(unit, 0j) for record in records)
         sheets.append(StackSheet(k + 1, z * unit, records[0].tessellation, outlines))
+        if progress is not None:
+            progress(k + 1, job.sheets)
     holes: list[Complexes] = []
     if job.dowel is not None:
         each = zip(*(sheet.outlines for sheet in sheets), strict=True)

@@ -7,16 +7,22 @@ from typing import Any, Final
 
 from voronoi_tiles.base.values import shown
 from voronoi_tiles.fabrication.job import Job
+from voronoi_tiles.fabrication.job_fields import Curves, Edges, Fit
 from voronoi_tiles.fabrication.job_options import (
     SHEET_MIN,
+    Choice,
+    Flag,
     JobError,
     Length,
+    Offset,
     Option,
     OptionTable,
     Rates,
+    SheetSize,
     explained,
     length,
 )
+from voronoi_tiles.formats.presets import DxfVersion
 
 SHEETS_MAX: Final = 200
 """Most sheets of a stack; a count. All their files are open at once."""
@@ -36,6 +42,9 @@ def read_sheets(name: str, value: object) -> int:
 @dataclass(frozen=True, kw_only=True, repr=False)
 class StackJob(OptionTable):
     """What is to be made of a stack; lengths are numbers of millimetres or texts with a unit, "3mm".
+
+    Without a `sheet` there is one stack of each tile; a `sheet` is filled with stacks. All but `sheets` and `dowel` are
+    options of a Job, which cuts each sheet.
 
     Raises JobError for values that cannot be, and that contradict each other.
 
@@ -58,13 +67,27 @@ class StackJob(OptionTable):
         least=SHEET_MIN,
         shown="DIAMETER",
     )
+    sheet: Option[SheetSize, tuple[float, float] | str | None] = _CUT["sheet"]
+    margin: Length = _CUT["margin"]
+    fit: Choice[Fit] = _CUT["fit"]
+    frame: Option[float | str | None, float | None] = _CUT["frame"]
+    rotate: Option[float, float] = _CUT["rotate"]
+    offset: Option[Offset, complex | None] = _CUT["offset"]
+    edges: Choice[Edges | None] = _CUT["edges"]
+    gap: Option[float | str | None, float | None] = _CUT["gap"]
     kerf: Length = _CUT["kerf"]
+    fillet: Length = _CUT["fillet"]
+    tabs: Length = _CUT["tabs"]
+    accuracy: Length = _CUT["accuracy"]
+    curves: Choice[Curves | None] = _CUT["curves"]
+    dxf_version: Choice[DxfVersion] = _CUT["dxf_version"]
     preset: Option[Any, str] = _CUT["preset"]
+    stroke: Option[float | str | None, float | None] = _CUT["stroke"]
     feed: Option[Rates, str | None] = _CUT["feed"]
     power: Option[Rates, str | None] = _CUT["power"]
-    margin: Length = _CUT["margin"]
-    rotate: Option[float, float] = _CUT["rotate"]
-    accuracy: Length = _CUT["accuracy"]
+    label_height: Length = _CUT["label_height"]
+    marks: Flag = _CUT["marks"]
+    bar: Flag = _CUT["bar"]
 
     def __post_init__(self) -> None:
         if self.dowel is not None and self.kerf >= self.dowel:
@@ -72,10 +95,11 @@ class StackJob(OptionTable):
                 f"a `kerf` of {self.kerf:g} mm leaves nothing to cut of holes with `dowel='{self.dowel:g}mm'`",
                 remedy="Use a thicker `dowel`.",
             )
+        self.cut  # noqa: B018 - what cannot be cut is refused here
 
     @property
     def cut(self) -> Job:
-        """The job of each sheet: one of each tile, with the sheet's number."""
+        """The job of each sheet, with numbers."""
         own = {name: value for name, value in self._said() if name not in ("sheets", "dowel")}
         return Job(**own, labels="number", art="none")
 
