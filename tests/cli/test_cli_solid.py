@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import re
 import zipfile
 from pathlib import Path
 
@@ -142,7 +143,7 @@ def test_a_stack_is_cut(here: Path, voronoi_tiles: CommandLine) -> None:
     assert [row["middle"] for row in figures["sheets"]] == [2.0, 6.0, 10.0]
     assert figures["mass"] == pytest.approx((900 - 2 * 3.14159265) * 12 / 1000 * 0.5)
     recipe = recipe_of((here / "a-2.svg").read_bytes())
-    assert json.loads(recipe["stack"]) == {"sheets": 3, "dowel": 2.0, "kerf": 0.1, "sheet": 2}
+    assert json.loads(recipe["stack"]) == {"sheets": 3, "dowel": 2.0, "kerf": 0.1, "number": 2}
 
 
 def test_a_stack_is_a_solid(here: Path, voronoi_tiles: CommandLine) -> None:
@@ -155,9 +156,35 @@ def test_a_stack_is_a_solid(here: Path, voronoi_tiles: CommandLine) -> None:
     assert "12 mm high, of sheets of 4 mm" in done.stdout
 
 
+def test_stacks_fill_boards(here: Path, voronoi_tiles: CommandLine) -> None:
+    """How many there are is said and reported, in volume as well; the recipe has all that was asked."""
+    (here / "standing.toml").write_text(STANDING, encoding="utf-8")
+    call = ("solid", "standing.toml", "--sheets", "3", "-o", "a.dxf", "--sheet", "200x150mm", "--kerf", "0.1mm")
+    done = voronoi_tiles(*call, "--fillet", "0.5mm", "--marks", "--margin", "8mm", "--report", cwd=here)
+    assert done.returncode == 0, done.stderr
+    *written, said = done.stderr.splitlines()
+    counts = [re.match(r"wrote a-(\d)\.dxf: (\d+) pieces, ", line) for line in written]
+    assert [found and found[1] for found in counts] == ["1", "2", "3"]
+    (stacks,) = {found and found[2] for found in counts}
+    assert said == f"3 sheets, 1 the lowest, each 4 mm thick: {stacks} stacks, pieces are numbered sheet.stack"
+    assert f"{stacks} bird" in done.stdout
+    assert f"{int(stacks or 0) * 900 * 12 / 1000:.4g} cm³" in done.stdout
+    asked = json.loads(recipe_of((here / "a-3.dxf").read_bytes())["stack"])
+    assert asked == {
+        "sheets": 3,
+        "sheet": [200.0, 150.0],
+        "kerf": 0.1,
+        "fillet": 0.5,
+        "marks": True,
+        "margin": 8.0,
+        "number": 3,
+    }
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [
+        (("-o", "a.svg", "--sheets", "3", "--frame", "5mm"), "Error: --frame is about a sheet, and there is none."),
         (("-o", "a.svg", "--sheets", "0"), "Error: --sheets 0 cannot be."),
         (("-o", "a.svg", "--sheets", "3", "--clearance", "1mm"), "Error: --clearance is for prisms, and --sheets for"),
         (("-o", "a.3mf", "--dowel", "1mm"), "Error: --dowel is for sheets that are cut, and there are none."),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 from pathlib import Path
 
 import numpy as np
@@ -74,6 +75,23 @@ def test_the_command_checks_slices(voronoi_tiles: CommandLine, tmp_path: Path) -
     assert "slice areas" in result.stdout
     assert "The outlines and the image differ: slices.\n" in result.stdout
     assert "failed the cross-check: slices" in result.stderr
+
+
+def test_the_command_checks_what_solid_makes(voronoi_tiles: CommandLine, tmp_path: Path) -> None:
+    """Within the same accuracy, and at as many heights as it is told; a flat design has none of both."""
+    path = tmp_path / "bird.toml"
+    path.write_text(BIRD, encoding="utf-8")
+    asked = ("--accuracy", "0.2mm", "--slices", 3)
+    result = voronoi_tiles("check", path, "--size", 64, "--renderer", "cpu", *asked, "--json")
+    assert result.returncode == 0, result.stderr
+    figures = {figure["name"]: figure for figure in json.loads(result.stdout)["check"]["figures"]}
+    assert figures["slices"]["limit"] == 0.2
+    assert figures["slice areas"]["checked"] == 3
+    path.write_text(BIRD.partition("solid =")[0], encoding="utf-8")
+    for option in (asked[:2], asked[2:]):
+        refused = voronoi_tiles("check", path, *option)
+        assert refused.returncode == 2
+        assert f": {option[0]} is for designs with a [solid], and this one is flat" in refused.stderr
 
 
 def test_chords_of_layers_are_within_their_accuracy() -> None:

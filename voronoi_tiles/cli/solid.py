@@ -17,7 +17,7 @@ from voronoi_tiles.cli.common import (
     say_written,
 )
 from voronoi_tiles.cli.options import with_scale, with_solid_job
-from voronoi_tiles.cli.progress_bar import progress_bar
+from voronoi_tiles.cli.progress_bar import progress_bar, waiting
 
 if TYPE_CHECKING:
     from voronoi_tiles.designs.design import Design
@@ -102,10 +102,11 @@ def solid(
             figures = cut.report(mass, form) if reports else {}
         else:
             around = picture and job.sheet is None
-            made = _model(loaded, job, around=around)
-            # What is there for the picture alone is not counted.
-            reported = _model(loaded, job, around=False) if around and reports else made
-            figures = solid_report(reported, mass) if reports else {}
+            with waiting("solids", quiet=quiet):
+                made = _model(loaded, job, around=around)
+                # What is there for the picture alone is not counted.
+                reported = _model(loaded, job, around=False) if around and reports else made
+                figures = solid_report(reported, mass) if reports else {}
             _save(made, output, file_format, size, quiet=quiet)
     if reports:
         print_figures(figures, stack_text if stacked else solid_text, as_json=as_json)
@@ -124,7 +125,8 @@ def _model(design: Design, job: SolidJob, *, around: bool) -> SolidModel:
 
 def _save(made: SolidModel, output: str, file_format: SolidFormat | None, size: int | None, *, quiet: bool) -> None:
     """Write solids, and say what was written."""
-    made.save(output, file_format, size=size)
+    with waiting("writing", quiet=quiet):
+        made.save(output, file_format, size=size)
     if not quiet:
         for note in made.notes:
             say(as_options(note))
@@ -150,7 +152,9 @@ def _stack(
         made = stack(design, job, progress)
     form = None
     if file_format is not None or output.lower().endswith(_SUFFIXES):
-        _save(made.model, output, file_format, size, quiet=quiet)
+        with waiting("solids", quiet=quiet):
+            model = made.model
+        _save(model, output, file_format, size, quiet=quiet)
     else:
         form = format_of(output, FORMATS)
         with progress_bar("drawing sheets", quiet=quiet) as progress:

@@ -155,7 +155,7 @@ class Stack:
         made = make_together(self.design, tiles, self.job.cut, form, finish, progress)
         products = []
         for sheet, product in zip(self.sheets, made, strict=True):
-            own = json.dumps({**self.job.recipe(), "sheet": sheet.number}, sort_keys=True)
+            own = json.dumps({**self.job.recipe(), "number": sheet.number}, sort_keys=True)
             drawing = replace(product.drawing, recipe={**product.drawing.recipe, "stack": own})
             products.append(replace(product, drawing=drawing, notes=(*product.notes, *notes)))
         names = [site.name for site in self.design.noded]
