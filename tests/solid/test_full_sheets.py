@@ -39,7 +39,7 @@ def design(group: str) -> Design:
 def at_sheet(group: str, sheet: int) -> Complexes:
     """The segment in the middle of a sheet's height, turned by hand."""
     ends, about, _ = DRAWN[group]
-    return about + (np.array(ends) - about) * np.exp(1j * np.radians(TURN) * (sheet - 0.5) / SHEETS)
+    return about + (np.array(ends, np.complex128) - about) * np.exp(1j * np.radians(TURN) * (sheet - 0.5) / SHEETS)
 
 
 def copies(group: str, points: Complexes, reach: int = 5) -> Complexes:
@@ -83,7 +83,7 @@ def _middle(points: Complexes) -> complex:
 
 def _points(data: str) -> Complexes:
     """The points on the curves of path data."""
-    place, found = 0j, []
+    found: list[complex] = []
     for command, numbers in re.findall(r"([MLHVQCZ])([^A-Z]*)", data):
         values = [float(number) for number in numbers.split()]
         if command == "Z":
@@ -92,8 +92,7 @@ def _points(data: str) -> Complexes:
         assert command in "MLQC"
         size = {"M": 2, "L": 2, "Q": 4, "C": 6}[command]
         for k in range(size, len(values) + 1, size):
-            place = complex(values[k - 2], -values[k - 1])
-            found.append(place)
+            found.append(complex(values[k - 2], -values[k - 1]))
     return np.array(found)
 
 
