@@ -91,8 +91,7 @@ def _points(data: str) -> Complexes:
             continue
         assert command in "MLQC"
         size = {"M": 2, "L": 2, "Q": 4, "C": 6}[command]
-        for k in range(size, len(values) + 1, size):
-            found.append(complex(values[k - 2], -values[k - 1]))
+        found += [complex(values[k - 2], -values[k - 1]) for k in range(size, len(values) + 1, size)]
     return np.array(found)
 
 
