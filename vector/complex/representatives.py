@@ -48,9 +48,14 @@ class Points:
         """The images under one more motion, or one more of each."""
         return Points(self.index, composed(outer, self.motion))
 
+    @classmethod
+    def joined(cls, parts: Sequence[Points]) -> Points:
+        """Several arrays of points as one."""
+        return cls(np.concatenate([part.index for part in parts]), np.concatenate([part.motion for part in parts]))
+
     def and_then(self, others: Points) -> Points:
         """These points, and others behind them."""
-        return Points(np.concatenate((self.index, others.index)), np.concatenate((self.motion, others.motion)))
+        return self.joined((self, others))
 
     def take(self, places: Ints | slice) -> Points:
         """The points at these places."""

@@ -16,7 +16,7 @@ from voronoi_tiles.solid.events import Event, LoftError, matched
 from voronoi_tiles.solid.layers import ExactLayer
 from voronoi_tiles.solid.levels import VertexChains, carried, sagging, sampled, weighed
 from voronoi_tiles.solid.loft_caps import cap, outline_of
-from voronoi_tiles.solid.vertices import VertexTable, Vertices, joined_points
+from voronoi_tiles.solid.vertices import VertexTable, Vertices
 from voronoi_tiles.solid.walls import Walls, walls
 from voronoi_tiles.vector.complex.representatives import Points
 
@@ -227,10 +227,10 @@ def _tile(
     for top, (layer, chains, names) in enumerate(closed):
         outline = outline_of(layer, chains, tile)
         triangles = cap([vertices.representatives.locate(ring) for ring in outline])
-        every = joined_points(outline)
+        every = Points.joined(outline)
         ring = np.repeat(names[slice(*layer.tile_offsets[tile : tile + 2])], [len(ring) for ring in outline])
         corner = (triangles if top else triangles[:, [0, 2, 1]]).ravel()
         parts.append(every.take(corner))
         labels.append(ring[corner])
-    points, number = vertices.indexed(joined_points(parts), np.concatenate(labels))
+    points, number = vertices.indexed(Points.joined(parts), np.concatenate(labels))
     return LoftTile(name, points, number.reshape(-1, 3))

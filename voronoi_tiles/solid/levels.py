@@ -14,7 +14,7 @@ from voronoi_tiles.solid.corner_vertices import CornerVertex, corner_vertices, e
 from voronoi_tiles.solid.correspondence import Correspondence
 from voronoi_tiles.solid.events import LoftError
 from voronoi_tiles.solid.layers import ExactLayer
-from voronoi_tiles.solid.vertices import VertexTable, joined_points
+from voronoi_tiles.solid.vertices import VertexTable
 from voronoi_tiles.vector.complex.quotient import Stabilizer
 from voronoi_tiles.vector.complex.representatives import Points
 from voronoi_tiles.vector.motion_codes import IDENTITY_CODE, code_of
@@ -72,8 +72,8 @@ def sampled(table: VertexTable, layer: ExactLayer, short: Bools, steps: Ints, we
         within = Points(numbers[own], np.full(inner[k], IDENTITY_CODE))
         if k in quotient.symmetric:
             within = _symmetric(table, positions[own], within, layer.z, quotient.symmetric[k])
-        parts.append(start if short[k] else joined_points([start, within, end]))
-    return VertexChains(joined_points(parts), offsets_of([len(part) for part in parts]))
+        parts.append(start if short[k] else Points.joined([start, within, end]))
+    return VertexChains(Points.joined(parts), offsets_of([len(part) for part in parts]))
 
 
 def _symmetric(table: VertexTable, positions: Complexes, within: Points, z: float, stabilizer: Stabilizer) -> Points:
@@ -92,7 +92,7 @@ def _symmetric(table: VertexTable, positions: Complexes, within: Points, z: floa
     middle = table.add_fixed(complex(positions[-1]), z, still + back)
     half = within.take(slice(0, -1))
     image = half.moved(np.full(len(half), back[0])).take(slice(None, None, -1))
-    return joined_points([half, Points(np.array([middle]), np.array([IDENTITY_CODE])), image])
+    return Points.joined([half, Points(np.array([middle]), np.array([IDENTITY_CODE])), image])
 
 
 def _along(paths: Paths, lengths: Floats, inner: Ints, steps: Ints) -> Complexes:
@@ -212,4 +212,4 @@ def carried(
             raise LoftError("an edge appears in the middle of nothing", core.z)
         waiting = left
     ordered = [parts[k] for k in range(len(ends))]
-    return VertexChains(joined_points(ordered), offsets_of([len(part) for part in ordered]))
+    return VertexChains(Points.joined(ordered), offsets_of([len(part) for part in ordered]))

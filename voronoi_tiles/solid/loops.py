@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Ints, counts_of, offsets_of, ranges
-from voronoi_tiles.solid.vertices import joined_points
 from voronoi_tiles.vector.complex.quotient import Quotient
+from voronoi_tiles.vector.complex.representatives import Points
 from voronoi_tiles.vector.motion_codes import Codes, composed, inverted
 
 
@@ -85,8 +85,8 @@ def _renumbered(
     source = np.concatenate(sources)
     return replace(
         quotient,
-        vertex=joined_points(vertex),
-        control=joined_points(control),
+        vertex=Points.joined(vertex),
+        control=Points.joined(control),
         focus=quotient.focus[source],
         directrix=quotient.directrix[source],
         offsets=offsets_of(sizes),

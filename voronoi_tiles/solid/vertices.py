@@ -7,7 +7,7 @@ whatever tile it is.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -64,8 +64,3 @@ class Vertices:
         """The positions of points in space, float64 (n, 3), in the design's units."""
         plane = self.representatives.locate(points)
         return np.column_stack((plane.real, plane.imag, self.heights[points.index]))
-
-
-def joined_points(parts: Sequence[Points]) -> Points:
-    """Several arrays of points as one."""
-    return Points(np.concatenate([part.index for part in parts]), np.concatenate([part.motion for part in parts]))
