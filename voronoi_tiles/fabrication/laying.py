@@ -35,6 +35,15 @@ def laid(
     return Arranged((_cut(layout, job.kerf, curves, form),), (found,))
 
 
+def unplaced(
+    design: Design, tessellation: Tessellation, job: Job, curves: str, form: Format, _: Progress | None
+) -> Arranged:
+    """The tiles of a job one of each, with the sheet on which somebody else places them. Raises what `lay_out` does."""
+    sheet = read_sheet(job, AccuracyBudget.of(job, curves, form))
+    layout = _lay(design, tessellation, curves, form, job=job, sheet=Sheet(0.0, 0.0, None, 0j))
+    return Arranged((replace(layout, sheet=sheet),))
+
+
 def _picture(job: Job) -> Job:
     """The job that draws where tiles lie: in the picture, packed tiles touch, and have no kerf between them."""
     return replace(job, kerf=0.0) if job.pack else job

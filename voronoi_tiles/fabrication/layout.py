@@ -260,7 +260,7 @@ def lay_out(
         return Layout(
             design, tessellation, job, sheet, budget, tiles, tiles.period, placement, _in_a_row(tiles, placement, job)
         )
-    _refuse_crowd(tiles.period, region)
+    refuse_crowd(tiles.period, region)
     stretch = UNSTRETCHED if job.apart is None else _stretch(tiles, job.apart, budget.measured)
     return _filled(design, tessellation, job, sheet, budget, tiles, stretch, rough)
 
@@ -285,7 +285,7 @@ def refilled(layout: Layout, *, sheet: Sheet | None = None, gap: float | None = 
         stretch = UNSTRETCHED if job.apart is None else _stretch(tiles, job.apart, layout.budget.measured)
     tiles = tiles.moved(sheet.centre + (job.offset or 0j) - tiles.page.shift)
     assert sheet.region is not None
-    _refuse_crowd(tiles.period, sheet.region)
+    refuse_crowd(tiles.period, sheet.region)
     return _filled(layout.design, layout.tessellation, job, sheet, layout.budget, tiles, stretch, rough=True)
 
 
@@ -312,7 +312,7 @@ def _filled(
     return Layout(design, tessellation, job, sheet, budget, tiles, spaced, placement, copies, stretch)
 
 
-def _refuse_crowd(period: Period, region: Region) -> None:
+def refuse_crowd(period: Period, region: Region) -> None:
     """Refuse a sheet that would hold more than memory does."""
     left, bottom, right, top = region.bounds
     cells = (right - left) * (top - bottom) / period.lattice.det

@@ -13,7 +13,6 @@ from typing import Any, BinaryIO, Final
 import numpy as np
 
 from voronoi_tiles.base.arguments import path_name
-from voronoi_tiles.base.arrays import Bools
 from voronoi_tiles.base.files import refuse_overwriting, writing
 from voronoi_tiles.base.text import counted
 from voronoi_tiles.designs.design import Design
@@ -28,11 +27,12 @@ from voronoi_tiles.fabrication.inventory import Inventory, cut_free, inventory
 from voronoi_tiles.fabrication.job import Job, JobError
 from voronoi_tiles.fabrication.job_notes import doubled, unnested, untabbed, without_effect
 from voronoi_tiles.fabrication.job_options import LAYOUTS
-from voronoi_tiles.fabrication.laying import laid
+from voronoi_tiles.fabrication.laying import laid, unplaced
 from voronoi_tiles.fabrication.layout import FRAME, Layout
 from voronoi_tiles.fabrication.nest_places import places_recipe
 from voronoi_tiles.fabrication.nest_search import Progress
 from voronoi_tiles.fabrication.nested_sheets import Nesting
+from voronoi_tiles.fabrication.nesting import Arranged
 from voronoi_tiles.fabrication.packed_sheets import PackedColour, nest_colours, pack_colours
 from voronoi_tiles.fabrication.tile_colouring import TileColouring, colour_tiles
 from voronoi_tiles.formats.burns import Burn, Role
@@ -139,11 +139,7 @@ class Product:
 
 
 def make(
-    design: Design,
-    tessellation: Tessellation,
-    job: Job,
-    file_format: str = "svg",
-    progress: Progress | None = None,
+    design: Design, tessellation: Tessellation, job: Job, file_format: str = "svg", progress: Progress | None = None
 ) -> Product:
     """Make what a job asks for, in the curves that a format takes; `progress` is told of a search for places.
 
@@ -168,14 +164,15 @@ def make_together(
     finish: Callable[[Sequence[Layout]], Sequence[Layout]],
     progress: Progress | None = None,
 ) -> list[Product]:
-    """Make a drawing of each of some tessellations, whose layouts `finish` changes all together.
+    """Make a drawing of each of some tessellations, whose tiles `finish` places all together on their sheets.
 
-    `progress` is told how many are made. Raises what `make` does.
+    It is given what `unplaced` gives; `progress` is told how many are made. Raises what `make` does.
     """
-    plans = [_Plan.of(design, tessellation, job, _format(file_format)) for tessellation in tessellations]
+    form = _format(file_format)
+    plans = [_Plan.of(design, tessellation, job, form, lay=unplaced) for tessellation in tessellations]
     made = []
     for plan, sheet in zip(plans, finish([plan.layout for plan in plans]), strict=True):
-        made.append(replace(plan.on(sheet), hints=()).product(sheet.job))
+        made.append(plan.on(sheet).product(sheet.job))
         if progress is not None:
             progress(len(made), len(plans))
     return made
@@ -241,7 +238,13 @@ class _Plan:
 
     @classmethod
     def of(
-        cls, design: Design, tessellation: Tessellation, job: Job, form: Format, progress: Progress | None = None
+        cls,
+        design: Design,
+        tessellation: Tessellation,
+        job: Job,
+        form: Format,
+        progress: Progress | None = None,
+        lay: Callable[..., Arranged] = laid,
     ) -> _Plan:
         """Lay out the tiles, of a design or on a sheet that is found for a number of pieces."""
         preset = load_preset(job.preset)
@@ -250,7 +253,7 @@ class _Plan:
         curves = file_curves(job, preset, form)
         if form == "gcode":
             preset.burns(["cut"], job.feed, job.power)  # before anything is computed for nothing
-        sheets, said, nesting = laid(design, tessellation, job, curves, form, progress)
+        sheets, said, nesting = lay(design, tessellation, job, curves, form, progress)
         layout = sheets[0]
         colours = colour_tiles(layout.tessellation, job.scheme, layout.period)
         said += tuple(unnested(job))
@@ -303,7 +306,9 @@ class _Plan:
             cuts = cut_lines(layout, job)
             contours = None
             pieces = cut_free(layout, colouring)
-        shown = _shown(colouring, layout, job)
+        shown = np.ones(len(layout.copies.tile), np.bool_)
+        if job.only_colour is not None:
+            shown = np.asarray(colouring.of_copies(np.arange(len(shown))) == job.only_colour)
         fills = preset.fill_engraving and self.form != "gcode"  # whose lasers go along lines
         engraving = engrave(layout, contours, layout.sheet, shown, fills=fills)
         layers = _layers(preset, self.form, job, cuts, engraving, curve_converter(self.curves, job, layout.budget))
@@ -344,12 +349,6 @@ def _format(name: str) -> Format:
     if name not in FORMATS:
         raise JobError(f"no drawing can be made as {name!r}", remedy=f"Use one of {', '.join(FORMATS)}.")
     return name
-
-
-def _shown(colouring: TileColouring, layout: Layout, job: Job) -> Bools:
-    """Which tiles on the page are drawn."""
-    colour = colouring.of_copies(np.arange(len(layout.copies.tile)))
-    return np.ones(len(colour), np.bool_) if job.only_colour is None else np.asarray(colour == job.only_colour)
 
 
 def _layers(

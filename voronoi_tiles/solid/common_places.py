@@ -12,7 +12,7 @@ from voronoi_tiles.fabrication.best_offset import best_shift
 from voronoi_tiles.fabrication.dressed_tiles import DressedTiles
 from voronoi_tiles.fabrication.engraving import reading_order
 from voronoi_tiles.fabrication.job import JobError
-from voronoi_tiles.fabrication.layout import Layout, pulled, spaced_period
+from voronoi_tiles.fabrication.layout import Layout, pulled, refuse_crowd, spaced_period
 from voronoi_tiles.fabrication.region import Region, inset
 from voronoi_tiles.fabrication.spacing import UNSTRETCHED, Stretch, common_stretch
 from voronoi_tiles.fabrication.tile_placement import TilePlacement, place_tiles, whole_tiles
@@ -22,7 +22,9 @@ from voronoi_tiles.vector.motions import IDENTITY, Motion
 
 
 def laid_together(layouts: Sequence[Layout]) -> list[Layout]:
-    """Layouts of one job, each of a sheet of a stack, changed so that they have the same copies in the same places.
+    """Layouts of one job, each of a sheet of a stack, with the same copies in the same places.
+
+    They are given with one of each tile, as `unplaced` gives them, and without a sheet stay so.
 
     On sheets that are clipped a copy is where it has something of the sheet; else copies are those that are whole in
     all sheets. They are numbered as one reads, by the same numbers in all sheets. Raises JobError where no copy is
@@ -34,8 +36,8 @@ def laid_together(layouts: Sequence[Layout]) -> list[Layout]:
         return list(layouts)
     _refuse_others(layouts)
     homes = [_homes(layout) for layout in layouts]
-    page = first.tiles.page.shift
-    tiles = [layout.tiles.moved(page - layout.tiles.page.shift) for layout in layouts]
+    tiles = [layout.tiles.moved(sheet.centre + (job.offset or 0j)) for layout in layouts]
+    refuse_crowd(tiles[0].period, region)
     middles = [own.centres() + own.period.shifts(home) for own, home in zip(tiles, homes, strict=True)]
     middle = np.mean(middles, axis=0)
     tiles = [own.pulled(middle - own.period.shifts(home)) for own, home in zip(tiles, homes, strict=True)]
