@@ -39,7 +39,8 @@ def design(group: str) -> Design:
 def at_sheet(group: str, sheet: int) -> Complexes:
     """The segment in the middle of a sheet's height, turned by hand."""
     ends, about, _ = DRAWN[group]
-    return about + (np.array(ends, np.complex128) - about) * np.exp(1j * np.radians(TURN) * (sheet - 0.5) / SHEETS)
+    turn = np.exp(1j * np.radians(TURN) * (sheet - 0.5) / SHEETS)
+    return np.asarray(about + (np.array(ends) - about) * turn, np.complex128)
 
 
 def copies(group: str, points: Complexes, reach: int = 5) -> Complexes:
