@@ -2,14 +2,29 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from helpers.examples import tiling
 from helpers.programs import PIECES
 
-from voronoi_tiles import ArgumentError, Design, ProofError, SolidJob, TriangleMesh, extrude
+from voronoi_tiles import (
+    ArgumentError,
+    Design,
+    ProofError,
+    Site,
+    Solid,
+    SolidJob,
+    TriangleMesh,
+    extrude,
+    segment,
+    stand,
+)
 from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.solid.cross_sections import section
+from voronoi_tiles.solid.laying_orders import assembly, prism_assembly
+from voronoi_tiles.solid.loft import lofted
 from voronoi_tiles.solid.prism import Face, Prism
 from voronoi_tiles.solid.solid_report import narrowest_neck, overhang, solid_report
 
@@ -72,9 +87,20 @@ def test_a_report_says_which_way_up() -> None:
     assert sum(row["mass"] * row["count"] for row in figures["solids"]) == pytest.approx(figures["mass"])
     assert figures["mass"] == pytest.approx(model.volume / 1000 * 2.0)
     assert all(row["overhang"] < 2e-3 and row["up"] == "as it lies" for row in figures["solids"])
+    assert figures["assembly"] == prism_assembly([row["site"] for row in figures["solids"]])
     upside_down = TriangleMesh(PYRAMID.vertices * [1, 1, -0.25] + [0, 0, 1], PYRAMID.triangles[:, ::-1])
     assert upside_down.volume > 0
     assert overhang(upside_down, 1.0)[0] > overhang(upside_down, -1.0)[0] == 0.0
+
+
+def test_a_report_of_a_loft_says_how_it_is_laid() -> None:
+    """As its tiles are where they are drawn, whatever lies in the file; in the types of JSON."""
+    site = Site(segment(5 + 3j, 14 + 8j), name="bird")
+    design = Design("p4", 40, site, solid=Solid(20, layers=6, turn=90, about=9.5 + 5.5j))
+    found = solid_report(stand(design))["assembly"]
+    assert found == assembly(lofted(design))
+    assert json.loads(json.dumps(found)) == found
+    assert solid_report(stand(design, around=True))["assembly"] == found
 
 
 def test_the_narrowest_neck_is_found() -> None:

@@ -53,7 +53,8 @@ _CUT_SUFFIXES = (".svg", ".dxf", ".pdf", ".lbrn2", ".gcode", ".nc")
 @click.option(
     "--report",
     is_flag=True,
-    help="Print volume, mass, the narrowest neck, overhangs, which way up; of a stack its sheets and where dowels go.",
+    help="Print volume, mass, the narrowest neck, overhangs, which way up, how tiles are laid; of a stack its sheets "
+    "and where dowels go.",
 )
 @click.option("--json", "as_json", is_flag=True, help="Print these as JSON, with the proof's figures.")
 @click.option(

@@ -159,7 +159,32 @@ def solid_text(figures: dict[str, Any]) -> str:
         ],
     )
     page.line("The neck is the narrowest at seven levels; overhang is the surface that leans out by more than 45°.")
+    _laying(page, figures["assembly"])
     return page.text()
+
+
+def _laying(page: _TextTable, found: dict[str, Any]) -> None:
+    """Add how solids go together."""
+    best = found["best"]
+    if best is not None:
+        page.table(
+            f"Laid tile by tile, in rows towards {best['towards']:g}°",
+            ["site", "copies", ">comes in from x", ">y", ">z", ">clear of walls by"],
+            [
+                (
+                    row["site"],
+                    "all" if row["operations"] is None else "  ".join(row["operations"]),
+                    *(f"{round(part, 3) + 0.0:.3f}" for part in row["from"]),
+                    f"{row['clearance']:.1f}°",
+                )
+                for row in best["tiles"]
+            ],
+        )
+    count = len(found["orders"])
+    page.line(f"Rows can be laid so in {count or 'none'} of {found['tried']} directions, with no room between tiles.")
+    for site, out in found["out"].items():
+        way = "is locked" if out is None else f"comes out towards ({', '.join(f'{part + 0.0:.3g}' for part in out)})"
+        page.line(f"A single tile of {printable(site)} {way} while all others stand.")
 
 
 def stack_text(figures: dict[str, Any]) -> str:

@@ -34,6 +34,13 @@ class TriangleMesh(NamedTuple):
         return fsum(np.einsum("ij,ij->i", a, np.cross(b, c)).tolist()) / 6
 
     @property
+    def centroid(self) -> Floats:
+        """The centre of the enclosed volume, float64 (3,) in millimetres."""
+        a, b, c = np.moveaxis(self.corners - self.vertices[0], 1, 0)
+        parts = np.einsum("ij,ij->i", a, np.cross(b, c))
+        return np.asarray(self.vertices[0] + (a + b + c).T @ parts / (4 * parts.sum()))
+
+    @property
     def normals(self) -> Floats:
         """The unit normals of the triangles, outward, float64 (m, 3); 0 for a triangle without area."""
         a, b, c = np.moveaxis(self.corners, 1, 0)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, Literal, get_args
 
@@ -33,6 +33,7 @@ class SolidModel:
     `colours` are "#rrggbb"; where `grouped`, all pieces of a colour are one object of a file. `recipe` is what they can
     be made from again, `proof` what was proved of them, in the types of JSON, and `proved` the same in a line; `notes`
     say in sentences what they have lost. `files` are those that they were made from, which are not overwritten.
+    `assembly` finds how they go together, see `solid_report`; None for prisms.
     """
 
     title: str
@@ -44,6 +45,7 @@ class SolidModel:
     grouped: bool = False
     notes: tuple[str, ...] = ()
     files: tuple[str, ...] = ()
+    assembly: Callable[[], dict[str, Any]] | None = None
 
     def __repr__(self) -> str:
         return f"<SolidModel: {self.summary()}>"

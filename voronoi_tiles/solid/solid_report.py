@@ -1,4 +1,4 @@
-"""What solids come to for who prints them: volume, mass, the narrowest neck, overhangs, and which way up."""
+"""What solids come to for who prints them: volume, mass, narrowest neck, overhangs, which way up, how to lay them."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from voronoi_tiles.paths.paths import Paths
 from voronoi_tiles.preflight.chords import chords_of, counts_of
 from voronoi_tiles.preflight.necks import find_necks
 from voronoi_tiles.solid.cross_sections import section
+from voronoi_tiles.solid.laying_orders import prism_assembly
 from voronoi_tiles.solid.mesh import TriangleMesh
 from voronoi_tiles.solid.solid_model import SolidModel
 
@@ -39,8 +40,8 @@ def solid_report(model: SolidModel, density: float = DENSITY) -> dict[str, Any]:
     """What the solids of each site come to, in the types of JSON; millimetres, cubic millimetres, grams, degrees.
 
     `density` is in grams per cubic centimetre. "overhang" is the share of the surface that leans out by more than 45
-    degrees, what lies on the bed not counted, the way up that has least of it; "up" says which that is. Raises
-    ArgumentError for a density that is no positive number.
+    degrees, what lies on the bed not counted, the way up that has least of it; "up" says which that is. "assembly" is
+    what `laying_orders.assembly` gives. Raises ArgumentError for a density that is no positive number.
     """
     density = number("density", density, "Give grams per cubic centimetre, such as 1.24.", least=1e-6)
     first = {piece.site: piece for piece in reversed(model.pieces)}
@@ -67,6 +68,7 @@ def solid_report(model: SolidModel, density: float = DENSITY) -> dict[str, Any]:
         "volume": model.volume,
         "mass": model.volume / 1000 * density,
         "solids": rows,
+        "assembly": prism_assembly([row["site"] for row in rows]) if model.assembly is None else model.assembly(),
         "proof": dict(model.proof),
     }
 

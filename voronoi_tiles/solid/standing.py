@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from functools import partial
 from typing import Any, Final
 
 import numpy as np
@@ -15,6 +16,7 @@ from voronoi_tiles.fabrication.exact import design_recipe
 from voronoi_tiles.fabrication.job import JobError
 from voronoi_tiles.groups.periodic_colouring import palette
 from voronoi_tiles.solid.cross_sections import filled_section
+from voronoi_tiles.solid.laying_orders import assembly
 from voronoi_tiles.solid.loft import ACCURACY_MM, Loft
 from voronoi_tiles.solid.mesh import TriangleMesh
 from voronoi_tiles.solid.pieces import SolidPiece
@@ -66,6 +68,7 @@ def stand(design: Design, job: SolidJob | None = None, *, around: bool = False) 
         proved=_said(loft, proof),
         notes=notes,
         files=tuple(design.files),
+        assembly=partial(assembly, loft),
     )
 
 
