@@ -63,6 +63,18 @@ def test_copies_around_one_are_apart_and_of_other_colours(around: SolidModel) ->
     assert around.notes == ("neighbours and the room between them are for the picture alone",)
 
 
+def test_copies_around_one_stand_where_they_do_where_asked(around: SolidModel) -> None:
+    """They are those of the picture, moved back as a whole; each shares with the one, bit for bit, part of its walls."""
+    closed = stand(Design.loads(TWIST), around=True, apart=False)
+    assert not closed.notes
+    own = {tuple(point) for point in closed.pieces[0].mesh.vertices.tolist()}
+    for moved, piece in zip(around.pieces, closed.pieces, strict=True):
+        assert moved.colour == piece.colour
+        away = moved.mesh.vertices - piece.mesh.vertices
+        assert np.ptp(away, axis=0) == pytest.approx(0.0, abs=1e-12)
+        assert len(own & {tuple(point) for point in piece.mesh.vertices.tolist()}) > 10
+
+
 @pytest.mark.parametrize(
     ("options", "message"),
     [

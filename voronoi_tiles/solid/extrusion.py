@@ -22,7 +22,7 @@ from voronoi_tiles.solid.pieces import SolidPiece
 from voronoi_tiles.solid.prism import Prism
 from voronoi_tiles.solid.slab import Slab
 from voronoi_tiles.solid.solid_job import SolidJob
-from voronoi_tiles.solid.solid_model import SolidModel
+from voronoi_tiles.solid.solid_model import AROUND, SolidModel
 from voronoi_tiles.tiling import Tiling
 
 TRIANGLES_MAX: Final = 4_000_000
@@ -44,11 +44,11 @@ def extrude(tiling: Tiling, job: SolidJob | None = None) -> SolidModel:
     return _model(Slab.of(design, tiling.tessellation, job), "site" if job.colours == "none" else job.flat.scheme)
 
 
-def surrounded(tiling: Tiling, job: SolidJob) -> SolidModel:
-    """What shows in a picture how solids go together: one of them and its neighbours, pulled apart; as `extrude`."""
-    slab = Slab.of(tiling.design, tiling.tessellation, replace(job, sheet=None, gap=None)).around()
+def surrounded(tiling: Tiling, job: SolidJob, *, apart: bool = True) -> SolidModel:
+    """What shows how solids go together: one and its neighbours, pulled `apart` or where they are; as `extrude`."""
+    slab = Slab.of(tiling.design, tiling.tessellation, replace(job, sheet=None, gap=None)).around(apart=apart)
     made = _model(slab, job.flat.scheme)
-    return replace(made, notes=(*made.notes, "neighbours and the room between them are for the picture alone"))
+    return replace(made, notes=(*made.notes, AROUND)) if apart else made
 
 
 def _model(slab: Slab, scheme: str | int) -> SolidModel:

@@ -97,8 +97,10 @@ class Slab:
         half = job.clearance / 2 + (budget.whole if job.clearance > 0.0 else 0.0)
         return cls(job, layout, lines, inset("clearance", half), inset("chamfer", half + job.chamfer))
 
-    def around(self) -> Slab:
-        """The first tile and all that share an edge with it, pulled apart, in the place of those of the job.
+    def around(self, *, apart: bool = True) -> Slab:
+        """The first tile and all that share an edge with it, in the place of those of the job.
+
+        They are pulled `apart`, or lie where they do.
 
         What lies in a hole of one of them stays there, and is shown as well; of a tile in a hole, that which has it
         counts for the first.
@@ -117,6 +119,9 @@ class Slab:
         of = np.repeat(np.arange(len(beside)), [len(some) for some in held])
         tile = np.concatenate(held)
         step = beside[of, 1:] - holder[tile, 1:]
+        if not apart:
+            copies = PlacedTiles(tile, step, np.ones(len(tile), np.bool_), np.zeros(len(tile), np.complex128))
+            return replace(self, layout=replace(self.layout, copies=copies))
         box = period.own_boxes[middle]
         gap = _PULL * float((box[2:] - box[:2]).max())
         outer = [contours[k].take(np.flatnonzero(ring_areas(contours[k]) > 0.0)) for k in free.tolist()]

@@ -25,6 +25,9 @@ SolidFormat = Literal["3mf", "stl", "png"]
 
 SOLID_FORMATS: Final[tuple[SolidFormat, ...]] = get_args(SolidFormat)
 
+AROUND: Final = "neighbours and the room between them are for the picture alone"
+"""What is noted of a model that is a tile with its neighbours pulled apart."""
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class SolidModel:

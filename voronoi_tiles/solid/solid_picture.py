@@ -113,7 +113,7 @@ def picture(pieces: Sequence[SolidPiece], colours: Sequence[str], size: int = SI
         view(corners[front]),
         view(shadow[front]),
         normals[front],
-        np.concatenate([_smoothed(piece.mesh) for piece in pieces])[front],
+        np.concatenate([smooth_normals(piece.mesh) for piece in pieces])[front],
         owner[front],
         base[[piece.colour for piece in pieces]],
     )
@@ -173,7 +173,7 @@ def _light() -> Floats:
     return np.array([c * x - s * y, s * x + c * y, z])
 
 
-def _smoothed(mesh: TriangleMesh) -> Floats:
+def smooth_normals(mesh: TriangleMesh) -> Floats:
     """The normals at the corners of triangles, float64 (m, 3, 3): the mean of the faces there that meet softly."""
     normals, areas = mesh.normals, mesh.areas
     order = np.argsort(mesh.triangles.ravel(), kind="stable")

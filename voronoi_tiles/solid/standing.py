@@ -21,7 +21,7 @@ from voronoi_tiles.solid.loft import ACCURACY_MM, Loft
 from voronoi_tiles.solid.mesh import TriangleMesh
 from voronoi_tiles.solid.pieces import SolidPiece
 from voronoi_tiles.solid.solid_job import SolidJob
-from voronoi_tiles.solid.solid_model import SolidModel
+from voronoi_tiles.solid.solid_model import AROUND, SolidModel
 from voronoi_tiles.solid.solid_proof import SolidProof, proved_loft
 from voronoi_tiles.vector.motion_codes import operation_of
 
@@ -38,8 +38,10 @@ _TOUCHING: Final = 1e-6
 """Pieces that are nearer touch; a share of the longer side of one."""
 
 
-def stand(design: Design, job: SolidJob | None = None, *, around: bool = False) -> SolidModel:
-    """The solids of a design that stands, proved: one of each site, or one and the copies `around` it, pulled apart.
+def stand(design: Design, job: SolidJob | None = None, *, around: bool = False, apart: bool = True) -> SolidModel:
+    """The solids of a design that stands, proved: one of each site, or one and the copies `around` it.
+
+    Those around it are pulled `apart`, or stand where they do, and are in its coordinates.
 
     Raises ArgumentError for a design that is flat, JobError where a job asks for what only prisms have, LoftError where
     copies meet at some height, ProofError where the result fails its proof.
@@ -50,9 +52,9 @@ def stand(design: Design, job: SolidJob | None = None, *, around: bool = False) 
     names = [site.name for site in design.noded]
     if around:
         found = _around(loft)
-        meshes, colours = _pulled([mesh for _, mesh in found])
+        meshes, colours = _pulled([mesh for _, mesh in found], apart=apart)
         sites = [names[site] for site, _ in found]
-        notes: tuple[str, ...] = ("neighbours and the room between them are for the picture alone",)
+        notes: tuple[str, ...] = (AROUND,) if apart else ()
     else:
         low = np.min([mesh.vertices.min(axis=0) for mesh in loft.meshes], axis=0)
         meshes = [TriangleMesh(mesh.vertices - low, mesh.triangles) for mesh in loft.meshes]
@@ -99,8 +101,11 @@ def _around(loft: Loft) -> list[tuple[int, TriangleMesh]]:
     return [(0, loft.meshes[0]), *copies]
 
 
-def _pulled(meshes: Sequence[TriangleMesh]) -> tuple[list[TriangleMesh], list[int]]:
-    """Meshes pulled away from the first of them, as little as parts them, and colours that differ where they touch."""
+def _pulled(meshes: Sequence[TriangleMesh], *, apart: bool) -> tuple[list[TriangleMesh], list[int]]:
+    """Meshes pulled away from the first of them, as little as parts them, and colours that differ where they touch.
+
+    Where they are not to be `apart` they stay.
+    """
     import shapely
 
     low, high = float(meshes[0].vertices[:, 2].min()), float(meshes[0].vertices[:, 2].max())
@@ -112,7 +117,7 @@ def _pulled(meshes: Sequence[TriangleMesh]) -> tuple[list[TriangleMesh], list[in
     touching = (shapely.distance(shapes[one], shapes[other]) < _TOUCHING * size).any(axis=1)
     away = centres - centres[0]
     pull = 0.0
-    for pull in _PULLS:
+    for pull in _PULLS if apart else ():
         moved = np.array([_moved(row, pull * by) for row, by in zip(shapes, away, strict=True)], object)
         if (shapely.distance(moved[one], moved[other]) > _APART * size).all():
             break
@@ -121,6 +126,8 @@ def _pulled(meshes: Sequence[TriangleMesh]) -> tuple[list[TriangleMesh], list[in
     for k in range(len(meshes)):
         taken = {colours[j] for j in range(k) if (j, k) in pairs}
         colours.append(next(colour for colour in range(k + 1) if colour not in taken))
+    if not apart:
+        return list(meshes), colours
     shifts = np.column_stack((pull * away, np.zeros(len(meshes))))
     return [
         TriangleMesh(mesh.vertices + shift, mesh.triangles) for mesh, shift in zip(meshes, shifts, strict=True)
