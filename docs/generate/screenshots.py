@@ -6,7 +6,9 @@ import io
 import shutil
 import sys
 import tempfile
+from collections.abc import Collection
 from pathlib import Path
+from typing import Any
 
 from PIL import Image
 
@@ -19,45 +21,70 @@ from helpers.studio import Window, opened, running  # noqa: E402 - from the test
 COLOURS = 24
 """How many colours the pictures have."""
 
+SHADES = 96
+"""How many that of a shaded solid has."""
+
+SIZE = {"width": 960, "height": 560}
+
 DESIGN = DOCS.parent / "examples" / "p4-hook.toml"
+SOLID = DOCS.parent / "examples" / "solid" / "pgg-scutoid.toml"
 
 
-def shoot(window: Window, name: str) -> None:
+def shoot(window: Window, name: str, colours: int = COLOURS) -> None:
     """Photograph the window, in so few colours that the file is small."""
     window.page.mouse.move(700, 30)
     window.page.wait_for_timeout(800)
     picture = Image.open(io.BytesIO(window.page.screenshot())).convert("RGB")
-    picture.quantize(COLOURS).save(DOCS / "pictures" / f"studio-{name}.png", optimize=True)
+    picture.quantize(colours).save(DOCS / "pictures" / f"studio-{name}.png", optimize=True)
 
 
-def main() -> None:
-    """Open the studio and go through its panels."""
+def shoot_drawing(chromium: Any, folder: Path) -> None:
+    """Go through the panels of a design, and photograph them."""
+    shutil.copy(DESIGN, folder)
+    with (
+        running(folder, DESIGN.name) as studio,
+        opened(chromium, studio, viewport=SIZE, color_scheme="light") as window,
+    ):
+        page = window.page
+        window.wait()
+        page.locator(".stroke").first.click()
+        shoot(window, "drawing")
+        page.get_by_role("tab", name="Symmetry").click()
+        page.wait_for_timeout(8000)
+        shoot(window, "symmetry")
+        page.get_by_role("tab", name="Job").click()
+        page.get_by_label("Sheet", exact=True).fill("300x200mm")
+        page.keyboard.press("Enter")
+        page.get_by_label("Kerf, mm").fill("0.15")
+        page.keyboard.press("Enter")
+        page.get_by_role("tab", name="Report").click()
+        page.wait_for_timeout(8000)
+        shoot(window, "report")
+
+
+def shoot_solid(chromium: Any, folder: Path) -> None:
+    """Photograph the solid of a design that stands."""
+    shutil.copy(SOLID, folder)
+    with running(folder, SOLID.name) as studio, opened(chromium, studio, viewport=SIZE, color_scheme="light") as window:
+        window.wait()
+        window.page.get_by_role("tab", name="Solid").click()
+        window.page.locator(".proof[data-state=proved]").wait_for()
+        shoot(window, "solid", colours=SHADES)
+
+
+SHOTS = {"drawing": shoot_drawing, "solid": shoot_solid}
+"""What is photographed: all of it, or what the command line names."""
+
+
+def main(names: Collection[str]) -> None:
+    """Photograph the studio."""
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as playwright, tempfile.TemporaryDirectory() as folder:
         chromium = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=SOFTWARE_GL)
-        shutil.copy(DESIGN, folder)
-        size = {"width": 960, "height": 560}
-        with (
-            running(Path(folder), DESIGN.name) as studio,
-            opened(chromium, studio, viewport=size, color_scheme="light") as window,
-        ):
-            page = window.page
-            window.wait()
-            page.locator(".stroke").first.click()
-            shoot(window, "drawing")
-            page.get_by_role("tab", name="Symmetry").click()
-            page.wait_for_timeout(8000)
-            shoot(window, "symmetry")
-            page.get_by_role("tab", name="Job").click()
-            page.get_by_label("Sheet", exact=True).fill("300x200mm")
-            page.keyboard.press("Enter")
-            page.get_by_label("Kerf, mm").fill("0.15")
-            page.keyboard.press("Enter")
-            page.get_by_role("tab", name="Report").click()
-            page.wait_for_timeout(8000)
-            shoot(window, "report")
+        for name in names or SHOTS:
+            SHOTS[name](chromium, Path(folder))
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

@@ -25,6 +25,7 @@ from voronoi_tiles.studio.messages import (
     NewMessage,
     ReloadMessage,
     SaveMessage,
+    SolidMessage,
     ThumbnailMessage,
     check_files,
     named_files,
@@ -48,6 +49,8 @@ def test_messages_are_read() -> None:
     assert moving == DesignMessage(1, DESIGN, False, 1.0)
     job = read(type="job", rev=2, design=DESIGN, job={"kerf": 0.1, "sheet": [1, 2], "tabs": None}, limits={"neck": 1})
     assert job == JobMessage(2, DESIGN, {"kerf": 0.1, "sheet": [1, 2]}, {"neck": 1})
+    assert read(type="solid", rev=7, design=DESIGN, job={"height": 5}) == SolidMessage(7, DESIGN, {"height": 5})
+    assert read(type="solid", rev=8, design=DESIGN) == SolidMessage(8, DESIGN, {})
     assert read(type="thumbnail", rev=3, design=DESIGN) == ThumbnailMessage(3, DESIGN)
     assert read(type="save", rev=4, design=DESIGN, over=True) == SaveMessage(4, DESIGN, True)
     assert read(type="reload") == ReloadMessage()
@@ -64,6 +67,10 @@ BROKEN = (
     *(f'{{"type": "design", "rev": 1, "design": {{}}, "tolerance": {t}}}' for t in ("0", "-1", '"1"', "true", "[]")),
     *(f'{{"type": "design", "rev": 1, "design": {{}}, "rest": {rest}}}' for rest in ("0", '"x"', "null", "[]")),
     *(f'{{"type": "job", "rev": 1, "design": {{}}, "job": {job}}}' for job in ("3", '"x"', "[1]", '{"kerf": {}}')),
+    *(
+        '{"type": "solid", "rev": 1, "design": {}, "limits": {}}',
+        '{"type": "solid", "rev": 1, "design": {}, "job": []}',
+    ),
     *('{"type": "new", "name": "leaf"}', '{"type": "new", "rev": 1, "design": {}, "name": 3}'),
     *('{"type": "reload", "rev": 1}', '{"type": "design", "rev": 1, "design": {}, "job": {}}'),
     *('{"type": "job", "rev": 1, "design": {}, "limits": 3}', '{"type": "save", "rev": 1, "design": {}, "over": 1}'),

@@ -20,6 +20,7 @@ from urllib.parse import quote
 import pytest
 from helpers.outlines import CommandLine
 from helpers.running_studio import RunningStudio, running, tell, told
+from helpers.solid_frames import read_frame
 from test_lanes import is_alive, is_gone
 from websockets.exceptions import ConnectionClosed
 
@@ -116,6 +117,46 @@ def test_a_page_that_is_reloaded_is_served(studio: RunningStudio) -> None:
     for other in ("", "1", home_of({**opened, "file": "leaf.toml"})):
         with studio.page(query=f"?again={other}") as page:
             assert told(page)["again"] is False
+
+
+def test_a_design_is_answered_by_its_solid(studio: RunningStudio) -> None:
+    """As a frame with its meshes; outlines go on meanwhile, and of solids that wait the newest alone is made."""
+    with studio.page() as page:
+        design = told(page)["design"]
+        for rev in range(1, 20):
+            tell(page, "solid", rev=rev, design=design, job={"height": rev, "clearance": 0.2})
+        tell(page, "design", rev=1, design=design, rest=True)
+        heard: list[dict[str, Any]] = []
+        while not heard or heard[-1]["rev"] < 19:
+            received = page.recv(timeout=60)
+            if isinstance(received, str):
+                assert json.loads(received)["type"] == "outline"
+                continue
+            message, pieces = read_frame(received)
+            assert len(pieces) == message["count"]
+            heard.append(message)
+        assert len(heard) <= 2  # what was begun before the others came, and the last
+        assert heard[-1]["tiles"][0]["size"][2] == 19.0
+        tell(page, "solid", rev=20, design=design, job={"chamfer": 2})
+        refused = told(page)
+        assert (refused["type"], refused["lane"], refused["rev"]) == ("refused", "solid", 20)
+        assert refused["error"]["key"] == "chamfer"
+
+
+def test_solids_are_downloaded(studio: RunningStudio) -> None:
+    """In the formats that there are, under the design's name; what cannot be is said, with its option."""
+    design = json.loads(json.dumps(starter("p4").to_dict()))
+    for form, kind in (("3mf", "model/3mf"), ("stl", "model/stl")):
+        body = json.dumps({"design": design, "job": {"format": form}}).encode()
+        answer = studio.ask("/solid", method="POST", body=body)
+        assert answer.status == 200
+        assert answer.headers["content-type"] == kind
+        assert f"bird.{form}" in answer.headers["content-disposition"]
+        assert len(answer.body) > 1000
+    for job in ({"format": "svg"}, {"sheet": "../elsewhere.svg"}):
+        answer = studio.ask("/solid", method="POST", body=json.dumps({"design": design, "job": job}).encode())
+        assert answer.status == 422
+        assert json.loads(answer.body)["key"] == next(iter(job))
 
 
 @pytest.mark.slow

@@ -16,6 +16,7 @@ from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.formats.presets import FORMATS, load_preset
 from voronoi_tiles.groups.wallpaper import GROUPS
 from voronoi_tiles.pictures.picture_size import DEFAULT_SIZE
+from voronoi_tiles.solid.solid_job import SolidJob
 from voronoi_tiles.studio.tables import page_tables, starter_designs
 
 TABLES: dict[str, Any] = json.loads(json.dumps(page_tables(), allow_nan=False))
@@ -99,6 +100,10 @@ def test_a_job_can_be_made_of_its_defaults() -> None:
     assert Job(**{name: option["default"] for name, option in options.items()}) == Job()
     assert all(option["help"] for option in options.values())
     assert options["fit"]["words"] == ["whole", "clip", "frame"]
+    solid = {option["name"]: option for option in TABLES["solid"]}
+    assert set(SolidJob.options()) == set(solid)
+    assert SolidJob(**{name: option["default"] for name, option in solid.items()}) == SolidJob()
+    assert TABLES["solids"] == ["3mf", "stl", "png"]
 
 
 def test_presets_kinds_and_formats_are_all_there() -> None:

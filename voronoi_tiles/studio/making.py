@@ -90,7 +90,7 @@ def exported(design: Mapping[str, Any], job: Mapping[str, Any], name: str) -> tu
     asked, form = read_options(job)
     options = asked if job.keys() - {"format"} else None  # without any, the exact tiles as they lie in the plane
     tiling = tiling_of(design, name)
-    stem = _ODD.sub("-", name).encode()[:_STEM_MAX].decode(errors="ignore").strip(".-") or "design"
+    stem = stem_of(name)
     with TemporaryDirectory(prefix="voronoi-tiles-") as folder:
         path = Path(folder) / f"{stem}.{form}"
         if form == "png":
@@ -197,6 +197,11 @@ def _finding_document(finding: Finding) -> dict[str, Any]:
         "at": None if finding.place is None else list(finding.place),
         "sources": list(finding.sources),
     }
+
+
+def stem_of(name: str) -> str:
+    """What a download is called that is made of a design of this name, without a suffix."""
+    return _ODD.sub("-", name).encode()[:_STEM_MAX].decode(errors="ignore").strip(".-") or "design"
 
 
 def _one_file(stem: str, files: Mapping[str, bytes]) -> tuple[str, bytes]:

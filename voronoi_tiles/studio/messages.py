@@ -84,6 +84,15 @@ class JobMessage:
 
 
 @dataclass(frozen=True)
+class SolidMessage:
+    """A design to be shown as solids: the options of a SolidJob by their names."""
+
+    rev: int
+    design: Table
+    job: Table
+
+
+@dataclass(frozen=True)
 class ThumbnailMessage:
     """A design to be shown as a small picture, as soon as nothing else is to be done."""
 
@@ -122,6 +131,7 @@ class ByeMessage:
 _KEYS: Final[Mapping[str, tuple[str, ...]]] = {
     "design": ("rev", "design", "rest", "tolerance"),
     "job": ("rev", "design", "job", "limits"),
+    "solid": ("rev", "design", "job"),
     "thumbnail": ("rev", "design"),
     "save": ("rev", "design", "over"),
     "reload": (),
@@ -130,7 +140,9 @@ _KEYS: Final[Mapping[str, tuple[str, ...]]] = {
 }
 """The types of messages, and the keys that each has beside its type."""
 
-Message = DesignMessage | JobMessage | ThumbnailMessage | SaveMessage | ReloadMessage | NewMessage | ByeMessage
+Message = (
+    DesignMessage | JobMessage | SolidMessage | ThumbnailMessage | SaveMessage | ReloadMessage | NewMessage | ByeMessage
+)
 
 
 def read_object(text: str | bytes) -> Table:
@@ -160,17 +172,21 @@ def read_message(table: Table) -> Message:
     if not keys:
         return ReloadMessage() if kind == "reload" else ByeMessage()
     rev, design = _rev(table), read_design(table)
+    found: Message
     match kind:
         case "design":
-            return DesignMessage(rev, design, _flag(table, "rest", default=True), _tolerance(table))
+            found = DesignMessage(rev, design, _flag(table, "rest", default=True), _tolerance(table))
         case "job":
-            return JobMessage(rev, design, read_job(table), _table(table, "limits"))
+            found = JobMessage(rev, design, read_job(table), _table(table, "limits"))
+        case "solid":
+            found = SolidMessage(rev, design, read_job(table))
         case "thumbnail":
-            return ThumbnailMessage(rev, design)
+            found = ThumbnailMessage(rev, design)
         case "new":
-            return NewMessage(rev, design, read_text(table, "name", ""))
+            found = NewMessage(rev, design, read_text(table, "name", ""))
         case _:
-            return SaveMessage(rev, design, _flag(table, "over", default=False))
+            found = SaveMessage(rev, design, _flag(table, "over", default=False))
+    return found
 
 
 def refuse_others(table: Table, known: Collection[str]) -> None:

@@ -9,7 +9,14 @@ from typing import Any, Final
 from voronoi_tiles.base.errors import DesignError, TouchingCopiesError, VoronoiTilesError
 from voronoi_tiles.studio.messages import Table
 
-_LANES: Final = {"design": "outline", "job": "job", "thumbnail": "thumbnail", "save": "save", "new": "new"}
+_LANES: Final = {
+    "design": "outline",
+    "job": "job",
+    "solid": "solid",
+    "thumbnail": "thumbnail",
+    "save": "save",
+    "new": "new",
+}
 """The lanes of the messages that are refused; what is wrong with others is trouble."""
 
 _BUG: Final = "This is a bug in voronoi-tiles: please report it, with the design."
@@ -29,6 +36,8 @@ def error_document(error: BaseException, scale: float = 1.0) -> dict[str, Any]:
             more = {"at": [at.real, at.imag]} if isfinite(at) else {}
         case VoronoiTilesError():
             message, remedy = getattr(error, "message", str(error)), getattr(error, "remedy", None)
+            if (z := getattr(error, "z", None)) is not None:  # a LoftError, whose module the server does not load
+                message = f"{message} at the height {z:.6g}"
             key: str | None = next(iter(getattr(error, "fields", ())), None)
             if isinstance(error, DesignError):
                 key = error.key

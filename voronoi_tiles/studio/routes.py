@@ -47,6 +47,7 @@ _TYPES: Final = {
 """The kinds of files that the page is made of."""
 
 _DOWNLOADS: Final = {
+    ".3mf": "model/3mf",
     ".dxf": "image/vnd.dxf",
     ".gcode": "text/x-gcode",
     ".json": "application/json",
@@ -54,6 +55,7 @@ _DOWNLOADS: Final = {
     ".pdf": "application/pdf",
     ".png": "image/png",
     ".svg": "image/svg+xml",
+    ".stl": "model/stl",
     ".zip": "application/zip",
 }
 """The kinds of files that can be downloaded."""
@@ -78,6 +80,7 @@ def application(desk: Desk, page: Path = PAGE) -> Starlette:
             Route("/tables.json", routes.tables),
             Route("/examples.json", routes.examples),
             Route("/export", routes.export, methods=["POST"]),
+            Route("/solid", routes.solid, methods=["POST"]),
             Route("/coupon", routes.coupon, methods=["POST"]),
             Route("/drop", routes.drop, methods=["POST"]),
             Route("/toml", routes.toml, methods=["POST"]),
@@ -111,15 +114,19 @@ class _Routes:
 
     async def export(self, request: Request) -> Response:
         """The file that a job makes of a design."""
+        return await _answered(request, lambda table: self._made("export", table))
 
-        async def exported(table: Table) -> Response:
-            refuse_others(table, ("design", "job", "name"))
-            design, job = read_design(table), read_job(table)
-            self._desk.check_files(design, job)
-            name = _read_name(table, self._desk.document.name)
-            return _download(await self._desk.jobs.ask({"task": "export", "design": design, "job": job, "name": name}))
+    async def solid(self, request: Request) -> Response:
+        """The file of a design's solids."""
+        return await _answered(request, lambda table: self._made("solid_file", table))
 
-        return await _answered(request, exported)
+    async def _made(self, task: str, table: Table) -> Response:
+        """The file that a worker makes of a design by a job."""
+        refuse_others(table, ("design", "job", "name"))
+        design, job = read_design(table), read_job(table)
+        self._desk.check_files(design, job)
+        name = _read_name(table, self._desk.document.name)
+        return _download(await self._desk.jobs.ask({"task": task, "design": design, "job": job, "name": name}))
 
     async def coupon(self, request: Request) -> Response:
         """The file of a coupon."""

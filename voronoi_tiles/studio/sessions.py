@@ -21,6 +21,7 @@ from voronoi_tiles.studio.messages import (
     NewMessage,
     ReloadMessage,
     SaveMessage,
+    SolidMessage,
     Table,
     ThumbnailMessage,
     check_files,
@@ -214,7 +215,7 @@ class Session:
                 await self._take(received.get("text"))
         finally:
             self._desk.outlines.forget(self)
-            self._desk.jobs.forget(self, (self, "thumbnail"))
+            self._desk.jobs.forget(self, (self, "solid"), (self, "thumbnail"))
 
     async def _take(self, text: str | None) -> None:
         """Do what a message says, or say what is wrong with it."""
@@ -238,6 +239,10 @@ class Session:
                 desk.check_files(design, job)
                 asked = {"task": "product", "rev": rev, "design": design, "job": job, "limits": limits}
                 desk.jobs.put(self, {**asked, "name": desk.document.name}, self._deliver(table))
+            case SolidMessage(rev, design, job):
+                desk.check_files(design, job)
+                asked = {"task": "solid", "rev": rev, "design": design, "job": job, "name": desk.document.name}
+                desk.jobs.put((self, "solid"), asked, self._deliver(table))
             case ThumbnailMessage(rev, design):
                 desk.check_files(design, {})
                 asked = {"task": "thumbnail", "rev": rev, "design": design}
@@ -258,9 +263,11 @@ class Session:
         """What sends the answer to a message."""
 
         async def deliver(answer: Answer) -> None:
-            if answer.error is None:
-                await self._send_text(answer.body.decode())
-            else:
+            if answer.error is not None:
                 await self.send(refusal(table, answer.error))
+            elif answer.head.get("binary"):
+                await self._patiently(self._websocket.send_bytes(answer.body))
+            else:
+                await self._send_text(answer.body.decode())
 
         return deliver

@@ -11,11 +11,14 @@ from voronoi_tiles.base.version import __version__
 from voronoi_tiles.designs.drawn_strokes import StrokeKind
 from voronoi_tiles.designs.starters import GROUP_NAMES, starter, symmetry_of
 from voronoi_tiles.fabrication.job import Job
+from voronoi_tiles.fabrication.job_options import OptionTable
 from voronoi_tiles.formats.presets import FORMATS as DRAWINGS
 from voronoi_tiles.formats.presets import load_preset, preset_names
 from voronoi_tiles.groups.symmetry_elements import Line, symmetry_elements
 from voronoi_tiles.groups.wallpaper import GROUPS, WallpaperGroup
 from voronoi_tiles.pictures.picture_size import DEFAULT_SIZE
+from voronoi_tiles.solid.solid_job import SolidJob
+from voronoi_tiles.solid.solid_model import SOLID_FORMATS
 from voronoi_tiles.studio.messages import LIMITS
 from voronoi_tiles.studio.outlining import thumbnail_tiles
 from voronoi_tiles.tiling import FORMATS, FileFormat
@@ -58,9 +61,11 @@ def page_tables() -> dict[str, Any]:
         "version": __version__,
         "groups": [group_document(group) for group in GROUPS.values()],
         "kinds": list(get_args(StrokeKind)),
-        "job": job_options(),
+        "job": job_options(Job),
+        "solid": job_options(SolidJob),
         "presets": [{"name": name, "title": load_preset(name).title} for name in preset_names()],
         "formats": list(FORMS),
+        "solids": list(SOLID_FORMATS),
         "coupon": list(DRAWINGS),
         "units": dict(UNIT_MM),
         "limits": {**LIMITS, "picture": DEFAULT_SIZE},
@@ -97,8 +102,8 @@ def group_document(group: WallpaperGroup) -> dict[str, Any]:
     }
 
 
-def job_options() -> list[dict[str, Any]]:
-    """The options of a job: for each what it takes, its default and what it means."""
+def job_options(job: type[OptionTable]) -> list[dict[str, Any]]:
+    """The options of a kind of job: for each what it takes, its default and what it means."""
     return [
         {
             "name": name,
@@ -108,7 +113,7 @@ def job_options() -> list[dict[str, Any]]:
             "words": list(option.words),
             "shown": option.shown,
         }
-        for name, option in Job.options().items()
+        for name, option in job.options().items()
         if name not in HIDDEN
     ]
 

@@ -24,6 +24,7 @@ from voronoi_tiles.studio.frames import FRAME_START, pack, sizes_of
 from voronoi_tiles.studio.refusals import error_document
 
 if TYPE_CHECKING:
+    from voronoi_tiles.studio.modelling import Modeller
     from voronoi_tiles.studio.outlining import Outliner
 
 Request = Mapping[str, Any]
@@ -71,6 +72,20 @@ def product(request: Request, _body: bytes) -> Done:
     return text_of(made(**{name: request[name] for name in ("rev", "design", "job", "limits", "name")}))
 
 
+def solid(request: Request, _body: bytes) -> Iterator[Done]:
+    """The solids of a design: each answer a frame of their message and meshes, the last without "more" to come."""
+    asked = {name: request[name] for name in ("rev", "design", "job", "name")}
+    for frame, more in _modeller().solids(**asked):
+        yield {"binary": True, "more": more}, frame
+
+
+def solid_file(request: Request, _body: bytes) -> Done:
+    """The file of a design's solids."""
+    from voronoi_tiles.studio.modelling import solid_file as made
+
+    return _file(*made(request["design"], request["job"], request["name"]))
+
+
 def thumbnail(request: Request, _body: bytes) -> Done:
     """The tiles of a design for a small picture."""
     from voronoi_tiles.designs.design import Design
@@ -115,6 +130,14 @@ def _outliner() -> Outliner:
     return Outliner()
 
 
+@cache
+def _modeller() -> Modeller:
+    """What makes solids of designs in this worker."""
+    from voronoi_tiles.studio.modelling import Modeller
+
+    return Modeller()
+
+
 Tasks = Mapping[str, Callable[[Request, bytes], Done | Iterator[Done]]]
 
 TASKS: Final[Tasks] = {
@@ -122,6 +145,8 @@ TASKS: Final[Tasks] = {
     "examples": examples,
     "outline": outline,
     "product": product,
+    "solid": solid,
+    "solid_file": solid_file,
     "thumbnail": thumbnail,
     "export": export,
     "coupon": coupon,

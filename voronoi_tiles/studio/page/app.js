@@ -9,12 +9,15 @@ import { BREAKS, MEETS, TOOLS, Toolbox } from "./tools/toolbox.js";
 import { listen } from "./tools/keys.js";
 import { letterOf } from "./tools/letters.js";
 import { SheetView } from "./view/sheet.js";
+import { SolidView } from "./view/solid.js";
 import { Stage } from "./view/stage.js";
 import { clipboard } from "./clipboard.js";
+import { SolidLink } from "./solids.js";
 import { OpenedFile } from "./file.js";
 import { habits, keepHabits } from "./habits.js";
 import { announce } from "./panels/announce.js";
 import { byId } from "./panels/elements.js";
+import { post } from "./panels/exchange.js";
 import { help } from "./panels/help.js";
 import { incoming } from "./panels/incoming.js";
 import { outgoing } from "./panels/outgoing.js";
@@ -41,6 +44,12 @@ const store = new Store({
     jobRefusal: null,
     jobPending: false,
     job: {},
+    solid: null,
+    solidRefusal: null,
+    solidPending: false,
+    solidJob: {},
+    apart: 0.2,
+    turnsSolids: true,
     unit: "mm",
     shown: { elements: true, cell: true, grid: false, copies: true, region: false, colours: true, edges: true },
     theme: "",
@@ -60,6 +69,19 @@ const stage = new Stage(
 );
 const sheet = new SheetView(/** @type {HTMLCanvasElement} */ (byId("sheet")), store);
 const link = new Link(store);
+const solids = new SolidLink(store, link);
+/** The longer side of a picture of solids; pixels. A larger one takes seconds. */
+const PICTURE = 640;
+const solidView = new SolidView(
+    /** @type {HTMLCanvasElement} */ (byId("solid")),
+    /** @type {HTMLImageElement} */ (byId("solid-picture")),
+    store,
+    async (signal) => {
+        const { settled: design, state } = store;
+        const asked = { design, job: { ...state.solidJob, format: "png", size: PICTURE } };
+        return (await post("solid", JSON.stringify(asked), { signal })).blob();
+    },
+);
 
 /** @type {import("./tools/tool.js").Hands} */
 const hands = {
@@ -70,7 +92,7 @@ const hands = {
     redraw: () => stage.redraw(),
     take(tool) {
         store.set({ tool, trace: { ...store.state.trace, moves: false } });
-        if (sheet.visible) {
+        if (sheet.visible || solidView.visible) {
             openTab(/** @type {HTMLButtonElement} */ (byId("tab-drawing")));
         }
     },
@@ -94,8 +116,9 @@ const middle = () => /** @type {[number, number]} */ ([stage.camera.size[0] / 2,
 
 /** @param {number} factor */
 const zoomBy = (factor) => {
-    if (sheet.visible) {
-        sheet.zoom(factor);
+    const above = [sheet, solidView].find((view) => view.visible);
+    if (above) {
+        above.zoom(factor);
         return;
     }
     stage.camera.zoomAt(middle(), factor);
@@ -124,12 +147,28 @@ const COMMANDS = {
     new: () => ask.begin(),
     gallery: () => void ask.gallery(),
     coupon: () => ask.coupon(),
+    "download-solid": () => ask.solid(),
+    "toggle-solid"() {
+        const opens = !solidView.visible;
+        openTab(/** @type {HTMLButtonElement} */ (byId(opens ? "tab-solid" : "tab-drawing")));
+        (opens ? solidView : byId("overlay")).focus();
+    },
+    "look-first": () => solidView.lookFrom(),
+    "look-above": () => solidView.lookFrom({ turn: 0, tilt: 90 }),
+    "look-front": () => solidView.lookFrom({ turn: 0, tilt: 0 }),
     share: () => ask.share(),
     help: () => help(store),
     theme: () => store.set({ theme: stage.dark ? "light" : "dark" }),
     "zoom-in": () => zoomBy(1.4),
     "zoom-out": () => zoomBy(1 / 1.4),
-    fit: () => (sheet.visible ? sheet.fit() : stage.fit("cell")),
+    fit() {
+        const above = [sheet, solidView].find((view) => view.visible);
+        if (above) {
+            above.fit();
+        } else {
+            stage.fit("cell");
+        }
+    },
     "fit-all": () => stage.fit("all"),
     "fit-selection": () => stage.fit("selection"),
     "toggle-elements": () => toggle("elements"),
@@ -218,7 +257,10 @@ function openTab(chosen) {
     const jobs = chosen.id === "tab-job" || chosen.id === "tab-report";
     link.askJobs(jobs);
     sheet.show(jobs);
-    byId("hint").hidden = jobs;
+    const solid = chosen.id === "tab-solid";
+    solids.ask(solid);
+    solidView.show(solid);
+    byId("hint").hidden = jobs || solid;
 }
 
 for (const [k, tab] of tabs.entries()) {
@@ -246,6 +288,7 @@ file.listen(ask, () => openTab(/** @type {HTMLButtonElement} */ (byId("tab-drawi
 /** What a script in the page may ask: where a point of the drawing is on it, and what is drawn. */
 const face = {
     design: () => store.state.design,
+    solid: () => ({ look: solidView.look, ...store.state.solid }),
     toPage(/** @type {[number, number]} */ at) {
         const box = byId("overlay").getBoundingClientRect();
         const [x, y] = stage.camera.toScreen(at);

@@ -2,6 +2,8 @@
 // The live connection to the server: designs go out with a revision, the next when the last one's answer has come; what
 // comes back is for the newest, or it is left. A lost connection is made again, and the design sent anew.
 
+import { unpacked } from "./model/solids.js";
+
 /** @import { Store } from "./store.js" */
 /** @import { Design } from "./model/design.js" */
 /**
@@ -53,6 +55,8 @@ const BEHIND_MS = 100;
 const ANSWER_MS = 1000;
 const JOB_MS = 150;
 const TAKEN_OVER = 4001;
+/** Lanes whose messages have numbers of their own in the place of revisions. */
+const OWN_NUMBERS = new Set(["thumbnail", "solid", "new"]);
 const AGAIN_MS = [200, 500, 1000, 2000, 5000];
 
 export class Link {
@@ -125,13 +129,16 @@ export class Link {
         const again = this.home ? `?again=${encodeURIComponent(this.home)}` : "";
         const socket = new WebSocket(`ws://${location.host}/ws${again}`);
         this.#socket = socket;
+        socket.binaryType = "arraybuffer";
         socket.addEventListener("open", () => {
             this.#tries = 0;
             this.#sent = { revision: -1, rest: false };
             this.#asked = null;
             this.#store.set({ connected: true });
         });
-        socket.addEventListener("message", (event) => this.#receive(JSON.parse(event.data)));
+        socket.addEventListener("message", ({ data }) =>
+            this.#receive(typeof data === "string" ? JSON.parse(data) : unpacked(data)),
+        );
         socket.addEventListener("close", (event) => {
             this.#socket = null;
             this.#answerNext(null);
@@ -262,7 +269,7 @@ export class Link {
         const { exact, refusal, revision, begun, product, job } = this.#store.state;
         const isOfJob = job === this.#jobSent && message.rev === revision;
         const isOfDesign = message.type === "outline" || message.type === "product" || message.type === "refused";
-        if (isOfDesign && message.rev < begun && message.lane !== "thumbnail" && message.lane !== "new") {
+        if (isOfDesign && message.rev < begun && !OWN_NUMBERS.has(message.lane)) {
             return;
         }
         if (message.type === "outline" || (message.type === "refused" && message.lane === "outline")) {

@@ -28,6 +28,12 @@ import { UNLAID } from "./model/tracing.js";
  * @property {Refusal | null} jobRefusal
  * @property {boolean} jobPending whether a newer product is waited for
  * @property {Record<string, any>} job the options of the job that differ from their defaults
+ * @property {import("./model/solids.js").Solid | null} solid the last one that came
+ * @property {Refusal | null} solidRefusal why there is none of what is drawn
+ * @property {boolean} solidPending whether a newer one is waited for
+ * @property {Record<string, any>} solidJob the options of the solid's job that differ from their defaults
+ * @property {number} apart by which share of their distance neighbours of the solid are pulled away
+ * @property {boolean} turnsSolids whether they can be turned here: whether there is WebGL
  * @property {"mm" | "cm" | "in"} unit in which lengths are shown
  * @property {{elements: boolean, cell: boolean, grid: boolean, copies: boolean, region: boolean, colours: boolean, edges: boolean}} shown
  * @property {"" | "light" | "dark"} theme empty: as the system is

@@ -61,6 +61,20 @@ import { inverse, tidyPlus, tidyProduct, turned } from "./plane.js";
 /** @typedef {Readonly<{a: number, b?: number, angle?: number}>} Cell */
 
 /**
+ * What moves on the way up.
+ * @typedef {object} SolidKeys
+ * @property {number} height
+ * @property {number} [layers]
+ * @property {number} [turn] degrees
+ * @property {Point} [shift]
+ * @property {number} [scale]
+ * @property {Point} [about]
+ */
+
+/** @typedef {Readonly<SolidKeys>} Standing */
+/** @typedef {Readonly<{z: number, site?: string, strokes: readonly Stroke[]}>} KeyDrawing */
+
+/**
  * @typedef {object} DesignKeys
  * @property {number} schema
  * @property {string} group
@@ -68,6 +82,8 @@ import { inverse, tidyPlus, tidyProduct, turned } from "./plane.js";
  * @property {number} [scale]
  * @property {Cell} cell
  * @property {readonly Site[]} site
+ * @property {Standing} [solid]
+ * @property {readonly KeyDrawing[]} [key]
  */
 
 /** @typedef {Readonly<DesignKeys>} Design */
@@ -245,8 +261,35 @@ export function setUnits(design, units, convert) {
     const factor = MILLIMETRES[from] / MILLIMETRES[units];
     const renamed = { ...design, units };
     return convert
-        ? { ...renamed, cell: largerCell(design.cell, factor), site: design.site.map(larger(factor)) }
+        ? {
+              ...renamed,
+              cell: largerCell(design.cell, factor),
+              site: design.site.map(larger(factor)),
+              ...largerStanding(design, factor),
+          }
         : renamed;
+}
+
+/**
+ * The design with keys of its solid changed; undefined takes a key out.
+ * @type {(design: Design, patch: Partial<Standing>) => Design}
+ */
+export function setSolid(design, patch) {
+    const entries = Object.entries({ ...design.solid, ...patch }).filter(([, value]) => value !== undefined);
+    return { ...design, solid: /** @type {Standing} */ (Object.fromEntries(entries)) };
+}
+
+/**
+ * A flat design as one that stands, half as high as its cell is wide, whose strokes turn about a point.
+ * @type {(design: Design, turn: number, about: Point) => Design}
+ */
+export const standing = (design, turn, about) =>
+    setSolid(design, { height: Number((design.cell.a / 2).toPrecision(3)), turn, about });
+
+/** The design without what stands above its drawing. @type {(design: Design) => Design} */
+export function flat(design) {
+    const { solid: _, key: __, ...drawing } = design;
+    return drawing;
 }
 
 /** A cell whose sides are times a factor. @type {(cell: Cell, factor: number) => Cell} */
@@ -278,6 +321,27 @@ function largerStroke(stroke, factor) {
         ...largerKey(stroke, "radius", factor),
         ...(stroke.path === undefined ? {} : { scale: tidyProduct(stroke.scale ?? 1, factor) }),
     };
+}
+
+/**
+ * What stands above a drawing, larger by a factor; nothing where it is flat.
+ * @type {(design: Design, factor: number) => Pick<Design, "solid" | "key">}
+ */
+function largerStanding({ solid, key }, factor) {
+    const points = /** @type {const} */ (["shift", "about"]).flatMap((name) => {
+        const at = solid?.[name];
+        return at ? [[name, largerPoint(at, factor)]] : [];
+    });
+    return {
+        ...(solid ? { solid: { ...solid, ...largerKey(solid, "height", factor), ...Object.fromEntries(points) } } : {}),
+        ...(key ? { key: key.map((one) => largerDrawing(one, factor)) } : {}),
+    };
+}
+
+/** A key drawing larger by a factor. @type {(drawing: KeyDrawing, factor: number) => KeyDrawing} */
+function largerDrawing(drawing, factor) {
+    const strokes = drawing.strokes.map((stroke) => largerStroke(stroke, factor));
+    return { ...drawing, ...largerKey(drawing, "z", factor), strokes };
 }
 
 /** A point times a factor. @type {(point: Point, factor: number) => Point} */

@@ -1,11 +1,12 @@
 // @ts-check
 // The job: all that `voronoi-tiles export` offers, made from the server's table of options, common ones first.
 
-import { button, deferred, field, inLabels, labelOf, lengthField, make, refill } from "./elements.js";
+import { button, deferred, inLabels, make, refill } from "./elements.js";
+import { optionField, withOption } from "./options.js";
 
 /** @import { Context } from "./panels.js" */
 /** @import { State } from "../store.js" */
-/** @typedef {{name: string, kind: string, default: any, help: string, words?: string[], shown?: string}} Option */
+/** @import { Option } from "./options.js" */
 
 /** @type {[string, string[]][]} the options under headings; those that no heading names stand under the last */
 const HEADINGS = [
@@ -17,8 +18,6 @@ const HEADINGS = [
     ["Colours", ["colours", "into", "pack", "stock", "only_colour"]],
     ["More", []],
 ];
-
-const KEY = "job-";
 
 export class JobPanel extends HTMLElement {
     /** @type {Context} */
@@ -45,6 +44,7 @@ export class JobPanel extends HTMLElement {
         const named = new Set(HEADINGS.flatMap(([, names]) => names));
         const options = /** @type {Option[]} */ (tables.job);
         const bad = jobRefusal?.error;
+        const { store } = this.#context;
         refill(
             this,
             [
@@ -60,7 +60,13 @@ export class JobPanel extends HTMLElement {
                     const own = names.length
                         ? names.flatMap((name) => options.filter((option) => option.name === name))
                         : options.filter(({ name }) => !named.has(name));
-                    const fields = own.map((option) => this.#field(option, job[option.name], state));
+                    const fields = own.map((option) =>
+                        optionField(option, job[option.name], state, {
+                            of: "job",
+                            error: bad,
+                            set: (name, value) => store.set({ job: withOption(store.state.job, options, name, value) }),
+                        }),
+                    );
                     const wrong = own.some(({ name }) => name === bad?.key);
                     return fields.length
                         ? make(
@@ -91,86 +97,5 @@ export class JobPanel extends HTMLElement {
                 ),
             ].filter(Boolean),
         );
-    }
-
-    /** @param {string} name @param {any} value undefined: the default */
-    #set(name, value) {
-        const { store } = this.#context;
-        const { job, tables } = store.state;
-        const { [name]: _, ...rest } = job;
-        const usual = tables.job.find((/** @type {Option} */ option) => option.name === name).default;
-        store.set({ job: value === undefined || value === usual ? rest : { ...rest, [name]: value } });
-    }
-
-    /**
-     * @param {Option} option
-     * @param {any} value
-     * @param {State} state
-     */
-    #field(option, value, { tables, unit, jobRefusal }) {
-        const { name, kind, words } = option;
-        const bad = jobRefusal?.error.key === name && jobRefusal.error;
-        const said = {
-            help: inLabels(option.help),
-            ...(bad ? { error: inLabels(`${bad.message} ${bad.remedy}`) } : {}),
-        };
-        const label = labelOf(name);
-        const key = KEY + name;
-        const now = value ?? option.default;
-        const choices = name === "preset" ? tables.presets.map((/** @type {any} */ preset) => preset.name) : words;
-        if (kind === "flag") {
-            const input = make("input", {
-                type: "checkbox",
-                "data-key": key,
-                ".checked": Boolean(now),
-                onchange: (/** @type {Event} */ event) =>
-                    this.#set(name, /** @type {HTMLInputElement} */ (event.target).checked || undefined),
-            });
-            return field(label, input, said);
-        }
-        if (choices?.length) {
-            const select = make("select", {
-                "data-key": key,
-                onchange: (/** @type {Event} */ event) =>
-                    this.#set(name, /** @type {HTMLSelectElement} */ (event.target).value || undefined),
-            });
-            const shown = option.default === null ? ["", ...choices] : choices;
-            select.append(
-                ...shown.map((/** @type {string} */ word) =>
-                    make(
-                        "option",
-                        { value: word === option.default ? "" : word, ".selected": word === (now ?? "") },
-                        word || "automatic",
-                    ),
-                ),
-            );
-            return field(label, select, said);
-        }
-        if (kind === "length") {
-            const mm = tables.units[unit];
-            const input = lengthField(
-                now === null ? null : Number(now) / mm,
-                unit,
-                (length) => this.#set(name, length * mm),
-                { "data-key": key, placeholder: "automatic" },
-                () => this.#set(name, undefined),
-            );
-            return field(`${label}, ${unit}`, input, said);
-        }
-        const input = make("input", {
-            type: "text",
-            spellcheck: "false",
-            "data-key": key,
-            ".defaultValue":
-                now === null || now === undefined ? "" : Array.isArray(now) ? now.join(" x ") : String(now),
-            placeholder: option.shown || "automatic",
-            onchange: () => {
-                const text = input.value.trim();
-                input.defaultValue = input.value;
-                const isNumber = (kind === "angle" || kind === "number") && Number.isFinite(Number(text));
-                this.#set(name, text === "" ? undefined : isNumber ? Number(text) : text);
-            },
-        });
-        return field(label, input, said);
     }
 }

@@ -85,6 +85,25 @@ export function outgoing({ store }) {
             );
         },
 
+        solid() {
+            const { tables, solidJob, file } = store.state;
+            const stem = file.replace(/\.[^.]*$/, "") || "tiles";
+            const name = make("input", { type: "text", ".value": stem, autocomplete: "off" });
+            const format = formatField(tables.solids);
+            /** @param {AbortSignal} signal */
+            const run = (signal) => {
+                const job = { ...solidJob, format: format.value };
+                const asked = { design: store.settled, job, name: name.value };
+                return fetched("solid", asked, `${name.value}.${format.value}`, signal);
+            };
+            const means = "3mf: an object for each piece, in its colour. stl: all in one. png: a picture.";
+            showDialog(
+                "Download the solids",
+                [field("Format", format, { help: means }), field("Name", name)],
+                [{ label: "Download", first: true, run }, cancel],
+            );
+        },
+
         coupon() {
             const { tables, job } = store.state;
             const thickness = make("input", { type: "text", ".value": "3mm" });

@@ -5,6 +5,7 @@ import { StrokePanel } from "./strokes.js";
 import { SymmetryPanel } from "./symmetry.js";
 import { JobPanel } from "./job.js";
 import { ReportPanel } from "./report.js";
+import { SolidPanel } from "./solid.js";
 
 /**
  * @typedef {object} Context what panels work with
@@ -12,7 +13,7 @@ import { ReportPanel } from "./report.js";
  * @property {import("../link.js").Link} link
  * @property {import("../view/stage.js").Stage} stage
  * @property {(command: string) => void} run
- * @property {(name: "drawing" | "symmetry" | "job" | "report") => void} openTab
+ * @property {(name: "drawing" | "symmetry" | "job" | "report" | "solid") => void} openTab
  */
 
 /** @type {[string, new () => HTMLElement & {connect: (context: Context) => void}][]} */
@@ -21,6 +22,7 @@ const PANELS = [
     ["symmetry-panel", SymmetryPanel],
     ["job-panel", JobPanel],
     ["report-panel", ReportPanel],
+    ["solid-panel", SolidPanel],
 ];
 
 /** @param {Context} context */

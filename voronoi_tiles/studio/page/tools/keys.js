@@ -59,6 +59,8 @@ export const HELP = [
             { keys: "Space or middle button, drag", does: "move the window" },
             { keys: "Ctrl+0, Shift+1, Shift+2", does: "fit the cell, all strokes, the selection" },
             { keys: "E, G, K", does: "show symmetry elements, the grid, copies of the strokes" },
+            { keys: "3", does: "show the solid; the drawing again" },
+            { keys: "Drag the solid, arrows", does: "turn it; with Shift, or by two fingers, move it" },
         ],
     },
     {

@@ -6,7 +6,13 @@ import { TOOLS } from "./toolbox.js";
 /** @typedef {Readonly<Record<string, string>>} Letters those that the user has given, by the names of the tools */
 
 /** The letters that do something else. @type {Letters} */
-export const COMMAND_LETTERS = { e: "toggle-elements", g: "toggle-grid", k: "toggle-copies", j: "join" };
+export const COMMAND_LETTERS = {
+    e: "toggle-elements",
+    g: "toggle-grid",
+    k: "toggle-copies",
+    j: "join",
+    3: "toggle-solid",
+};
 
 /** What was kept of the letters, as far as it makes sense. @type {(kept: any) => Letters} */
 export function lettersOf(kept) {
