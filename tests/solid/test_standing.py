@@ -64,7 +64,7 @@ def test_copies_around_one_are_apart_and_of_other_colours(around: SolidModel) ->
 
 
 def test_copies_around_one_stand_where_they_do_where_asked(around: SolidModel) -> None:
-    """They are those of the picture, moved back as a whole; each shares with the one, bit for bit, part of its walls."""
+    """They are those of the picture, moved back; each shares with the one, bit for bit, a part of its walls."""
     closed = stand(Design.loads(TWIST), around=True, apart=False)
     assert not closed.notes
     own = {tuple(point) for point in closed.pieces[0].mesh.vertices.tolist()}

@@ -40,11 +40,11 @@ def test_panels_and_dialogs_are_accessible(window: Window) -> None:
     page.keyboard.press("Escape")
     page.locator(".stroke").first.click()
     assert violations(window) == []
-    for tab in ("Symmetry", "Job", "Report"):
+    for tab in ("Symmetry", "Job", "Report", "Solid"):
         page.get_by_role("tab", name=tab).click()
         page.wait_for_timeout(300)
         assert violations(window) == [], tab
-    for command in ("help", "gallery", "export", "new", "open", "share"):
+    for command in ("help", "gallery", "export", "download-solid", "new", "open", "share"):
         page.locator(f"[data-command={command}]").first.click()
         page.locator("dialog[open]").wait_for()
         assert violations(window) == [], command

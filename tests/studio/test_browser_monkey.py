@@ -29,7 +29,14 @@ KEYS = [
         "Shift+Digit2",
     ),
 ]
-BUTTONS = ["#panel-drawing .stroke", "#panel-drawing button", "[data-group]", "[role=tab]", "[data-tool]"]
+BUTTONS = [
+    "#panel-drawing .stroke",
+    "#panel-drawing button",
+    "[data-group]",
+    "[role=tab]",
+    "[data-tool]",
+    "#panel-solid button",
+]
 
 
 def step(window: Window, chance: random.Random) -> None:

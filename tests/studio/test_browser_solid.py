@@ -306,6 +306,25 @@ def test_the_key_shows_and_hides_it(window: Window) -> None:
     assert page.locator("#panel-drawing").is_visible()
 
 
+def test_the_job_is_there_again(chromium: Any, tmp_path: Path) -> None:
+    """When the page is loaded again: what is printed keeps its height and clearance."""
+    (tmp_path / "bird.toml").write_text(TEXT.partition("[solid]")[0], encoding="utf-8")
+    with running(tmp_path, "bird.toml") as studio, opened(chromium, studio) as window:
+        for _ in range(2):
+            window.wait()
+            window.page.keyboard.press("3")
+            seen(window)
+            height = window.page.locator("#panel-solid").get_by_label("Height, mm")
+            if not height.input_value():
+                height.fill("7")
+                height.press("Enter")
+                window.page.locator("solid-panel dd").get_by_text(" x 7.00 mm").wait_for()
+                window.page.reload()
+                window.load()
+        assert height.input_value() == "7"
+        window.page.locator("solid-panel dd").get_by_text(" x 7.00 mm").wait_for()
+
+
 def test_without_webgl(chromium: Any, tmp_path: Path) -> None:
     """The page says so, and shows the program's own picture, which follows."""
     (tmp_path / "bird.toml").write_text(TEXT, encoding="utf-8")

@@ -143,6 +143,25 @@ def test_a_design_is_answered_by_its_solid(studio: RunningStudio) -> None:
         assert refused["error"]["key"] == "chamfer"
 
 
+def test_outlines_do_not_wait_for_solids(studio: RunningStudio) -> None:
+    """Of a slow loft a coarse one comes first; a design that is drawn meanwhile is answered before it."""
+    with studio.page() as page:
+        design = told(page)["design"]
+        loft = {**design, "solid": {"height": 30, "turn": 5, "layers": 150, "about": [15, 10]}}
+        tell(page, "solid", rev=1, design=loft, job={})
+        heard = []
+        while heard[-1:] not in (["exact"], ["refused"]):
+            received = page.recv(timeout=60)
+            if isinstance(received, str):
+                heard.append(json.loads(received)["type"])
+                continue
+            message, _ = read_frame(received)
+            heard.append("coarse" if message["coarse"] else "exact")
+            if message["coarse"]:
+                tell(page, "design", rev=2, design=design, rest=True)
+        assert heard == ["coarse", "outline", "exact"]
+
+
 def test_solids_are_downloaded(studio: RunningStudio) -> None:
     """In the formats that there are, under the design's name; what cannot be is said, with its option."""
     design = json.loads(json.dumps(starter("p4").to_dict()))

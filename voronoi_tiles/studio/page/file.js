@@ -12,7 +12,7 @@ export class OpenedFile {
     #store;
     #link;
     #stage;
-    /** Where it lies, once it is opened: its job and the picture to trace, which it does not hold, are kept under that. */
+    /** Where it lies, once it is opened: its jobs and the picture to trace, which it does not hold, are kept under that. */
     #home = "";
     /** @type {{rev: number, design: import("./model/design.js").Design | null}} what was sent to be saved */
     #saving = { rev: -1, design: null };
@@ -29,6 +29,7 @@ export class OpenedFile {
         this.#link = link;
         this.#stage = stage;
         store.subscribe(["job"], ({ job }) => this.#keep("job", job));
+        store.subscribe(["solidJob"], ({ solidJob }) => this.#keep("solid", solidJob));
         store.subscribe(["design"], ({ trace, design }) => store.set({ trace: inUnits(trace, design.units ?? "mm") }));
         store.subscribe(
             ["trace"],
@@ -47,7 +48,7 @@ export class OpenedFile {
         });
     }
 
-    /** @param {"job" | "trace"} what @param {object} value */
+    /** @param {"job" | "solid" | "trace"} what @param {object} value */
     #keep(what, value) {
         if (this.#home) {
             localStorage.setItem(`voronoi_tiles ${what} ${this.#home}`, JSON.stringify(value));
@@ -146,7 +147,8 @@ export class OpenedFile {
             this.#stage.fit();
             this.#home = link.home = found;
             const trace = { ...NO_TRACE, ...laidOf(kept(`voronoi_tiles trace ${found}`)) };
-            store.set({ job: kept(`voronoi_tiles job ${found}`), trace });
+            const [job, solidJob] = ["job", "solid"].map((what) => kept(`voronoi_tiles ${what} ${found}`));
+            store.set({ job, solidJob, trace });
         }
         store.keep(saved ? design : null);
         return true;
