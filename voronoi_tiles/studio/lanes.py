@@ -35,7 +35,7 @@ _WAITING_MAX: Final = 8
 
 TOO_LONG: Final = {
     "message": f"This takes longer than {SECONDS_MAX} seconds, and was given up.",
-    "remedy": "Draw less, take larger tolerances, or make a smaller sheet; voronoi-tiles export has no such limit.",
+    "remedy": "Draw less, take larger tolerances, or make a smaller sheet; the command line has no such limit.",
 }
 DIED: Final = {
     "message": "What computes this has ended unexpectedly, and was started again.",

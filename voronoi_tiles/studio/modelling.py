@@ -119,10 +119,11 @@ def _prisms(design: Mapping[str, Any], name: str, job: SolidJob, *, apart: bool)
 
 
 def _coarse(design: Mapping[str, Any], name: str, job: SolidJob) -> SolidModel:
-    """A loft of few layers and long chords."""
+    """A loft of few layers and long chords, that fills the slab."""
     few = Design.from_dict({**design, "solid": {**design["solid"], "layers": _COARSE_LAYERS}}, name=name)
     accuracy = _COARSE * few.lattice.det**0.5 * few.unit_mm
-    return stand(few, replace(job, accuracy=min(max(accuracy, job.accuracy or 0.0), 1.0)), around=True, apart=False)
+    accuracy = min(max(accuracy, job.accuracy or 0.0), 1.0)
+    return stand(few, replace(job, accuracy=accuracy, clearance=0.0, chamfer=0.0), around=True, apart=False)
 
 
 def _frame(rev: int, model: SolidModel, begun: float, *, coarse: bool = False, sheet: bool = False) -> bytes:

@@ -72,16 +72,11 @@ const link = new Link(store);
 const solids = new SolidLink(store, link);
 /** The longer side of a picture of solids; pixels. A larger one takes seconds. */
 const PICTURE = 640;
-const solidView = new SolidView(
-    /** @type {HTMLCanvasElement} */ (byId("solid")),
-    /** @type {HTMLImageElement} */ (byId("solid-picture")),
-    store,
-    async (signal) => {
-        const { settled: design, state } = store;
-        const asked = { design, job: { ...state.solidJob, format: "png", size: PICTURE } };
-        return (await post("solid", JSON.stringify(asked), { signal })).blob();
-    },
-);
+const solidView = new SolidView(/** @type {HTMLCanvasElement} */ (byId("solid")), store, async (signal) => {
+    const { settled: design, state } = store;
+    const asked = { design, job: { ...state.solidJob, format: "png", size: PICTURE } };
+    return (await post("solid", JSON.stringify(asked), { signal })).blob();
+});
 
 /** @type {import("./tools/tool.js").Hands} */
 const hands = {

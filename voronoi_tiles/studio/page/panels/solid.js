@@ -60,11 +60,9 @@ export class SolidPanel extends HTMLElement {
             ["solid", "solidRefusal", "solidPending", "unit", "tables", "turnsSolids"],
             ({ tables }) => tables && this.#say(),
         );
-        store.subscribe(
-            ["tables", "design", "solidJob", "solidRefusal", "unit"],
-            deferred(() => store.state.tables && this.#fill(), this.#fields),
-            { calm: true },
-        );
+        const fill = deferred(() => store.state.tables && this.checkVisibility() && this.#fill(), this.#fields);
+        store.subscribe(["tables", "design", "solidJob", "solidRefusal", "unit"], fill, { calm: true });
+        new ResizeObserver(fill).observe(this.#said); // it is looked at: nobody has filled it meanwhile
     }
 
     /** Say what there is. */
@@ -93,7 +91,7 @@ export class SolidPanel extends HTMLElement {
                     "p",
                     { class: "note proof", role: "status", "data-state": isOld ? "old" : solid ? "proved" : "" },
                     bad
-                        ? "What is shown is the last that there was."
+                        ? `What is shown is ${solid?.coarse && solid.rev === solidRefusal.rev ? "a coarse one." : "the last that there was."}`
                         : isOld
                           ? solid?.coarse
                               ? "A coarse one; the exact one follows."

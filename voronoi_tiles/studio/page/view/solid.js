@@ -18,7 +18,8 @@ const FILLED = 0.94;
 
 export class SolidView {
     #canvas;
-    #picture;
+    /** @type {HTMLImageElement | null} what is shown where there is no WebGL */
+    #picture = null;
     #store;
     #drawn;
     #look = new Look();
@@ -36,17 +37,23 @@ export class SolidView {
 
     /**
      * @param {HTMLCanvasElement} canvas
-     * @param {HTMLImageElement} picture what is shown where there is no WebGL
      * @param {Store} store
      * @param {(signal: AbortSignal) => Promise<Blob>} drawn the program's own picture of what is drawn
      */
-    constructor(canvas, picture, store, drawn) {
+    constructor(canvas, store, drawn) {
         this.#canvas = canvas;
-        this.#picture = picture;
         this.#store = store;
         this.#drawn = drawn;
         this.#painter = SolidPainter.of(canvas, () => this.redraw());
         store.set({ turnsSolids: this.#painter !== null });
+        if (!this.#painter) {
+            this.#picture = Object.assign(new Image(), {
+                id: "solid-picture",
+                alt: "The solid and its neighbours, pulled apart",
+                hidden: true,
+            });
+            canvas.after(this.#picture);
+        }
         store.subscribe(["solid", "apart", "solidPending", "solidRefusal"], () => this.redraw());
         watchSize(canvas, ({ ratio, pixels: [width, height] }) => {
             this.#ratio = ratio;
@@ -85,13 +92,12 @@ export class SolidView {
     }
 
     get visible() {
-        return !this.#canvas.hidden || !this.#picture.hidden;
+        return !(this.#picture ?? this.#canvas).hidden;
     }
 
     /** @param {boolean} on */
     show(on) {
-        this.#canvas.hidden = !on || !this.#painter;
-        this.#picture.hidden = !on || !!this.#painter;
+        (this.#picture ?? this.#canvas).hidden = !on;
         this.redraw();
     }
 
@@ -170,14 +176,15 @@ export class SolidView {
 
     #draw() {
         const { solid, apart, solidPending, solidRefusal } = this.#store.state;
-        const isOld = solidRefusal !== null || (solidPending && !solid?.coarse);
-        this.#canvas.classList.toggle("old", isOld);
-        this.#picture.classList.toggle("old", isOld);
+        // What is coarse is right as far as it goes, whether the exact one comes or not.
+        const isRight = solid?.coarse && (solidRefusal?.rev ?? solid.rev) === solid.rev;
+        const isOld = (solidRefusal !== null || solidPending) && !isRight;
+        (this.#picture ?? this.#canvas).classList.toggle("old", isOld);
         if (!this.visible) {
             return;
         }
         if (!this.#painter) {
-            void this.#draws();
+            void this.#draws(/** @type {HTMLImageElement} */ (this.#picture));
             return;
         }
         if (solid !== this.#shown) {
@@ -193,8 +200,8 @@ export class SolidView {
         this.#painter.paint(this.#look, apart, this.#ratio);
     }
 
-    /** Have the server draw it, where that is another solid than before. */
-    async #draws() {
+    /** Have the server draw it, where that is another solid than before. @param {HTMLImageElement} image */
+    async #draws(image) {
         const { solid } = this.#store.state;
         if (!solid || solid.coarse || solid === this.#shown) {
             return;
@@ -204,8 +211,8 @@ export class SolidView {
         this.#asking = new AbortController();
         try {
             const picture = await this.#drawn(this.#asking.signal);
-            URL.revokeObjectURL(this.#picture.src);
-            this.#picture.src = URL.createObjectURL(picture);
+            URL.revokeObjectURL(image.src);
+            image.src = URL.createObjectURL(picture);
         } catch {
             // Given up for a newer one; or refused, as the solid is then, which the panel says.
         }
