@@ -149,7 +149,7 @@ def test_outlines_do_not_wait_for_solids(studio: RunningStudio) -> None:
         design = told(page)["design"]
         loft = {**design, "solid": {"height": 30, "turn": 5, "layers": 150, "about": [15, 10]}}
         tell(page, "solid", rev=1, design=loft, job={})
-        heard = []
+        heard: list[str] = []
         while heard[-1:] not in (["exact"], ["refused"]):
             received = page.recv(timeout=60)
             if isinstance(received, str):
