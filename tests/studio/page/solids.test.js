@@ -44,9 +44,9 @@ test("pieces are pulled away from the middle alone, and level", () => {
     assert.deepEqual(pulled({ middle: [10, -4, 3] }, 0.5), [5, -2, 0]);
     assert.deepEqual(pulled({ middle: [10, -4, 3] }, 0), [0, -0, 0]);
     const piece = { middle: [3, 4, 0], positions: Float32Array.of(3, 4, 0, 0, 0, 2) };
-    assert.equal(reachOf([piece], 0), 5);
-    assert.equal(reachOf([piece], 1), 10);
-    assert.equal(reachOf([], 1), 0);
+    assert.deepEqual(reachOf([piece], 0), [5, 2]);
+    assert.deepEqual(reachOf([piece], 1), [10, 2]);
+    assert.deepEqual(reachOf([], 1), [0, 0]);
 });
 
 test("a design comes to stand, and lies flat again", () => {

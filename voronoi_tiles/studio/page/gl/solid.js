@@ -43,7 +43,7 @@ export class SolidPainter {
     #solid = null;
     /** @type {{buffer: WebGLBuffer | null, count: number, colour: number[], middle: import("../model/solids.js").Vector}[]} */
     #pieces = [];
-    #reached = { apart: -1, reach: 0 };
+    #reached = { apart: -1, reach: reachOf([], 0) };
 
     /**
      * Null where the canvas has no context of WebGL.
@@ -118,7 +118,7 @@ export class SolidPainter {
         });
     }
 
-    /** How far from the centre all pieces reach that are pulled apart. @param {number} apart */
+    /** How far from the centre all pieces reach that are pulled apart, level and up. @param {number} apart */
     reach(apart) {
         if (this.#reached.apart !== apart) {
             this.#reached = { apart, reach: reachOf(this.#solid?.pieces ?? [], apart) };
@@ -145,7 +145,7 @@ export class SolidPainter {
         const pixels = 2 * ratio;
         look.axes.forEach((axis, k) => gl.uniform3fv(at[["right", "up", "toward"][k]], axis));
         const scale = look.scale * pixels;
-        gl.uniform3f(at.size, scale / width, scale / height, 1 / (1.001 * this.reach(apart) || 1));
+        gl.uniform3f(at.size, scale / width, scale / height, 1 / (1.001 * Math.hypot(...this.reach(apart)) || 1));
         gl.uniform2f(at.pan, (look.pan[0] * pixels) / width, (look.pan[1] * pixels) / height);
         gl.enableVertexAttribArray(place);
         gl.enableVertexAttribArray(direction);

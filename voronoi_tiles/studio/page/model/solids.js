@@ -66,17 +66,21 @@ export function cornersOf({ positions, triangles, normals }) {
     return buffer;
 }
 
-/** How far from the centre vertices are at most where pieces are pulled apart. @type {(pieces: readonly Piece[], apart: number) => number} */
+/**
+ * How far from the centre vertices are at most where pieces are pulled apart: level, and up or down.
+ * @type {(pieces: readonly Piece[], apart: number) => [number, number]}
+ */
 export function reachOf(pieces, apart) {
-    let most = 0;
+    let [level, up] = [0, 0];
     for (const piece of pieces) {
         const { positions } = piece;
         const [x, y] = pulled(piece, apart);
         for (let k = 0; k < positions.length; k += 3) {
-            most = Math.max(most, (positions[k] + x) ** 2 + (positions[k + 1] + y) ** 2 + positions[k + 2] ** 2);
+            level = Math.max(level, (positions[k] + x) ** 2 + (positions[k + 1] + y) ** 2);
+            up = Math.max(up, Math.abs(positions[k + 2]));
         }
     }
-    return Math.sqrt(most);
+    return [Math.sqrt(level), up];
 }
 
 /** How far a piece is moved that is pulled away from the centre by a share of its distance. @type {(piece: Pick<Piece, "middle">, apart: number) => Vector} */

@@ -194,8 +194,12 @@ export class SolidView {
         const canvas = this.#canvas;
         if (this.#fits) {
             this.#look.pan = [0, 0];
-            const side = Math.min(canvas.clientWidth, canvas.clientHeight);
-            this.#look.scale = (FILLED * side) / (2 * this.#painter.reach(apart) || side);
+            const [level, up] = this.#painter.reach(apart);
+            const tilt = (this.#look.tilt * Math.PI) / 180;
+            // The same from all sides: it does not grow while it is turned about the vertical.
+            const high = level * Math.abs(Math.sin(tilt)) + up * Math.cos(tilt);
+            this.#look.scale =
+                (FILLED / 2) * Math.min(canvas.clientWidth / (level || 1), canvas.clientHeight / (high || 1));
         }
         this.#painter.paint(this.#look, apart, this.#ratio);
     }
