@@ -233,6 +233,21 @@ def test_a_tile_that_falls_apart_is_refused() -> None:
         lofted(design_of("p1", [pair, third], keys=keys))
 
 
+def test_layers_are_where_they_are_asked_for() -> None:
+    """Besides those of the design, each once, and there the tiles are the exact ones; none is outside of the solid."""
+    design = design_of()
+    asked = [0.37, 19.9, 20.0]
+    loft = lofted(design, heights=asked)
+    (mesh,) = loft.meshes
+    assert {0.0, *asked} <= set(mesh.vertices[:, 2].tolist())
+    assert prove_loft(loft).passed
+    layers = [level.core.z for level in loft.levels]
+    assert len(layers) == len(set(layers))
+    for outside in (-0.1, 20.1, float("nan")):
+        with pytest.raises(vt.ArgumentError, match="outside of the solid, which is 20 high"):
+            lofted(design, heights=[outside])
+
+
 def test_a_flat_design_has_no_loft() -> None:
     """It is said what to write."""
     with pytest.raises(vt.ArgumentError, match=r"the design is flat. Write \[solid\]"):

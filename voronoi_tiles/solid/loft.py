@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cache, cached_property
 from itertools import chain, pairwise
@@ -67,15 +68,16 @@ class Loft:
         return TriangleMesh(self.vertices.located(points) * self.design.unit_mm, triangles)
 
 
-def lofted(design: Design, *, accuracy: float = ACCURACY_MM) -> Loft:
+def lofted(design: Design, *, accuracy: float = ACCURACY_MM, heights: Iterable[float] = ()) -> Loft:
     """The solids of a design that has one; chords of layers are within `accuracy` millimetres of their arcs.
 
-    Where walls would cross between two layers there is one more, and where chords cross in one they are finer. Raises
-    ArgumentError for a flat design, LoftError with the height where copies meet, or where tiles change in a way that
-    has no walls.
+    There is an exact layer at each of `heights`, in the design's units, besides those that the design asks for. Where
+    walls would cross between two layers there is one more, and where chords cross in one they are finer. Raises
+    ArgumentError for a flat design and for heights outside of the solid, LoftError with the height where copies meet,
+    or where tiles change in a way that has no walls.
     """
     motion = Motion.of(design)
-    heights = motion.layers.tolist()
+    exact = motion.heights_with(heights)
 
     @cache
     def layer_at(z: float) -> ExactLayer:
@@ -85,13 +87,13 @@ def lofted(design: Design, *, accuracy: float = ACCURACY_MM) -> Loft:
         except TouchingCopiesError as error:
             raise LoftError(str(error).partition(". ")[0], z, remedy="Copies must keep apart at all heights.") from None
 
-    layers = [layer_at(z) for z in heights]
+    layers = [layer_at(z) for z in exact]
     for layer in layers:
         if layer.stabilizers != layers[0].stabilizers:
             raise LoftError("copies of a site coincide", layer.z, remedy="Copies must keep apart at all heights.")
-    nearest = approach(motion, layers[0].action, layers[0].stabilizers, heights)
+    nearest = approach(motion, layers[0].action, layers[0].stabilizers, exact)
     for _ in range(_ROUNDS):
-        layers = [layer_at(z) for z in heights]
+        layers = [layer_at(z) for z in exact]
         events = [events_between(low, high, layer_at, motion.height) for low, high in pairwise(layers)]
         levels = levels_of(layers, events)
         solids = solids_of([site.name for site in design.noded], levels, accuracy / design.unit_mm)
@@ -99,7 +101,7 @@ def lofted(design: Design, *, accuracy: float = ACCURACY_MM) -> Loft:
         crossed = [crossed_sections(mesh) for mesh in loft.meshes]
         if not any(map(len, chain(*crossed))):
             return loft
-        heights = sorted({*heights, *(z / design.unit_mm for sections in crossed for z in sections.between.tolist())})
+        exact = sorted({*exact, *(z / design.unit_mm for sections in crossed for z in sections.between.tolist())})
         if any(len(sections.levels) for sections in crossed):
             accuracy /= 4
     at = next(chain(*chain(*crossed)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from math import radians
@@ -82,6 +82,18 @@ class Motion:
         near = np.abs(equal[:, None] - keys).min(axis=1) < 1e-6 * self.height
         kept = equal[~near | (equal == 0.0) | (equal == self.height)]
         return np.unique(np.concatenate((kept, keys)))
+
+    def heights_with(self, asked: Iterable[float]) -> list[float]:
+        """The heights of `layers` and others that are asked for, ascending; those close by give way to these.
+
+        Raises ArgumentError for heights that are outside of the solid.
+        """
+        wanted = np.unique(np.array([*asked, 0.0, self.height], np.float64))
+        if not (0.0 <= wanted[0] <= wanted[-1] <= self.height):  # not a number is the last one
+            raise ArgumentError(f"a layer is asked for outside of the solid, which is {self.height:g} high")
+        near = np.abs(self.layers[:, None] - wanted).min(axis=1) < 1e-6 * self.height
+        found: list[float] = np.unique(np.concatenate((self.layers[~near], wanted))).tolist()
+        return found
 
     def at(self, z: float) -> list[NodedSite]:
         """The sites at a height."""
