@@ -47,7 +47,7 @@ def test_a_solid_is_read() -> None:
     """Height, motion and keys are there, and what is not written has its default."""
     design = vt.Design.loads(FLAT + SOLID)
     assert design.solid is not None
-    assert (design.solid.height, design.solid.layers, design.solid.turn) == (20, 41, 30)
+    assert (design.solid.height, design.solid.layers, design.solid.turn) == (20, 5, 30)
     assert (design.solid.shift, design.solid.scale, design.solid.about) == (0j, 1.0, 15 + 7j)
     (key,) = design.solid.keys
     assert (key.z, key.site, len(key.strokes)) == (10, None, 2)

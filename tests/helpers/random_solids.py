@@ -137,4 +137,4 @@ def random_solid(seed: int, kind: int, group: str | None = None) -> vt.Design:
     cell = _cell(rng, chosen)
     lattice = chosen.lattice(cell["a"], cell.get("b"), cell.get("angle"))
     sites, motion = KINDS[kind](rng, lattice, chosen)
-    return vt.Design(chosen, cell, sites, solid=vt.Solid(HEIGHT, layers=int(rng.choice([11, 21])), **motion))
+    return vt.Design(chosen, cell, sites, solid=vt.Solid(HEIGHT, layers=int(rng.choice([2, 11])), **motion))

@@ -280,12 +280,14 @@ def test_the_proof_sees_what_is_wrong() -> None:
         vertices[wall, 0] += by
         return vertices
 
-    slightly = prove_loft(broken(loft, moved(1e-9)))
+    slightly = prove_loft(broken(loft, moved(1e-8)))
     assert slightly.distance > 1e-12
     assert slightly.unshared > 0
     assert slightly.volume > 1e-13
     assert {sentence.split(" is ")[0] for sentence in slightly.failures} >= {"distance", "unshared triangles"}
     assert prove_loft(broken(loft, moved(30.0))).crossings > 0
+    assert prove_loft(broken(loft, moved(0.3))).deviation > 0.1
+    assert prove_loft(loft)._replace(deviation=float("nan")).failures == ("deviation is nan, the limit 0.05",)
     assert prove_loft(broken(loft, triangles=mesh.triangles[1:])).open_meshes == 1
     doubled = np.concatenate((mesh.triangles, mesh.triangles + len(mesh.vertices)))
     assert prove_loft(broken(loft, np.concatenate((mesh.vertices, mesh.vertices)), doubled)).handles == 1
@@ -302,24 +304,40 @@ def test_the_proof_sees_what_is_wrong() -> None:
 
 
 def test_there_are_more_layers_where_walls_would_cross() -> None:
-    """Beside a stroke that becomes another one walls would cross between the first two layers: one more is between."""
-    snake = [
-        22.8 + 30.3j,
-        21.7 + 30.1j,
-        21.4 + 31j,
-        21.3 + 32.2j,
-        20.7 + 32.6j,
-        19.7 + 32.4j,
-        18.9 + 32.7j,
-        18.8 + 33.8j,
-    ]
-    other = [18.8 + 30.4j, 19.6 + 30.7j, 20.1 + 31.3j, 20.1 + 32.2j, 20.2 + 33.1j, 21 + 33.4j, 22.3 + 33.5j, 23 + 33.9j]
-    beside = vt.polyline([14.4 + 7.2j, 14.5 + 5.9j, 15.3 + 5.2j, 16.3 + 4.6j, 16.6 + 3.4j])
-    sites = [vt.Site(vt.polyline(snake), name="snake"), vt.Site(beside, name="beside")]
-    keys = [vt.Key(20, vt.polyline(other), site="snake")]
-    loft, proof = proved_loft(design_of("p6", sites, layers=11, turn=-39, about=32.3 + 11.9j, keys=keys))
+    """Where walls may be off by much they would cross between the first two layers: one more is between."""
+    design = random_solid(34, 4)
+    assert design.solid is not None
+    solid = vt.Solid(20, layers=2, turn=design.solid.turn, about=design.solid.about)
+    loft, proof = proved_loft(design.replace(solid=solid), accuracy=2.0)
     assert proof.passed
-    assert [level.core.z for level in loft.levels[:4]] == [0, 1, 2, 4]
+    assert [level.core.z for level in loft.levels] == [0, 5, 10, 20]
+
+
+def test_gentle_solids_have_few_layers() -> None:
+    """What moves straight has those of the design, what turns has the more, the less it may be off."""
+    straight = lofted(design_of("p1", shift=(7, -3), layers=3))
+    assert [level.core.z for level in straight.levels] == [0, 10, 20]
+    counts = [
+        len(lofted(design_of(layers=2, turn=90, about=9.5 + 5.5j), accuracy=a).levels) for a in (0.5, 0.05, 0.005)
+    ]
+    assert counts[0] < counts[1] < counts[2]
+
+
+def test_strokes_that_come_round_are_seen_on_their_way() -> None:
+    """Two whole turns between the bottom and the top, which are alike, as half way up: there are layers between."""
+    design = design_of("p1", layers=2, turn=720, about=9.5 + 5.5j)
+    loft, proof = proved_loft(design)
+    assert proof.passed
+    still, _ = proved_loft(design_of("p1", layers=2, shift=(0, 0)))
+    assert len(still.levels) == 2
+    assert len(loft.levels) > 30
+
+
+def test_what_cannot_be_reached_is_refused() -> None:
+    """With what to do: an accuracy that takes too many triangles."""
+    with pytest.raises(vt.ArgumentError, match=r"more than 250,000 triangles. Give a coarser accuracy") as caught:
+        lofted(design_of(), accuracy=1e-5)
+    assert caught.value.exit_code == 2
 
 
 @pytest.mark.slow

@@ -77,9 +77,7 @@ def check(
 
             within = SolidJob(accuracy=accuracy).accuracy or ACCURACY_MM
             loft, _ = proved_loft(tiling.design, accuracy=within)
-            figures = check_slices(
-                loft, accuracy=within, slices=slices or SLICES, renderer=renderer, device=device, method=method
-            )
+            figures = check_slices(loft, slices=slices or SLICES, renderer=renderer, device=device, method=method)
             report = replace(report, figures=(*report.figures, *figures))
     print_figures(tiling.evidence(report), check_text, as_json=as_json)
     with reporting(design):

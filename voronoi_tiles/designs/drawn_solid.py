@@ -67,7 +67,8 @@ class Solid:
 
     At the height z, strokes are interpolated between the `keys`, then scaled by a factor that runs from 1 to `scale`,
     turned by an angle that runs to `turn` degrees, both about the point `about`, and moved by a vector that runs to
-    `shift`. `layers` counts the heights at which tiles are exact, bottom and top among them.
+    `shift`. `layers` counts the heights at which tiles are exact, bottom and top among them; where walls between them
+    would be farther from the tiles than the accuracy, there are more.
 
     >>> import voronoi_tiles as vt
     >>> vt.Solid(20, turn=90, about=15 + 7j).table

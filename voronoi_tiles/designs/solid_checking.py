@@ -15,11 +15,11 @@ from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.tolerance import SITE_EXTENT_MAX
 from voronoi_tiles.designs import schema
 
-LAYERS: Final = 41
-"""How many heights have exact tiles where nobody says; a count."""
+LAYERS: Final = 5
+"""At how many heights tiles are exact at least, where nobody says; a count. Others are added as accuracy needs them."""
 
 LAYERS_MAX: Final = 2_000
-"""Most of them; a count. They take about ten seconds; a millimetre of a print has 20 at most."""
+"""Most of them, with those that are added; a count. They take about ten seconds, and a millimetre of a print has 20."""
 
 TRAVEL_MAX: Final = 100.0
 """The longest way of a point from the bottom to the top; relative to the square root of the cell's area. Each part of
@@ -49,7 +49,7 @@ class DrawnInHeight(NamedTuple):
 class CheckedSolid(NamedTuple):
     """What a checked solid is; lengths in the design's units, `turn` in degrees, all at the top.
 
-    `sites` has an entry for each site of the design.
+    `layers` is how many heights have exact tiles at least; `sites` has an entry for each site of the design.
     """
 
     height: float

@@ -30,15 +30,16 @@ class Approach(NamedTuple):
     z: float
 
 
-class _CopyPairs(NamedTuple):
+class CopyPairs(NamedTuple):
     """Pairs of a site and the copy of one: numbers `site` and `other` (intp, n), and the motion of the copy `code`."""
 
     site: Ints
     other: Ints
     code: Codes
 
-    def take(self, places: Ints) -> _CopyPairs:
-        return _CopyPairs(self.site[places], self.other[places], self.code[places])
+    def take(self, places: Ints) -> CopyPairs:
+        """Some of them."""
+        return CopyPairs(self.site[places], self.other[places], self.code[places])
 
 
 def approach(
@@ -51,13 +52,13 @@ def approach(
     where copies come so near that they are taken to meet.
     """
     apart = _LOOKED_AT * abs(action.lattice.reduced_basis[0])
-    every = _pairs(motion, action, stabilizers, heights, apart)
+    every = copy_pairs(motion, action, stabilizers, heights, apart)
     proved, seen, where = apart, apart, heights[0]
     if not len(every.code):
         return Approach(proved, seen, where)
     nearest = NEAREST * action.size
 
-    def distances(z: float, pairs: _CopyPairs) -> Floats:
+    def distances(z: float, pairs: CopyPairs) -> Floats:
         nonlocal seen, where
         found = _distances(motion, action, z, pairs)
         if len(found) and found.min() < seen:
@@ -93,9 +94,9 @@ def approach(
     return Approach(proved, seen, where)
 
 
-def _pairs(
+def copy_pairs(
     motion: Motion, action: Action, stabilizers: Sequence[tuple[int, ...]], heights: Sequence[float], apart: float
-) -> _CopyPairs:
+) -> CopyPairs:
     """All pairs whose boxes, swept over the heights, are no more than `apart` from each other."""
     drawn = [motion.points(z) for z in heights]
     steps = [motion.speed(low, high) * (high - low) / 2 for low, high in pairwise(heights)]
@@ -122,7 +123,7 @@ def _pairs(
                         if _gap(box, corners + (s * action.lattice.a + t * action.lattice.b)) <= apart:
                             rows.append((i, j, code))
     table = np.array(rows, np.int64).reshape(-1, 3)
-    return _CopyPairs(table[:, 0].astype(np.intp), table[:, 1].astype(np.intp), table[:, 2].copy())
+    return CopyPairs(table[:, 0].astype(np.intp), table[:, 1].astype(np.intp), table[:, 2].copy())
 
 
 def _gap(one: Complexes, two: Complexes) -> float:
@@ -134,7 +135,7 @@ def _gap(one: Complexes, two: Complexes) -> float:
     return max(gaps)
 
 
-def _distances(motion: Motion, action: Action, z: float, pairs: _CopyPairs) -> Floats:
+def _distances(motion: Motion, action: Action, z: float, pairs: CopyPairs) -> Floats:
     """How far the sites and copies of pairs are apart at a height, float64 (n,)."""
     drawn = motion.points(z)
     found = np.empty(len(pairs.code))

@@ -2,28 +2,29 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Floats, Ints, offsets_of
-from voronoi_tiles.base.components import components
+from voronoi_tiles.base.arrays import Bools, Ints
+from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.solid.correspondence import Correspondence, corresponding
+from voronoi_tiles.solid.edge_steps import stepped, turning
 from voronoi_tiles.solid.events import Event, LoftError, matched
 from voronoi_tiles.solid.layers import ExactLayer
-from voronoi_tiles.solid.levels import VertexChains, carried, sagging, sampled, weighed
+from voronoi_tiles.solid.levels import VertexChains, carried, sampled
 from voronoi_tiles.solid.loft_caps import cap, outline_of
 from voronoi_tiles.solid.vertices import VertexTable, Vertices
 from voronoi_tiles.solid.walls import Walls, walls
 from voronoi_tiles.vector.complex.representatives import Points
 
-_OTHERS = "Write another number of `layers`."
+TRIANGLES_MAX: Final = 250_000
+"""Of how many triangles solids are, at most; a count. They take about ten seconds, and slicers are slow with more."""
 
-_FINER = 8
-"""How often edges that are too far from their chords get more of them, at most; a count."""
+_OTHERS: Final = "Write another number of `layers`."
 
 
 class _View(NamedTuple):
@@ -85,7 +86,7 @@ def solids_of(
 ) -> tuple[Vertices, tuple[LoftTile, ...]]:
     """The vertices and the solids of sites of these names; chords are within `accuracy` units of their arcs.
 
-    Raises LoftError where levels do not fit each other.
+    Raises LoftError where levels do not fit each other, ArgumentError where they would be of too many triangles.
     """
     table, views = VertexTable(levels[0].core.action), [level.views for level in levels]
     slabs = []
@@ -95,6 +96,12 @@ def solids_of(
             raise LoftError("tiles exchange neighbours twice", above.layer.z, remedy=_OTHERS)
         slabs.append(same)
     chains, labels = _chains(table, levels, views, slabs, accuracy), _labels(levels, views, slabs)
+    count = sum(int(chains[k][1].counts[view.layer.edge].sum()) for k, (_, view) in enumerate(views))
+    if 2 * count > TRIANGLES_MAX:  # each side of a chain is that of one below and of one above
+        raise ArgumentError(
+            f"the solids would have more than {TRIANGLES_MAX:,} triangles",
+            remedy="Give a coarser accuracy, fewer `layers`, or strokes of fewer elements.",
+        )
     vertices = table.snapshot()
     between = [
         (walls(vertices, below.layer, above.layer, (chains[k][1], chains[k + 1][0]), slabs[k]), labels[k][1])
@@ -104,23 +111,18 @@ def solids_of(
     return vertices, tuple(_tile(vertices, between, closed, k, name) for k, name in enumerate(names))
 
 
-def levels_of(layers: Sequence[ExactLayer], events: Sequence[Sequence[Event]]) -> list[LoftLevel]:
-    """The levels of layers and of the events between them; an event at a layer is part of it."""
-    levels = [LoftLevel(layers[0])]
-    for (low, high), found in zip(pairwise(layers), events, strict=True):
-        top = LoftLevel(high)
-        for event in found:
-            if event.core is low:
-                level = levels[-1]
-            elif event.core is high:
-                level = top
-            else:
-                level = LoftLevel(event.core)
-                levels.append(level)
-            level.limit = max(level.limit, event.limit)
-            level.lower = level.lower if event.low is event.core else event.low
-            level.upper = level.upper if event.high is event.core else event.high
-        levels.append(top)
+def levels_of(line: Iterable[ExactLayer | Event]) -> list[LoftLevel]:
+    """The levels of layers and of the events between them, from below; an event at a layer is part of it."""
+    levels: list[LoftLevel] = []
+    for item in line:
+        core = item.core if isinstance(item, Event) else item
+        if not levels or levels[-1].core is not core:
+            levels.append(LoftLevel(core))
+        if isinstance(item, Event):
+            level = levels[-1]
+            level.limit = max(level.limit, item.limit)
+            level.lower = level.lower if item.low is core else item.low
+            level.upper = level.upper if item.high is core else item.high
     return levels
 
 
@@ -131,53 +133,23 @@ def _chains(
     slabs: Sequence[Correspondence],
     accuracy: float,
 ) -> list[tuple[VertexChains, VertexChains]]:
-    """The chains of each level, as seen from below and from above.
-
-    An edge has as many steps in all levels in which it is there: as it needs where it needs most.
-    """
-    weights = [weighed(level.core, accuracy) for level in levels]
-    needed = [
-        np.add.reduceat(weight, level.core.quotient.offsets[:-1]) for weight, level in zip(weights, levels, strict=True)
-    ]
-    first = offsets_of([len(need) for need in needed])
-    links = [np.zeros((2, 0), np.intp)]
+    """The chains of each level, as seen from below and from above."""
+    turns = [np.zeros(len(level.core.lengths)) for level in levels]
     for k, same in enumerate(slabs):
         below, above = views[k][1], views[k + 1][0]
-        one = _core_edges(levels[k].core, below)[below.layer.edge[same.low]]
-        two = _core_edges(levels[k + 1].core, above)[above.layer.edge[same.high]]
-        both = (one >= 0) & (two >= 0)
-        links.append(np.stack((first[k] + one[both], first[k + 1] + two[both])))
-    one, two = np.concatenate(links, axis=1)
-    family = components(int(first[-1]), one, two)
-    steps = _steps(family, np.concatenate(needed))
-    for _ in range(_FINER):
-        # A vertex that is moved to where arcs meet leaves longer chords beside it.
-        sag = np.concatenate(
-            [
-                sagging(level.core, steps[a:b], weight)
-                for level, weight, (a, b) in zip(levels, weights, pairwise(first.tolist()), strict=True)
-            ]
-        )
-        if sag.max(initial=0.0) <= accuracy:
-            break
-        steps = _steps(family, steps * np.clip(np.sqrt(sag / accuracy), 1.0, 2.0))
+        turned = turning(below.layer, above.layer, same)
+        for at, view, use in ((k, below, same.low), (k + 1, above, same.high)):
+            edge = _core_edges(levels[at].core, view)[view.layer.edge[use]]
+            np.maximum.at(turns[at], edge[edge >= 0], turned[edge >= 0])
     found = []
-    for k, level in enumerate(levels):
-        own = sampled(table, level.core, level.points, steps[first[k] : first[k + 1]], weights[k])
+    for level, turn, (below, above) in zip(levels, turns, views, strict=True):
+        own = sampled(table, level.core, level.points, *stepped(level.core, turn, accuracy))
         lower, upper = (
             own if layer is level.core else carried(layer, short, level.core, own, same)
-            for layer, short, same in views[k]
+            for layer, short, same in (below, above)
         )
         found.append((lower, upper))
     return found
-
-
-def _steps(family: Ints, needed: Floats) -> Ints:
-    """For each edge the steps that the neediest of its family takes, an even number."""
-    most = np.ones(len(needed))
-    np.maximum.at(most, family, needed)
-    steps = np.ceil(most).astype(np.intp)[family]
-    return steps + steps % 2  # halves are images of each other where a motion turns an edge round
 
 
 def _core_edges(core: ExactLayer, view: _View) -> Ints:

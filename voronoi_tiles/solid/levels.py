@@ -23,7 +23,7 @@ _KINK: Final = 0.05
 """How far a bisector must turn in a vertex for a wall to have a vertex there; radians."""
 
 
-_LONGEST: Final = 1 / 16
+_LONGEST: Final = 1 / 8
 """How long a step is at most, relative to the cell's size."""
 
 _SEEN: Final = np.linspace(0.0, 1.0, 9)
@@ -133,6 +133,15 @@ def _on_arcs(paths: Paths, lengths: Floats, at: Floats, owner: Ints) -> Complexe
     line = start * s + end * t
     curve = (start * (s * s) + end * (t * t)) + paths.control[arc, 0] * (2.0 * (s * t))
     return np.where(bent, curve, line)
+
+
+def along_edges(layer: ExactLayer, shares: Floats) -> Complexes:
+    """Points of all edges of a layer at these shares of their lengths, complex128 (edges, shares)."""
+    paths = layer.quotient.paths()
+    ends = np.cumsum(paths.lengths)
+    begin, end = (ends - paths.lengths)[paths.offsets[:-1]], ends[paths.offsets[1:] - 1]
+    at = begin[:, None] * (1.0 - shares) + end[:, None] * shares
+    return _on_arcs(paths, paths.lengths, at.ravel(), np.repeat(np.arange(len(begin)), len(shares))).reshape(at.shape)
 
 
 def sagging(layer: ExactLayer, steps: Ints, weight: Floats) -> Floats:

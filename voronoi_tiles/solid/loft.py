@@ -4,38 +4,47 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import cache, cached_property
-from itertools import chain, pairwise
+from functools import cached_property
+from itertools import chain
+from math import ceil
 from typing import Final
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Ints
-from voronoi_tiles.base.errors import TouchingCopiesError
+from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.designs.design import Design
+from voronoi_tiles.designs.solid_checking import LAYERS_MAX
 from voronoi_tiles.solid.approach import Approach, approach
 from voronoi_tiles.solid.assembly import LoftLevel, LoftTile, levels_of, solids_of
-from voronoi_tiles.solid.events import LoftError, events_between
-from voronoi_tiles.solid.layers import ExactLayer
+from voronoi_tiles.solid.deviation import Deviation, deviation
+from voronoi_tiles.solid.events import LoftError
+from voronoi_tiles.solid.layering import Layering
 from voronoi_tiles.solid.mesh import TriangleMesh
 from voronoi_tiles.solid.motion import Motion
-from voronoi_tiles.solid.sections import crossed_sections
+from voronoi_tiles.solid.sections import CrossedSections, crossed_sections
 from voronoi_tiles.solid.vertices import Vertices
 from voronoi_tiles.vector.complex.representatives import Points
 from voronoi_tiles.vector.motion_codes import code_of, composed, motion_of
 from voronoi_tiles.vector.motions import reverses_orientation, to_motion
 
 ACCURACY_MM: Final = 0.05
-"""How far chords of a layer are from its arcs where nobody says; millimetres. What a printer's nozzle cannot show."""
+"""How far walls are from where strokes have them where nobody says; millimetres. What a nozzle cannot show."""
 
-_ROUNDS: Final = 8
+_ROUNDS: Final = 10
 """How often layers are added, or chords made finer, at most; a count."""
+
+_PARTS: Final = 8
+"""Into how many parts a slab is cut at once, at most; a count. What is far off tells little of how far it will be."""
+
+_AIMED: Final = 0.9
+"""What slabs that are cut are to be off, at most; relative to the accuracy. How far is guessed."""
 
 
 @dataclass(frozen=True, eq=False)
 class Loft:
-    """The solids of a design's sites, in the places where these are drawn."""
+    """The solids of a design's sites, in the places where these are drawn, within `accuracy` millimetres."""
 
     design: Design
     motion: Motion
@@ -43,11 +52,23 @@ class Loft:
     levels: tuple[LoftLevel, ...]
     vertices: Vertices
     tiles: tuple[LoftTile, ...]
+    accuracy: float
 
     @cached_property
     def meshes(self) -> tuple[TriangleMesh, ...]:
         """The mesh of each site, in millimetres."""
         return tuple(self._mesh(tile.points, tile.triangles) for tile in self.tiles)
+
+    @cached_property
+    def deviation(self) -> Deviation:
+        """How far the walls of the meshes are, half way between levels, from where the strokes have them."""
+        core = self.levels[0].core
+        return deviation(self.meshes, self.motion, core.action, core.stabilizers, self.design.unit_mm)
+
+    @cached_property
+    def crossed(self) -> tuple[CrossedSections, ...]:
+        """For each mesh where its sections cross themselves."""
+        return tuple(map(crossed_sections, self.meshes))
 
     def image(self, site: int, operation: Operation | str) -> TriangleMesh:
         """The mesh of the copy of a site's solid under an operation of the group, in millimetres.
@@ -69,40 +90,66 @@ class Loft:
 
 
 def lofted(design: Design, *, accuracy: float = ACCURACY_MM, heights: Iterable[float] = ()) -> Loft:
-    """The solids of a design that has one; chords of layers are within `accuracy` millimetres of their arcs.
+    """The solids of a design that has one; walls are within `accuracy` millimetres of where strokes have them.
 
-    There is an exact layer at each of `heights`, in the design's units, besides those that the design asks for. Where
-    walls would cross between two layers there is one more, and where chords cross in one they are finer. Raises
-    ArgumentError for a flat design and for heights outside of the solid, LoftError with the height where copies meet,
-    or where tiles change in a way that has no walls.
+    There are exact layers at those heights that the design asks for, at `heights`, in its units, and at others where
+    walls half way between two would be farther off, or would cross. Where chords cross in one they are finer. Raises
+    ArgumentError for a flat design, for heights outside of the solid, and where the accuracy takes more layers or
+    triangles than there may be, LoftError with the height where copies meet, where tiles change in a way that has no
+    walls, or where walls do not become right.
     """
     motion = Motion.of(design)
-    exact = motion.heights_with(heights)
-
-    @cache
-    def layer_at(z: float) -> ExactLayer:
-        own = () if z == 0.0 else layer_at(0.0).stabilizers
-        try:
-            return ExactLayer.of(z, motion.at(z), design.group, design.lattice, own)
-        except TouchingCopiesError as error:
-            raise LoftError(str(error).partition(". ")[0], z, remedy="Copies must keep apart at all heights.") from None
-
-    layers = [layer_at(z) for z in exact]
+    exact, layering = motion.heights_with(heights), Layering(design, motion)
+    layers = [layering.layer_at(z) for z in exact]
     for layer in layers:
         if layer.stabilizers != layers[0].stabilizers:
             raise LoftError("copies of a site coincide", layer.z, remedy="Copies must keep apart at all heights.")
     nearest = approach(motion, layers[0].action, layers[0].stabilizers, exact)
+    layering.add(exact)
+    chords = accuracy
     for _ in range(_ROUNDS):
-        layers = [layer_at(z) for z in exact]
-        events = [events_between(low, high, layer_at, motion.height) for low, high in pairwise(layers)]
-        levels = levels_of(layers, events)
-        solids = solids_of([site.name for site in design.noded], levels, accuracy / design.unit_mm)
-        loft = Loft(design, motion, nearest, tuple(levels), *solids)
-        crossed = [crossed_sections(mesh) for mesh in loft.meshes]
-        if not any(map(len, chain(*crossed))):
-            return loft
-        exact = sorted({*exact, *(z / design.unit_mm for sections in crossed for z in sections.between.tolist())})
-        if any(len(sections.levels) for sections in crossed):
-            accuracy /= 4
-    at = next(chain(*chain(*crossed)))
-    raise LoftError("walls cross", at / design.unit_mm, remedy="Write more `layers`, or draw keys that differ less.")
+        levels = levels_of(layering)
+        solids = solids_of([site.name for site in design.noded], levels, chords / design.unit_mm)
+        loft = Loft(design, motion, nearest, tuple(levels), *solids, accuracy)
+        if loft.deviation.worst <= accuracy:
+            if not any(map(len, chain(*loft.crossed))):
+                return loft
+            more = [float(z) / design.unit_mm for crossed in loft.crossed for z in crossed.between]
+            if any(len(crossed.levels) for crossed in loft.crossed):
+                chords /= 4
+        else:
+            more = _wanted(loft, accuracy)
+        if layering.count + len(more) > LAYERS_MAX:
+            raise ArgumentError(
+                f"walls within {accuracy:g} mm would take more than {LAYERS_MAX:,} layers",
+                remedy="Give a coarser accuracy, or draw keys that differ less.",
+            )
+        if not layering.add(more) and chords == accuracy:
+            break
+    raise _refused(loft)
+
+
+def _wanted(loft: Loft, accuracy: float) -> list[float]:
+    """The heights at which layers are wanted for walls to be within an accuracy in millimetres; the design's units."""
+    found = loft.deviation
+    off = np.nan_to_num(found.off, nan=np.inf)
+    parts = np.sqrt(off / (_AIMED * accuracy)).clip(2, _PARTS)
+    more: list[float] = []
+    for k in np.flatnonzero(~(found.off <= accuracy)).tolist():
+        low, high = (found.heights[k : k + 2] / loft.design.unit_mm).tolist()
+        more += np.linspace(low, high, ceil(parts[k]) + 1)[1:-1].tolist()
+    return more
+
+
+def _refused(loft: Loft) -> LoftError:
+    """Why a loft that is not right cannot be made so."""
+    found, unit = loft.deviation, loft.design.unit_mm
+    if not found.worst <= loft.accuracy:
+        k = int(np.argmax(found.off))
+        return LoftError(
+            f"walls stay {found.worst:.3g} mm off, however many layers are beside,",
+            float(found.heights[k] + found.heights[k + 1]) / 2 / unit,
+            remedy=f"Give a coarser accuracy than {loft.accuracy:g} mm, or draw keys that differ less.",
+        )
+    at = float(next(chain(*chain(*loft.crossed))))
+    return LoftError("walls cross", at / unit, remedy="Write more `layers`, or draw keys that differ less.")

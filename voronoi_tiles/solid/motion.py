@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from math import radians
+from math import ceil, radians
+from typing import Final
 
 import numpy as np
 
@@ -16,7 +17,11 @@ from voronoi_tiles.designs.design import Design
 from voronoi_tiles.designs.site import NodedSite, build_site
 from voronoi_tiles.designs.solid_checking import CheckedSolid, DrawnInHeight, DrawnStroke, like
 from voronoi_tiles.designs.strokes import ARC_SHARE, is_flat
+from voronoi_tiles.groups.wallpaper import Lattice
 from voronoi_tiles.paths.paths import halves
+
+_FARTHEST: Final = 0.25
+"""How far a point moves at most between two layers; relative to the cell's shorter vector."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +58,7 @@ class Motion:
 
     solid: CheckedSolid
     moving: tuple[SiteMotion, ...]
+    lattice: Lattice
 
     @classmethod
     def of(cls, design: Design) -> Motion:
@@ -67,7 +73,7 @@ class Motion:
             SiteMotion(site.name, np.array([key.z for key in drawn.keys]), _lines(drawn, finest))
             for site, drawn in zip(design.noded, solid.sites, strict=True)
         )
-        return cls(solid, tuple(moving))
+        return cls(solid, tuple(moving), design.lattice)
 
     @property
     def height(self) -> float:
@@ -76,8 +82,13 @@ class Motion:
 
     @cached_property
     def layers(self) -> Floats:
-        """The heights that have exact tiles, ascending: equally spaced, and those of keys among them."""
-        equal = np.linspace(0.0, self.height, self.solid.layers)
+        """The heights that have exact tiles at least, ascending: equally spaced, and those of keys among them.
+
+        Between two of them no point moves farther than a share of the cell: strokes that come round to where they have
+        been are seen on their way.
+        """
+        travel = self.speed(0.0, self.height) * self.height / abs(self.lattice.reduced_basis[0])
+        equal = np.linspace(0.0, self.height, max(self.solid.layers, ceil(travel / _FARTHEST) + 1))
         keys = np.concatenate([site.heights for site in self.moving])
         near = np.abs(equal[:, None] - keys).min(axis=1) < 1e-6 * self.height
         kept = equal[~near | (equal == 0.0) | (equal == self.height)]

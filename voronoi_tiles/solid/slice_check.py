@@ -20,7 +20,7 @@ from voronoi_tiles.raster.reference import decode, encode
 from voronoi_tiles.raster.renderer import Choice, Method, Renderer
 from voronoi_tiles.raster.scene import Pattern
 from voronoi_tiles.solid.cross_sections import filled_section
-from voronoi_tiles.solid.loft import ACCURACY_MM, Loft
+from voronoi_tiles.solid.loft import Loft
 
 SLICES: Final = 8
 """At how many heights a loft is looked at where nobody says; a count."""
@@ -49,7 +49,6 @@ class _Slice(NamedTuple):
 def check_slices(
     loft: Loft,
     *,
-    accuracy: float = ACCURACY_MM,
     slices: int = SLICES,
     samples: int = SAMPLES,
     renderer: Choice = "auto",
@@ -59,11 +58,11 @@ def check_slices(
 ) -> tuple[Figure, Figure]:
     """The figures "slices" and "slice areas" of a loft, half way between levels at heights all the way up.
 
-    A sample may be outside the solid that it belongs to by `accuracy`, in millimetres, within which the loft was made.
+    A sample may be outside the solid that it belongs to by the accuracy within which the loft was made.
     `renderer`, `device`, `method` and `notice` are those of Renderer. Raises RenderError, and ProofError where a solid
     is open.
     """
-    render = Renderer(renderer, device=device, method=method, notice=notice)
+    accuracy, render = loft.accuracy, Renderer(renderer, device=device, method=method, notice=notice)
     found = [_slice(loft, z, render, samples) for z in between_levels(loft, slices)]
     worst = max(found, key=lambda one: float(one.outside.max(initial=0.0)))
     wrong = [one.outside > accuracy for one in found]
@@ -77,8 +76,8 @@ def check_slices(
         float(worst.outside.max(initial=0.0)),
         accuracy,
         "mm",
-        f"the accuracy of chords, between levels too; worst of {len(found)} heights is z = {worst.z / unit:.6g}, more "
-        f"`layers` bring it down; {left_out:,} samples are as near to another copy and left out",
+        f"the accuracy of walls; worst of {len(found)} heights is z = {worst.z / unit:.6g}; {left_out:,} samples are "
+        "as near to another copy and left out",
         Marks(
             np.concatenate([one.place[bad] for one, bad in zip(found, wrong, strict=True)]),
             np.concatenate([one.outside[bad] for one, bad in zip(found, wrong, strict=True)]),

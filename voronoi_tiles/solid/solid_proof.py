@@ -3,7 +3,8 @@
 Tiles that are closed, whose walls are, bit for bit, those of the copies beyond, and whose volumes add up to that of the
 cell, fill the slab without a gap; where their levels and the sections between do not cross themselves, without an
 overlap. That they are the right ones is shown at the levels: vertices are as far from the own strokes as from the
-nearest copy's. And between levels no copies meet.
+nearest copy's; and half way between levels by how far, to first order, walls are from where these distances are alike.
+And between levels no copies meet.
 """
 
 from __future__ import annotations
@@ -20,7 +21,6 @@ from voronoi_tiles.base.tolerance import PROOF_LIMIT
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.solid.loft import ACCURACY_MM, Loft, lofted
 from voronoi_tiles.solid.mesh import TriangleMesh
-from voronoi_tiles.solid.sections import crossed_sections
 from voronoi_tiles.vector.motion_codes import motion_of, operation_of
 
 
@@ -29,7 +29,8 @@ class SolidProof(NamedTuple):
 
     `volume` is the relative error of the tiles' volumes, which must add up to the cell's. `distance` is how far
     vertices at exact layers are from being as far from the own strokes as from the nearest copy's, and `approach` how
-    near copies come to each other at least, as is proved: both relative to the cell's longer side.
+    near copies come to each other at least, as is proved: both relative to the cell's longer side. `deviation` is how
+    far walls are, half way between levels, from where the strokes have them: millimetres, `accuracy` at most.
 
     The others are counts: of meshes that are not closed (`open_meshes`), of meshes that have not as many handles as
     their bottoms have holes (`handles`), of triangles of walls that no copy beyond has, bit for bit and turned round
@@ -38,6 +39,8 @@ class SolidProof(NamedTuple):
 
     volume: float
     distance: float
+    deviation: float
+    accuracy: float
     approach: float
     open_meshes: int
     handles: int
@@ -49,6 +52,7 @@ class SolidProof(NamedTuple):
         figures = [
             ("volume", self.volume, PROOF_LIMIT),
             ("distance", self.distance, PROOF_LIMIT),
+            ("deviation", self.deviation, self.accuracy),
             ("open meshes", self.open_meshes, 0),
             ("handles", self.handles, 0),
             ("unshared triangles", self.unshared, 0),
@@ -87,11 +91,13 @@ def prove_loft(loft: Loft) -> SolidProof:
     return SolidProof(
         volume=abs(total - whole) / whole,
         distance=max(_distances(loft)) / core.action.size,
+        deviation=loft.deviation.worst,
+        accuracy=loft.accuracy,
         approach=loft.approach.proved / core.action.size,
         open_meshes=sum(not mesh.is_closed for mesh in loft.meshes),
         handles=sum(_euler(mesh) != _expected(loft, k) for k, mesh in enumerate(loft.meshes)),
         unshared=sum(_unshared(loft, k) for k in range(len(loft.meshes))),
-        crossings=sum(sum(map(len, crossed_sections(mesh))) for mesh in loft.meshes),
+        crossings=sum(sum(map(len, crossed)) for crossed in loft.crossed),
     )
 
 

@@ -90,7 +90,8 @@ def _said(loft: Loft, proof: SolidProof) -> str:
     """The proof in a line."""
     return (
         f"closed; volume = cell area x height (relative error {proof.volume:.1g}); walls are neighbours', bit for bit; "
-        f"{len(loft.levels)} levels within {proof.distance:.1g} of the exact tiles; between them copies keep apart"
+        f"{len(loft.levels)} levels within {proof.distance:.1g} of the exact tiles, walls between them within "
+        f"{proof.deviation:.2g} mm; copies keep apart at all heights"
     )
 
 

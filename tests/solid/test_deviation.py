@@ -1,0 +1,73 @@
+"""The deviation of walls between levels: against the exact tiles there, and that damage is seen."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import shapely
+from helpers.random_solids import random_solid
+
+import voronoi_tiles as vt
+from voronoi_tiles.solid.cross_sections import filled_section
+from voronoi_tiles.solid.deviation import deviation
+from voronoi_tiles.solid.loft import Loft, lofted
+from voronoi_tiles.solid.mesh import TriangleMesh
+
+BIRD = """
+schema = 1
+group = "p4"
+cell = { a = 60 }
+site = [{ name = "bird", strokes = [{ segment = [[8, 10], [22, 17]] }] }]
+solid = { height = 20, turn = 90, about = [15, 14] }
+"""
+
+
+def exact(loft: Loft, z: float, site: int) -> shapely.Geometry:
+    """The tile of the strokes at a height, from a design that is flat."""
+    sites = []
+    for moving, points in zip(loft.motion.moving, loft.motion.points(z), strict=True):
+        ends = np.cumsum([line.shape[1] for line in moving.lines])
+        lines = np.split(points, ends[:-1])
+        sites.append(vt.Site([vt.polyline(line) if len(line) > 1 else vt.point(line[0]) for line in lines]))
+    named = [vt.Site(one.strokes, name=moving.name) for one, moving in zip(sites, loft.motion.moving, strict=True)]
+    return vt.Design(loft.design.group, loft.design.cell, named).tessellate()[site].to_shapely(accuracy=1e-3)
+
+
+def apart(one: shapely.Geometry, two: shapely.Geometry) -> float:
+    """How far boundaries are from each other, both ways, seen at points a tenth of a millimetre apart."""
+    lines = [shapely.segmentize(shape.boundary, 0.1) for shape in (one, two)]
+    points = [shapely.points(shapely.get_coordinates(line)) for line in lines]
+    return max(float(shapely.distance(at, line).max()) for at, line in zip(points, reversed(lines), strict=True))
+
+
+@pytest.mark.parametrize(("seed", "kind"), [(3, 0), (4, 1), (34, 4)])
+def test_it_is_how_far_sections_are_from_exact_tiles(seed: int, kind: int) -> None:
+    """Half way between any two levels, both ways: what is measured, nearly always, and the accuracy at most."""
+    loft = lofted(random_solid(seed, kind))
+    found = loft.deviation
+    assert found.worst <= loft.accuracy
+    shares = []
+    for k, (low, high) in enumerate(zip(found.heights[:-1], found.heights[1:], strict=True)):
+        if high - low < 1e-3:
+            continue
+        z = float(low + high) / 2
+        off = max(apart(exact(loft, z, site), filled_section(mesh, z)) for site, mesh in enumerate(loft.meshes))
+        assert off <= loft.accuracy + 0.002
+        shares.append(off / found.off[k])
+    assert np.median(shares) == pytest.approx(1.0, abs=0.05)
+
+
+def test_damage_is_seen() -> None:
+    """A vertex that is moved is off in the slabs beside it, by half of that or less, and nowhere else."""
+    loft = lofted(vt.Design.loads(BIRD))
+    (mesh,) = loft.meshes
+    heights = loft.deviation.heights
+    vertices = mesh.vertices.copy()
+    level = len(heights) // 2
+    at = int(np.flatnonzero(vertices[:, 2] == heights[level])[0])
+    vertices[at, :2] += 1.0
+    core = loft.levels[0].core
+    damaged = deviation((TriangleMesh(vertices, mesh.triangles),), loft.motion, core.action, core.stabilizers, 1.0)
+    assert (damaged.off[level - 1 : level + 1] > 0.2).all()
+    others = np.delete(np.arange(len(heights) - 1), [level - 1, level])
+    assert damaged.off[others] == pytest.approx(loft.deviation.off[others])
