@@ -22,7 +22,7 @@ from voronoi_tiles.paths.arrangement import Arrangement, arrangement
 from voronoi_tiles.paths.biarcs import to_arcs
 from voronoi_tiles.paths.offset import OffsetError, offset, round_corners
 from voronoi_tiles.paths.paths import ARC, LINE, QUAD, Paths
-from voronoi_tiles.paths.segments import tangent_at
+from voronoi_tiles.paths.segments import point_at, tangent_at
 from voronoi_tiles.vector.outline import Outline
 
 DISTANCES = (0.025, 0.15, 0.5, -0.025, -0.15, -0.5)
@@ -376,3 +376,22 @@ def test_a_lost_part_fails_the_check(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(offset_module, "arrangement", moved)
     with pytest.raises(OffsetError, match="not at its distance"):
         offset(SQUARE, 0.1)
+
+
+@settings(max_examples=40, deadline=None)
+@given(SEEDS, st.floats(0.02, 3), st.sampled_from([1, -1]))
+def test_feet_are_where_the_edge_is_nearest(seed: int, size: float, sign: int) -> None:
+    """From the foot of each point of an offset it is as far to the point as the distance, at a right angle."""
+    region = star(seed)
+    result = offset(region, sign * size)
+    assert result.feet is not None
+    segment, share = result.feet
+    assert len(segment) == len(result.paths.start)
+    for t in (0.0, 0.3, 1.0):
+        at = share[:, 0] * (1 - t) + share[:, 1] * t
+        foot = point_at(region, segment, np.minimum(at, 1.0))
+        there = point_at(result.paths, np.arange(len(segment)), np.full(len(segment), t))
+        assert np.abs(np.abs(there - foot) - size) == pytest.approx(0, abs=1e-9)
+        along = at <= 1.0
+        ahead = tangent_at(region, segment[along], at[along])
+        assert (there - foot)[along] / ahead == pytest.approx(-1j * sign * size, abs=1e-6)

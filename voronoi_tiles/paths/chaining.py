@@ -93,10 +93,13 @@ def _paired(parts: Arrangement, paths: Paths, comes: list[int], goes: list[int])
     return pairs
 
 
-def built(parts: Arrangement, paths: Paths, rings: list[Ints], tolerance: float) -> Paths:
-    """Rings of parts as closed paths; parts that go on along one segment are one again."""
+def built(parts: Arrangement, paths: Paths, rings: list[Ints], tolerance: float) -> tuple[Paths, Ints, Ints]:
+    """Rings of parts as closed paths, and of each of their segments, intp (n,), the first and the last part.
+
+    Parts that go on along one segment are one again.
+    """
     if not rings:
-        return Paths.empty()
+        return Paths.empty(), np.zeros(0, np.intp), np.zeros(0, np.intp)
     firsts, lasts, counts = [], [], []
     for parts_of in rings:
         before = np.roll(parts_of, 1)
@@ -124,4 +127,4 @@ def built(parts: Arrangement, paths: Paths, rings: list[Ints], tolerance: float)
         offsets=np.append(0, np.cumsum(counts)).astype(np.intp),
         closed=np.ones(len(rings), np.bool_),
     )
-    return straightened(whole, tolerance)
+    return straightened(whole, tolerance), first, last

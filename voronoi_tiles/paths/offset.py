@@ -6,12 +6,12 @@ everything cut where it crosses; what is nearer to the region's edge than the di
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import ClassVar, Final
+from dataclasses import dataclass, replace
+from typing import ClassVar, Final, NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, Floats, next_in_ring
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints, next_in_ring, ranges
 from voronoi_tiles.base.box_index import BoxIndex
 from voronoi_tiles.base.errors import VoronoiTilesError
 from voronoi_tiles.base.tolerance import EPSILON
@@ -50,15 +50,27 @@ class OffsetError(VoronoiTilesError, ArithmeticError):
         return f"{self.message} at ({self.place.real:.6g}, {self.place.imag:.6g})."
 
 
+class Feet(NamedTuple):
+    """Of each segment of an offset where on the region's edge what it is the offset of lies.
+
+    That is the region's segment `segment` (intp, n), between the shares `share` (float64, n x 2) of it: from 0 to 1, and
+    from 1 to 2 of the turn in the corner at its end.
+    """
+
+    segment: Ints
+    share: Floats
+
+
 @dataclass(frozen=True, eq=False)
 class Offset:
     """A region's offset: closed rings of LINEs and ARCs, and what of the region was lost on the way.
 
-    Outer rings run counter-clockwise, holes clockwise.
+    Outer rings run counter-clockwise, holes clockwise. `feet` is None where more was done than a single offset.
     """
 
     paths: Paths
     lost: tuple[Lost, ...]
+    feet: Feet | None = None
 
 
 def offset(region: Paths, distance: float) -> Offset:
@@ -71,13 +83,14 @@ def offset(region: Paths, distance: float) -> Offset:
     itself. Raises ValueError for other segments or open paths, OffsetError where no change helps.
     """
     _check_region(region, distance)
-    region = without_points(region)
+    long, region = np.flatnonzero(region.start != region.end), without_points(region)
     if distance == 0 or not len(region):
-        return Offset(region, ())
+        return Offset(region, (), Feet(long, np.tile([0.0, 1.0], (len(long), 1))))
     failure: OffsetError | None = None
     for change in _RETRIES:
         try:
-            return _Attempt(region, distance * (1 + change)).result()
+            result, feet = _Attempt(region, distance * (1 + change)).result()
+            return replace(result, feet=Feet(long[feet.segment], feet.share))
         except OffsetError as error:
             failure = failure or error
     assert failure is not None
@@ -121,8 +134,8 @@ class _Attempt:
         # Curves that touch or cross at small angles are apart by the tolerance over this length.
         self.blurred = 16 * float(np.sqrt(self.tolerance * size))
 
-    def result(self) -> Offset:
-        """The offset; raises OffsetError."""
+    def result(self) -> tuple[Offset, Feet]:
+        """The offset, and its feet; raises OffsetError."""
         raw = raw_offset(self.region, self.distance, self.tolerance)
         parts = arrangement(raw.paths, raw.tail, raw.head, raw.nodes, self.tolerance)
         middle = point_at(raw.paths, parts.segment, (parts.t0 + parts.t1) / 2)
@@ -137,11 +150,16 @@ class _Attempt:
             rings = chained(parts, raw.paths, used)
         except LookupError as error:
             raise OffsetError("the offset has a ring that does not close", middle[error.args[0]]) from None
-        paths = built(parts, raw.paths, rings, self.tolerance / 64)
+        paths, first, last = built(parts, raw.paths, rings, self.tolerance / 64)
         solid = np.flatnonzero(np.abs(ring_areas(paths)) > 4 * self.tolerance * paths.path_lengths)
+        here = ranges(paths.offsets[solid], paths.counts[solid])
+        first, last = first[here], last[here]
         paths, rings = paths.take(solid), [rings[k] for k in solid.tolist()]
         self._verify(paths)
-        return Offset(paths, losses(self.region, self.distance, raw, parts, rings))
+        moved = parts.segment[first]
+        share = np.column_stack((parts.t0[first], parts.t1[last])) + raw.joins[moved][:, None]
+        lost = losses(self.region, self.distance, raw, parts, rings)
+        return Offset(paths, lost), Feet(raw.source[moved], share)
 
     def _nearest(self, points: Complexes, beyond: float = 0.0) -> Floats:
         """The distance of each point from the region's edge; infinite where it is more than the offset's + `beyond`."""
