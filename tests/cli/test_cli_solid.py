@@ -56,7 +56,7 @@ def test_the_recipe_says_what_was_asked(here: Path, voronoi_tiles: CommandLine) 
         (("-o", "a.step"), "Error: a.step is no name of such a file: give it the suffix .3mf or .stl or .png."),
         (("-o", "a.3mf", "--height", "0"), "Error: --height 0 mm cannot be. Give a length from 0.01 to 100,000 mm."),
         (("-o", "a.3mf", "--clearance", "80mm"), "Error: bird.toml: --clearance 80mm is too much: a piece vanishes at"),
-        (("-o", "a.3mf", "--chamfer", "2mm"), "Error: two rims with --chamfer 2mm leave nothing of a --height of 3 mm"),
+        (("-o", "a.3mf", "--chamfer", "2mm"), "Error: bird.toml: two rims with --chamfer 2mm leave nothing of a"),
         (("-o", "a.3mf", "--sheet", "5x5mm"), "Error: bird.toml: no whole tile fits on the sheet"),
         (("-o", "a.3mf", "--size", "90"), "Error: --size is for a picture: write a .png, or leave it out."),
         (("-o", "a.3mf", "--colours", "layers"), "Error: --colours 'layers' is unknown. Use a number up to"),
@@ -120,9 +120,23 @@ def test_a_design_that_stands_is_lofted(here: Path, voronoi_tiles: CommandLine) 
     assert done.returncode == 0, done.stderr
     assert "x 12 mm, 10.8 cm³" in done.stderr
     assert " levels within" in done.stderr
-    refused = voronoi_tiles("solid", "standing.toml", "-o", "b.3mf", "--clearance", "0.2mm", cwd=here)
+    refused = voronoi_tiles("solid", "standing.toml", "-o", "b.3mf", "--sheet", "90x90mm", cwd=here)
     assert refused.returncode == 2
-    assert refused.stderr.startswith("Error: standing.toml: --clearance is for prisms")
+    assert refused.stderr.startswith("Error: standing.toml: --sheet is for prisms")
+    assert not (here / "b.3mf").exists()
+
+
+def test_a_design_that_stands_has_clearances(here: Path, voronoi_tiles: CommandLine) -> None:
+    """The proof says how far neighbours are apart; one that eats the tile is refused, and nothing is written."""
+    standing = starter_text("p4") + "\n[solid]\nheight = 12\nlayers = 3\nshift = [2, 1]\n"
+    (here / "standing.toml").write_text(standing, encoding="utf-8")
+    done = voronoi_tiles("solid", "standing.toml", "-o", "a.3mf", "--clearance", "0.2mm", "--chamfer", "2mm", cwd=here)
+    assert done.returncode == 0, done.stderr
+    assert "proved: closed; neighbours at least 0.2" in done.stderr
+    assert json.loads(recipe_of((here / "a.3mf").read_bytes())["solid"]) == {"chamfer": 2.0, "clearance": 0.2}
+    refused = voronoi_tiles("solid", "standing.toml", "-o", "b.3mf", "--clearance", "60mm", cwd=here)
+    assert refused.returncode == 2
+    assert refused.stderr.startswith("Error: standing.toml: --clearance 60mm is too much: nothing is left at")
     assert not (here / "b.3mf").exists()
 
 

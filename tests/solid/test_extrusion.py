@@ -206,7 +206,7 @@ def test_a_recipe_makes_the_same_solid() -> None:
         ({"height": 0}, "`height` 0 mm cannot be"),
         ({"height": "0mm"}, "`height` 0 mm cannot be"),
         ({"clearance": -1}, "`clearance` -1 mm cannot be"),
-        ({"chamfer": 1.5}, "leave nothing of a `height` of 3 mm"),
+        ({"height": 3, "chamfer": 1.5}, "leave nothing of a `height` of 3 mm"),
         ({"clearance": 1e-3}, "hardly more than the `accuracy`"),
         ({"sheet": "10x10mm", "margin": 5}, "`margin`"),
         ({"colours": "rainbow"}, "`colours` 'rainbow' is unknown"),

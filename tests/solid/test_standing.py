@@ -80,8 +80,8 @@ def test_copies_around_one_stand_where_they_do_where_asked(around: SolidModel) -
     [
         ({"height": 5}, "`height` is that of [solid]"),
         ({"height": 3}, "`height` is that of [solid]"),
-        ({"clearance": 0.2}, "`clearance` is for prisms"),
-        ({"chamfer": 0.2}, "`chamfer` is for prisms"),
+        ({"chamfer": 10}, "two rims with `chamfer='10mm'` leave nothing of a `height` of 20 mm"),
+        ({"gap": 1}, "`gap` is for prisms"),
         ({"sheet": "200x200mm"}, "`sheet` is for prisms"),
         ({"colours": "fewest"}, "`colours` is for prisms"),
     ],
@@ -94,11 +94,12 @@ def test_what_only_prisms_have_is_refused(options: dict[str, Any], message: str)
     assert refusal.value.remedy
 
 
+@pytest.mark.parametrize("job", [SolidJob(), SolidJob(clearance=0.2, chamfer=0.5)], ids=["filling", "to print"])
 @pytest.mark.parametrize("path", sorted(FOLDER.glob("solid/*.toml")), ids=lambda path: path.stem)
-def test_the_examples_are_solids(path: Path) -> None:
-    """Each is proved as it is."""
+def test_the_examples_are_solids(path: Path, job: SolidJob) -> None:
+    """Each is proved as it is, and as it is printed."""
     design = Design.load(path)
-    model = extrude(design.tessellate()) if design.standing is None else stand(design)
+    model = extrude(design.tessellate(), job) if design.standing is None else stand(design, job)
     assert all(piece.mesh.is_closed for piece in model.pieces)
     assert model.notes == ()
 

@@ -53,8 +53,8 @@ class OffsetError(VoronoiTilesError, ArithmeticError):
 class Feet(NamedTuple):
     """Of each segment of an offset where on the region's edge what it is the offset of lies.
 
-    That is the region's segment `segment` (intp, n), between the shares `share` (float64, n x 2) of it: from 0 to 1, and
-    from 1 to 2 of the turn in the corner at its end.
+    That is the region's segment `segment` (intp, n), between the shares `share` (float64, n x 2) of it: from 0 to 1,
+    and from 1 to 2 of the turn in the corner at its end.
     """
 
     segment: Ints

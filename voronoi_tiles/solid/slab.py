@@ -73,6 +73,7 @@ class Slab:
     @classmethod
     def of(cls, design: Design, tessellation: Tessellation, job: SolidJob) -> Slab:
         """Lay out the tiles."""
+        job.refuse_rims(job.thickness)
         budget = _budget(job)
         unit = design.unit_mm
         arcs = EdgeArcs(budget.arcs / unit, ABSORBED * budget.whole / unit)

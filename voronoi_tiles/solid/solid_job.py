@@ -80,17 +80,15 @@ class SolidJob(OptionTable):
     )
     accuracy: Option[float | str | None, float | None] = length(
         None,
-        "How far walls may be from the exact ones [default: 0.01mm; 0.05mm for a design with a [solid]].",
+        "How far walls may be from the exact ones [default: 0.01mm; for a design with a [solid] 0.05mm, or an eighth "
+        "of the clearance or chamfer].",
         least=ACCURACY_MIN,
         most=1.0,
     )
 
     def __post_init__(self) -> None:
-        if 2 * self.chamfer >= self.thickness:
-            raise JobError(
-                f"two rims with `chamfer='{self.chamfer:g}mm'` leave nothing of a `height` of {self.thickness:g} mm",
-                remedy="Use a smaller `chamfer`, or more `height`.",
-            )
+        if self.height is not None:
+            self.refuse_rims(self.height)
         for name in ("chamfer", "clearance"):
             if 0.0 < getattr(self, name) < _STEEP * self.chords:
                 raise JobError(
@@ -98,6 +96,14 @@ class SolidJob(OptionTable):
                     remedy=f"Give a finer `accuracy`, or leave `{name}` out.",
                 )
         self.flat  # noqa: B018 - what cannot be laid out is refused here
+
+    def refuse_rims(self, height: float) -> None:
+        """Raise JobError where chamfers leave nothing of a solid of this height, in millimetres."""
+        if 2 * self.chamfer >= height:
+            raise JobError(
+                f"two rims with `chamfer='{self.chamfer:g}mm'` leave nothing of a `height` of {height:g} mm",
+                remedy="Use a smaller `chamfer`, or more `height`.",
+            )
 
     @property
     def flat(self) -> Job:

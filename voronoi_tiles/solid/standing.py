@@ -16,6 +16,9 @@ from voronoi_tiles.fabrication.exact import design_recipe
 from voronoi_tiles.fabrication.job import JobError
 from voronoi_tiles.groups.periodic_colouring import palette
 from voronoi_tiles.solid.cross_sections import filled_section
+from voronoi_tiles.solid.inset_depth import InsetDepth
+from voronoi_tiles.solid.inset_loft import InsetLoft
+from voronoi_tiles.solid.inset_proof import proved_inset
 from voronoi_tiles.solid.laying_orders import assembly
 from voronoi_tiles.solid.loft import ACCURACY_MM, Loft
 from voronoi_tiles.solid.mesh import TriangleMesh
@@ -37,27 +40,39 @@ _PULLS: Final = tuple(0.1 * k for k in range(2, 31))
 _TOUCHING: Final = 1e-6
 """Pieces that are nearer touch; a share of the longer side of one."""
 
+_BESIDE: Final = 2.0
+"""Pieces with a clearance are beside each other where they are within so many of it, and of the accuracy; a factor."""
+
 
 def stand(design: Design, job: SolidJob | None = None, *, around: bool = False, apart: bool = True) -> SolidModel:
     """The solids of a design that stands, proved: one of each site, or one and the copies `around` it.
 
     Those around it are pulled `apart`, or stand where they do, and are in its coordinates.
 
-    Raises ArgumentError for a design that is flat, JobError where a job asks for what only prisms have, LoftError where
-    copies meet at some height, ProofError where the result fails its proof.
+    Raises ArgumentError for a design that is flat, JobError where a job asks for what only prisms have, or a clearance
+    or chamfer eats a tile, LoftError where copies meet at some height, ProofError where the result fails its proof.
     """
     job = SolidJob() if job is None else instance("job", job, SolidJob)
     _refuse_prisms(job)
-    loft, proof = proved_loft(design, accuracy=ACCURACY_MM if job.accuracy is None else job.accuracy)
     names = [site.name for site in design.noded]
+    made: Loft | InsetLoft
+    losses: tuple[str, ...] = ()
+    if job.insets:
+        depth = InsetDepth.of(design, job)
+        made, proof, further = proved_inset(design, depth)
+        loft, near, losses = made.loft, _BESIDE * (job.clearance + depth.accuracy), made.notes
+        figures, proved = [*proof.document(), *further.document()], str(further)
+    else:
+        loft, proof = proved_loft(design, accuracy=ACCURACY_MM if job.accuracy is None else job.accuracy)
+        made, near, figures, proved = loft, 0.0, proof.document(), _said(loft, proof)
     if around:
-        found = _around(loft)
-        meshes, colours = _pulled([mesh for _, mesh in found], apart=apart)
+        found = _around(loft, made)
+        meshes, colours = _pulled([mesh for _, mesh in found], near, apart=apart)
         sites = [names[site] for site, _ in found]
         notes: tuple[str, ...] = (AROUND,) if apart else ()
     else:
-        low = np.min([mesh.vertices.min(axis=0) for mesh in loft.meshes], axis=0)
-        meshes = [TriangleMesh(mesh.vertices - low, mesh.triangles) for mesh in loft.meshes]
+        low = np.min([mesh.vertices.min(axis=0) for mesh in made.meshes], axis=0)
+        meshes = [TriangleMesh(mesh.vertices - low, mesh.triangles) for mesh in made.meshes]
         sites, colours, notes = names, list(range(len(names))), ()
     return SolidModel(
         title=f"{design.name} ({design.group.name})",
@@ -66,9 +81,9 @@ def stand(design: Design, job: SolidJob | None = None, *, around: bool = False, 
         ),
         colours=tuple(f"#{bytes(shade).hex()}" for shade in palette(max(colours) + 1)),
         recipe={**design_recipe(design), "solid": json.dumps(job.recipe(), sort_keys=True)},
-        proof={"figures": proof.document()},
-        proved=_said(loft, proof),
-        notes=notes,
+        proof={"figures": figures},
+        proved=proved,
+        notes=(*notes, *losses),
         files=tuple(design.files),
         assembly=partial(assembly, loft),
     )
@@ -79,11 +94,8 @@ def _refuse_prisms(job: SolidJob) -> None:
     for name in job.recipe():
         if name == "height":
             raise JobError("`height` is that of [solid], which the design has", remedy="Change it there.")
-        if name != "accuracy":
-            apart = (
-                "; a slicer keeps printed pieces apart by its compensation in x and y" if name == "clearance" else ""
-            )
-            raise JobError(f"`{name}` is for prisms, and the design has a [solid]", remedy=f"Leave it out{apart}.")
+        if name not in ("accuracy", "clearance", "chamfer"):
+            raise JobError(f"`{name}` is for prisms, and the design has a [solid]", remedy="Leave it out.")
 
 
 def _said(loft: Loft, proof: SolidProof) -> str:
@@ -95,17 +107,17 @@ def _said(loft: Loft, proof: SolidProof) -> str:
     )
 
 
-def _around(loft: Loft) -> list[tuple[int, TriangleMesh]]:
+def _around(loft: Loft, made: Loft | InsetLoft) -> list[tuple[int, TriangleMesh]]:
     """The solid of the first site and all that touch it at some level: the number of the site, and the mesh."""
     beside = {name for level in loft.levels for ring in level.core.rings[0] for name in ring}
-    copies = [(site, loft.image(site, operation_of(code))) for site, code in sorted(beside)]
-    return [(0, loft.meshes[0]), *copies]
+    copies = [(site, made.image(site, operation_of(code))) for site, code in sorted(beside)]
+    return [(0, made.meshes[0]), *copies]
 
 
-def _pulled(meshes: Sequence[TriangleMesh], *, apart: bool) -> tuple[list[TriangleMesh], list[int]]:
+def _pulled(meshes: Sequence[TriangleMesh], near: float, *, apart: bool) -> tuple[list[TriangleMesh], list[int]]:
     """Meshes pulled away from the first of them, as little as parts them, and colours that differ where they touch.
 
-    Where they are not to be `apart` they stay.
+    What is nearer than `near` millimetres touches as well. Where they are not to be `apart` they stay.
     """
     import shapely
 
@@ -115,7 +127,7 @@ def _pulled(meshes: Sequence[TriangleMesh], *, apart: bool) -> tuple[list[Triang
     centres = np.array([(mesh.vertices.min(axis=0) + mesh.vertices.max(axis=0))[:2] / 2 for mesh in meshes])
     size = float(np.ptp(meshes[0].vertices[:, :2], axis=0).max())
     one, other = np.triu_indices(len(meshes), 1)
-    touching = (shapely.distance(shapes[one], shapes[other]) < _TOUCHING * size).any(axis=1)
+    touching = (shapely.distance(shapes[one], shapes[other]) < max(near, _TOUCHING * size)).any(axis=1)
     away = centres - centres[0]
     pull = 0.0
     for pull in _PULLS if apart else ():
