@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import plane
+from voronoi_tiles.base.arrays import Ints, plane
 from voronoi_tiles.base.maps import move
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.solid.assembly import LoftLevel
@@ -75,7 +75,8 @@ class InsetLoft:
     def _mesh(self, tile: int) -> TriangleMesh:
         """The mesh of a site: rings, walls between them, what is kept of the loft, and a bottom and a top."""
         kept = self.kept[tile].mesh if self.kept else TriangleMesh(np.zeros((0, 3)), np.zeros((0, 3), np.intp))
-        points, triangles, numbers, count = [kept.vertices], [kept.triangles], [], len(kept.vertices)
+        points, triangles, count = [kept.vertices], [kept.triangles], len(kept.vertices)
+        numbers: list[list[Ints]] = []
         for level in self.levels:
             numbers.append([])
             for ring in level.rings[tile]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 from typing import Any, Final, NamedTuple
 
@@ -17,9 +17,10 @@ from voronoi_tiles.solid.inset_depth import InsetDepth
 from voronoi_tiles.solid.inset_loft import InsetLoft
 from voronoi_tiles.solid.inset_making import inset_loft
 from voronoi_tiles.solid.layers import ExactLayer
+from voronoi_tiles.solid.loft import ACCURACY_MM, lofted
 from voronoi_tiles.solid.mesh import TriangleMesh
 from voronoi_tiles.solid.sections import crossed_sections
-from voronoi_tiles.solid.solid_proof import SolidProof, proved_loft
+from voronoi_tiles.solid.solid_proof import SolidProof, prove_loft
 from voronoi_tiles.vector.motion_codes import motion_of
 
 _ROUNDING: Final = 1e-9
@@ -41,10 +42,12 @@ class InsetProof(NamedTuple):
     `apart` is how far neighbours are from each other at least, in level sections a quarter, a half, and three quarters
     of the way from each level to the next. At the levels and half way between them `near` is how much nearer than half
     of the clearance, and the chamfer, points of the solid are to the exact tile's edge, and `far` how much farther.
+    `approach` is how near copies of strokes come to each other at least, as is proved.
 
     The others are counts: of such points that are outside of the tile, of meshes that are not closed, of meshes that
-    have not as many handles as before they were drawn in, of sections that cross themselves. `wanted` are heights, in
-    millimetres, at which another level might mend what does not hold.
+    have not as many handles as before they were drawn in, of sections that cross themselves. `wanted` are heights at
+    which another level might mend what does not hold. Without a clearance walls of the loft are kept: `kept` is the
+    proof of that, and neighbours are not `apart`.
     """
 
     clearance: float
@@ -52,14 +55,16 @@ class InsetProof(NamedTuple):
     apart: float
     near: float
     far: float
+    approach: float
     outside: int
     open_meshes: int
     handles: int
     crossings: int
     wanted: tuple[float, ...]
+    kept: SolidProof | None
 
     def rows(self) -> list[tuple[str, float, float, bool]]:
-        """For each figure its name, value, limit and whether it holds; neighbours have to be farther than the limit."""
+        """For each figure its name, value, limit and whether it holds; the last two have to be above theirs."""
         nearest = 0.0 if self.clearance > 0.0 else self.accuracy
         figures = [
             ("nearer to the tile's edge", self.near, nearest),
@@ -71,8 +76,14 @@ class InsetProof(NamedTuple):
         ]
         # Written so that NaN fails.
         rows = [(name, float(value), float(limit), bool(value <= limit)) for name, value, limit in figures]
+        if self.kept is not None:
+            return [*self.kept.rows(), *rows]
         least = self.clearance * (1 - _ROUNDING)
-        return [*rows, ("neighbours apart", self.apart, self.clearance, bool(self.apart >= least))]
+        return [
+            *rows,
+            ("neighbours apart", self.apart, self.clearance, bool(self.apart >= least)),
+            ("approach", self.approach, 0.0, bool(self.approach > 0.0)),
+        ]
 
     @property
     def failures(self) -> tuple[str, ...]:
@@ -102,45 +113,49 @@ class InsetProof(NamedTuple):
 
 def prove_inset(inset: InsetLoft) -> InsetProof:
     """The figures of a loft that is drawn in."""
-    meshes = inset.meshes
+    loft, depth, meshes = inset.loft, inset.depth, inset.meshes
     crossed = [crossed_sections(mesh) for mesh in meshes]
-    clearance = 2 * inset.depth.half
-    gaps = list(_gaps(inset)) if clearance else []
-    depths = [found for tile in range(len(meshes)) for found in _depths(inset, tile)]
+    heights = np.array([level.z for level in inset.levels])
+    parts = [_by_slab(mesh, heights) for mesh in meshes]
+    depths = [found for tile, own in enumerate(parts) for found in _depths(inset, tile, own)]
+    off = np.concatenate([found for found, _ in depths])
+    at, gap = np.array(list(_gaps(inset, parts)) if depth.half else [(0.0, np.inf)]).T
+    wanted = {*at[gap < 2 * depth.half].tolist(), *(z for sections in crossed for z in sections.between.tolist())}
     return InsetProof(
-        clearance=clearance,
-        accuracy=inset.depth.accuracy,
-        apart=min((gap for _, gap in gaps), default=np.inf),
-        near=-min(float(off.min()) for off, _ in depths),
-        far=max(float(off.max()) for off, _ in depths),
+        clearance=2 * depth.half,
+        accuracy=depth.accuracy,
+        apart=float(gap.min()),
+        near=-float(off.min()),
+        far=float(off.max()),
+        approach=loft.approach.proved * loft.design.unit_mm,
         outside=sum(outside for _, outside in depths),
         open_meshes=sum(not mesh.is_closed for mesh in meshes),
-        handles=sum(_euler(one) != _euler(other) for one, other in zip(meshes, inset.loft.meshes, strict=True)),
+        handles=sum(_euler(one) != _euler(other) for one, other in zip(meshes, loft.meshes, strict=True)),
         crossings=sum(sum(map(len, sections)) for sections in crossed),
-        wanted=tuple(
-            sorted({z for sections in crossed for z in sections.between} | {z for z, gap in gaps if gap < clearance})
-        ),
+        wanted=tuple(sorted(wanted)),
+        kept=prove_loft(loft) if inset.kept else None,
     )
 
 
-def proved_inset(design: Design, depth: InsetDepth) -> tuple[InsetLoft, SolidProof, InsetProof]:
-    """The loft of a design, drawn in, with the proof of the loft and that of what is drawn in.
+def proved_inset(design: Design, depth: InsetDepth) -> tuple[InsetLoft, InsetProof]:
+    """The loft of a design, drawn in, and the proof that it is so.
 
-    Where sections cross or come too near, there are more levels. Raises as `proved_loft` and `inset_loft`, and
-    ProofError where the result fails its proof.
+    Where sections cross or come too near, there are more levels. Raises as `lofted` and `inset_loft`, and ProofError
+    where the result fails its proof.
     """
     unit = design.unit_mm
     heights = {depth.chamfer / unit, (depth.height - depth.chamfer) / unit} if depth.chamfer else set()
+    # Of what is drawn in all along only the levels are the loft's, and these are exact.
+    accuracy = max(depth.accuracy, ACCURACY_MM) if depth.half else depth.accuracy
     for _ in range(_ROUNDS):
-        loft, proof = proved_loft(design, accuracy=depth.accuracy, heights=heights)
-        inset = inset_loft(loft, depth)
-        further = prove_inset(inset)
-        heights |= {z / unit for z in further.wanted}
-        if not further.wanted:
+        inset = inset_loft(lofted(design, accuracy=accuracy, heights=heights), depth)
+        proof = prove_inset(inset)
+        if not proof.wanted:
             break
-    if further.failures:
-        raise ProofError("the solid failed its proof: " + "; ".join(further.failures), further)
-    return inset, proof, further
+        heights |= {z / unit for z in proof.wanted}
+    if proof.failures:
+        raise ProofError("the solid failed its proof: " + "; ".join(proof.failures), proof)
+    return inset, proof
 
 
 def _euler(mesh: TriangleMesh) -> int:
@@ -148,20 +163,26 @@ def _euler(mesh: TriangleMesh) -> int:
     return len(mesh.vertices) - len(mesh.triangles) // 2
 
 
-def _gaps(inset: InsetLoft) -> Iterator[tuple[float, float]]:
-    """Heights, and how far a solid and one beside it are from each other there."""
+def _by_slab(mesh: TriangleMesh, heights: Floats) -> list[TriangleMesh]:
+    """The walls of a mesh between each of its levels and the next, as a mesh each."""
+    lowest = mesh.vertices[:, 2][mesh.triangles].min(axis=1)
+    order = np.argsort(lowest, kind="stable")
+    bounds = np.searchsorted(lowest[order], heights).tolist()
+    return [TriangleMesh(mesh.vertices, mesh.triangles[order[a:b]]) for a, b in pairwise(bounds)]
+
+
+def _gaps(inset: InsetLoft, parts: Sequence[Sequence[TriangleMesh]]) -> Iterator[tuple[float, float]]:
+    """Heights, and how far a solid and one beside it are from each other there; `parts` are by site and by slab."""
     import shapely
     from shapely.affinity import affine_transform
 
     action, unit = inset.loft.levels[0].core.action, inset.loft.design.unit_mm
-    for low, high in pairwise(inset.levels):
+    for k, (low, high) in enumerate(pairwise(inset.levels)):
         layers = [*low.level.layers, *high.level.layers]
         for share in _SHARES:
             z = low.z + (high.z - low.z) * share
-            shapes = []
-            for mesh in inset.meshes:
-                rings = section(mesh, z)
-                shapes.append(filled(rings.start, rings.offsets))
+            rings = [section(part[k], z) for part in parts]
+            shapes = [filled(ring.start, ring.offsets) for ring in rings]
             for tile, own in enumerate(shapes):
                 for site, code in {name for layer in layers for ring in layer.rings[tile] for name in ring}:
                     turn, shift, conj = action.isometry(motion_of(code))
@@ -171,29 +192,27 @@ def _gaps(inset: InsetLoft) -> Iterator[tuple[float, float]]:
                     yield z, float(shapely.distance(own, beside))
 
 
-def _depths(inset: InsetLoft, tile: int) -> Iterator[tuple[Floats, int]]:
+def _depths(inset: InsetLoft, tile: int, parts: Sequence[TriangleMesh]) -> Iterator[tuple[Floats, int]]:
     """How much farther from the exact tile's edge than they have to be points of a solid are, and how many are outside.
 
     At levels these are its vertices and the middles of its walls' sides, half way between levels those of its section.
     """
     mesh, depth, unit = inset.meshes[tile], inset.depth, inset.loft.design.unit_mm
-    sides = np.concatenate([mesh.triangles[:, pair] for pair in ([0, 1], [1, 2], [2, 0])])
     heights = mesh.vertices[:, 2]
-    flat = np.ptp(heights[mesh.triangles], axis=1) == 0.0
-    level = (heights[sides[:, 0]] == heights[sides[:, 1]]) & ~np.tile(flat, 3)
-    ends = mesh.vertices[sides[level]]
-    at, rings = ends[:, 0, 2], ends[..., :2].copy().view(np.complex128)[..., 0]
-    for inset_level in inset.levels:
-        own = rings[at == inset_level.z]
-        if inset_level.rings[tile][0].number is not None:
-            continue  # the loft's own
-        yield _off(own, inset_level.level.core, tile, inset_level.z, depth, unit)
-    for slab in inset.slabs:
-        if slab.middle is None:
-            continue
-        z = slab.middle.z * unit
-        lines = section(mesh, z)
-        yield _off(np.column_stack((lines.start, lines.end)), slab.middle, tile, z, depth, unit)
+    walls = mesh.triangles[np.ptp(heights[mesh.triangles], axis=1) > 0.0]
+    sides = np.concatenate([walls[:, pair] for pair in ([0, 1], [1, 2], [2, 0])])
+    ends = mesh.vertices[sides[heights[sides[:, 0]] == heights[sides[:, 1]]]]
+    order = np.argsort(ends[:, 0, 2], kind="stable")
+    at, lines = ends[order, 0, 2], ends[order, :, :2].copy().view(np.complex128)[..., 0]
+    for level in inset.levels:
+        if level.rings[tile][0].number is None:  # others are the loft's own
+            own = lines[slice(*np.searchsorted(at, [level.z, np.nextafter(level.z, np.inf)]).tolist())]
+            yield _off(own, level.level.core, tile, level.z, depth, unit)
+    for slab, part in zip(inset.slabs, parts, strict=True):
+        if slab.middle is not None:
+            z = slab.middle.z * unit
+            ring = section(part, z)
+            yield _off(np.column_stack((ring.start, ring.end)), slab.middle, tile, z, depth, unit)
 
 
 def _off(

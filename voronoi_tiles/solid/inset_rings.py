@@ -72,9 +72,9 @@ class LayerOutlines:
                 count += len(part.start)
             rings.append(count)
         joined, closed = Paths.concatenate(parts).moved(unit, 0j), np.ones(len(rings), np.bool_)
-        paths, use = replace(joined, offsets=offsets_of(rings), closed=closed), np.array(uses, np.intp)
+        paths, owner = replace(joined, offsets=offsets_of(rings), closed=closed), np.array(uses, np.intp)
         size = layer.action.size * unit
-        return cls(layer, size, paths, use, _along(paths, use, _TURNING * size))
+        return cls(layer, size, paths, owner, _along(paths, owner, _TURNING * size))
 
     def inset(self, tile: int, distance: float, accuracy: float) -> tuple[list[InsetRing], tuple[Lost, ...]]:
         """The rings of a base tile that is drawn in by a distance, as chords within an accuracy, and what it lost.
@@ -129,7 +129,7 @@ def _thinned(points: Complexes, use: Ints, begin: Floats, end: Floats, accuracy:
 
     changes = np.flatnonzero(use != np.roll(use, 1))
     turn = -int(changes[0]) if len(changes) else 0
-    points, use, begin, end = (np.roll(row, turn) for row in (points, use, begin, end))
+    points, use, begin, end = np.roll(points, turn), np.roll(use, turn), np.roll(begin, turn), np.roll(end, turn)
     first = starts(use)
     counts = np.diff(np.append(first, len(use))) + 1
     run = np.repeat(np.arange(len(first)), counts)

@@ -31,7 +31,8 @@ class UsePlaces(NamedTuple):
     def of(cls, layer: ExactLayer) -> Self:
         """Those of a layer by itself: ring by ring."""
         count = len(layer.names)
-        return cls(layer.ring, 2.0 * (np.arange(count) - layer.ring_offsets[layer.ring]), np.ones(count))
+        place = np.arange(count) - layer.ring_offsets[layer.ring]
+        return cls(layer.ring, np.asarray(2.0 * place, np.float64), np.ones(count))
 
     def carried(self, same: Correspondence, layer: ExactLayer) -> UsePlaces:
         """The places of another layer's uses `same.high`, which are uses `same.low` here; its others are points."""

@@ -9,7 +9,7 @@ And between levels no copies meet.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from math import fsum
 from typing import Any, NamedTuple
 
@@ -101,14 +101,12 @@ def prove_loft(loft: Loft) -> SolidProof:
     )
 
 
-def proved_loft(
-    design: Design, *, accuracy: float = ACCURACY_MM, heights: Iterable[float] = ()
-) -> tuple[Loft, SolidProof]:
+def proved_loft(design: Design, *, accuracy: float = ACCURACY_MM) -> tuple[Loft, SolidProof]:
     """The loft of a design, as `lofted` makes it, and the proof that it is right.
 
     Raises LoftError where the design has no solid, ProofError where the result fails its proof.
     """
-    loft = lofted(design, accuracy=accuracy, heights=heights)
+    loft = lofted(design, accuracy=accuracy)
     proof = prove_loft(loft)
     if not proof.passed:
         raise ProofError("the solid failed its proof: " + "; ".join(proof.failures), proof)

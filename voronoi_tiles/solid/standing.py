@@ -59,9 +59,9 @@ def stand(design: Design, job: SolidJob | None = None, *, around: bool = False, 
     losses: tuple[str, ...] = ()
     if job.insets:
         depth = InsetDepth.of(design, job)
-        made, proof, further = proved_inset(design, depth)
+        made, drawn = proved_inset(design, depth)
         loft, near, losses = made.loft, _BESIDE * (job.clearance + depth.accuracy), made.notes
-        figures, proved = [*proof.document(), *further.document()], str(further)
+        figures, proved = drawn.document(), str(drawn)
     else:
         loft, proof = proved_loft(design, accuracy=ACCURACY_MM if job.accuracy is None else job.accuracy)
         made, near, figures, proved = loft, 0.0, proof.document(), _said(loft, proof)
