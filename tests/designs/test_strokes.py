@@ -74,7 +74,7 @@ def test_flattening_keeps_its_bound(points: list[complex], accuracy: float) -> N
 def test_vertices_are_on_the_curve_exactly(points: list[complex], accuracy: float) -> None:
     """De Casteljau at 1/2 is exact for small whole points: each vertex is a rational value of the polynomial."""
     piece = np.array(points)
-    chords, counts = strokes.flatten(piece[None, :], accuracy)
+    chords, counts, _ = strokes.flatten(piece[None, :], accuracy)
     assert counts.tolist() == [len(chords)]
     assert chords[0, 0] == piece[0]
     assert chords[-1, 1] == piece[3]
@@ -107,10 +107,10 @@ def test_many_pieces_at_once_give_what_each_gives_alone() -> None:
     """Flattening all pieces together changes no bit and no order."""
     rng = np.random.default_rng(3)
     pieces = rng.normal(size=(40, 4)) + 1j * rng.normal(size=(40, 4))
-    chords, counts = strokes.flatten(pieces, 1e-3)
+    chords, counts, _ = strokes.flatten(pieces, 1e-3)
     ends = np.cumsum(counts)
     for k, piece in enumerate(pieces):
-        alone, _ = strokes.flatten(piece[None, :], 1e-3)
+        alone, _, _ = strokes.flatten(piece[None, :], 1e-3)
         assert chords[ends[k] - counts[k] : ends[k]].tolist() == alone.tolist()
 
 

@@ -135,7 +135,7 @@ def _flattened(chance: np.random.Generator) -> Iterator[dict[str, Any]]:
         if "file" not in drawn:
             line, curved = schema.stroke(drawn, 1e-2)
             for tolerance in (3.0, 0.11, 1e-3) if curved else ():
-                chords, _ = strokes.flatten(line, tolerance)
+                chords, _, _ = strokes.flatten(line, tolerance)
                 yield {"cubics": numbers(line), "tolerance": tolerance, "segments": numbers(chords)}
 
 

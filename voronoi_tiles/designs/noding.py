@@ -37,7 +37,7 @@ def _node(points: Complexes, segments: Ints, origin: complex, near: float) -> tu
     nodes = points
     # Most drawings take two rounds, and one more that finds nothing.
     for _ in range(64):
-        nodes, index = _merge(nodes, origin, near)
+        nodes, index = merged(nodes, origin, near)
         segments = _unique(index[segments])
         split, at, crossings = _contacts(nodes, segments, origin, near)
         if not len(split):
@@ -67,8 +67,8 @@ def _unique(segments: Ints) -> Ints:
     return segments
 
 
-def _merge(nodes: Complexes, origin: complex, near: float) -> tuple[Complexes, Ints]:
-    """Make nodes within `near` of each other one: the first of them.
+def merged(nodes: Complexes, origin: complex, near: float) -> tuple[Complexes, Ints]:
+    """Make nodes within `near` of each other one: the first of them; distances are measured from `origin`.
 
     Returns the nodes left, and for each old node its index among them. Two nodes within `near` share a
     square of side 4 `near` in at least one of four grids that are shifted by halves.

@@ -89,9 +89,7 @@ def build_site(name: str, polylines: Sequence[Complexes]) -> NodedSite:
     segments = np.stack([first[keep], second[keep]], axis=1)
 
     extent = _extent(points)
-    near = max(
-        NODE_MERGE * extent, NODE_MERGE_ULPS * EPSILON * float(max(abs(points.real).max(), abs(points.imag).max()))
-    )
+    near = merging(points)
     if extent == 0.0:
         return NodedSite(name, points[:1].copy(), np.empty((0, 2), dtype=np.intp))
     if extent <= near:
@@ -102,6 +100,12 @@ def build_site(name: str, polylines: Sequence[Complexes]) -> NodedSite:
         )
 
     return _compact(name, *noded(points, segments, near, STRAIGHT_ULPS * EPSILON * extent))
+
+
+def merging(points: Complexes) -> float:
+    """How near to each other points of a site's strokes are one, in units; complex128 (n,)."""
+    largest = float(max(abs(points.real).max(), abs(points.imag).max()))
+    return max(NODE_MERGE * _extent(points), NODE_MERGE_ULPS * EPSILON * largest)
 
 
 def _extent(z: Complexes) -> float:

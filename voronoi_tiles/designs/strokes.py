@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,7 +39,7 @@ def bezier_pieces(points: Complexes) -> Complexes:
             remedy="Give 3 n + 1 points: start, two controls, end, and three more for every further piece.",
         )
     pieces: Complexes = points[3 * np.arange(len(points) // 3)[:, None] + np.arange(4)]
-    still = np.flatnonzero((pieces == pieces[:, :1]).all(axis=1))
+    still = np.flatnonzero(~are_moving(pieces))
     if len(still):
         raise _zero_length(f"bezier[{3 * still[0]}]", "its four points are the same")
     return pieces
@@ -99,18 +100,29 @@ def bspline_pieces(points: Complexes, closed: bool = False) -> Complexes:
             key="bspline",
             remedy="Add control points.",
         )
+    pieces = bspline_controls(points, closed)
+    moving = are_moving(pieces)
+    if not moving.any():
+        raise _zero_length("bspline", "all points are the same")
+    kept: Complexes = pieces[moving]
+    return kept
+
+
+def bspline_controls(points: Complexes, closed: bool) -> Complexes:
+    """The pieces of `bspline_pieces`, those that stand still among them."""
     ring = np.concatenate([points, points[:3]]) if closed else points
     knots = ((ring[:-2] + ring[2:]) + 4.0 * ring[1:-1]) / 6.0
     first = (2.0 * ring[1:-2] + ring[2:-1]) / 3.0
     second = (ring[1:-2] + 2.0 * ring[2:-1]) / 3.0
     if closed:
         knots[-1] = knots[0]
-    pieces = np.stack([knots[:-1], first, second, knots[1:]], axis=1)
-    moving = (pieces != pieces[:, :1]).any(axis=1)
-    if not moving.any():
-        raise _zero_length("bspline", "all points are the same")
-    kept: Complexes = pieces[moving]
-    return kept
+    return np.stack([knots[:-1], first, second, knots[1:]], axis=1)
+
+
+def are_moving(pieces: Complexes) -> NDArray[np.bool_]:
+    """Whether the four points of each piece are not all the same: bool (k,)."""
+    moving: NDArray[np.bool_] = (pieces != pieces[:, :1]).any(axis=1)
+    return moving
 
 
 def path_pieces(data: str, accuracy: float) -> Complexes:
@@ -232,17 +244,27 @@ def _too_fine(accuracy: float) -> DesignError:
     )
 
 
-def flatten(pieces: Complexes, accuracy: float) -> tuple[Complexes, NDArray[np.intp]]:
+class Flattening(NamedTuple):
+    """Chords of cubic Bezier pieces, in order along them.
+
+    `ends` is complex128 (n, 2), `counts` the number of chords of each piece, intp (k,), and `places` the parameter at
+    which each chord begins on its piece, from 0 up to, not including, 1: float64 (n,). It ends where the next begins.
+    """
+
+    ends: Complexes
+    counts: NDArray[np.intp]
+    places: NDArray[np.float64]
+
+
+def flatten(pieces: Complexes, accuracy: float) -> Flattening:
     """Flatten cubic Bezier pieces to chords within `accuracy` of the curve, and the curve within it of them.
 
     A site's segments cost time, so each part of a curve takes as few as it needs; `paths.conversion` cuts a curve into
     equal steps, whose points depend on nothing but their count.
 
-    `pieces` is complex128 of shape (k, 4), `accuracy` positive and in the same units. Returns the chords'
-    ends, complex128 of shape (n, 2), in order along the pieces, and the number of chords of each piece,
-    intp of shape (k,). All pieces are bisected together (de Casteljau at 1/2, whose rounding is the same
-    from both ends: a reversed curve gives the reversed points) until each satisfies the bound of
-    `is_flat`. Raises DesignError beyond PIECES_MAX.
+    `pieces` is complex128 of shape (k, 4), `accuracy` positive and in the same units. All pieces are bisected together
+    (de Casteljau at 1/2, whose rounding is the same from both ends: a reversed curve gives the reversed points) until
+    each satisfies the bound of `is_flat`. Raises DesignError beyond PIECES_MAX.
     """
     leaves = [pieces[:0, [0, 3]]]
     owners = [np.empty(0, dtype=np.intp)]
@@ -267,8 +289,9 @@ def flatten(pieces: Complexes, accuracy: float) -> tuple[Complexes, NDArray[np.i
         owner = np.concatenate([owner, owner])
         place = np.concatenate([place, place + width])
     owner = np.concatenate(owners)
-    order = np.lexsort((np.concatenate(places), owner))
-    return np.concatenate(leaves)[order], np.bincount(owner, minlength=total)
+    begin = np.concatenate(places)
+    order = np.lexsort((begin, owner))
+    return Flattening(np.concatenate(leaves)[order], np.bincount(owner, minlength=total), begin[order])
 
 
 def is_flat(pieces: Complexes, accuracy: float) -> NDArray[np.bool_]:
@@ -310,7 +333,7 @@ def _dot(u: Complexes, v: Complexes) -> NDArray[np.float64]:
 
 def polylines(pieces: Complexes, accuracy: float) -> list[Complexes]:
     """Flatten pieces (as `flatten`) and join them: one polyline per run of pieces that continue each other."""
-    chords, counts = flatten(pieces, accuracy)
+    chords, counts, _ = flatten(pieces, accuracy)
     breaks = np.flatnonzero(pieces[1:, 0] != pieces[:-1, 3]) + 1
     ends = np.cumsum(counts)
     runs: Sequence[Complexes] = np.split(chords, ends[breaks - 1])
