@@ -55,6 +55,8 @@ if TYPE_CHECKING:
     from voronoi_tiles.formats.burns import Burn
     from voronoi_tiles.formats.page import Drawing, Layer
     from voronoi_tiles.formats.shapes import Dots, DrawingError, ReadDrawing, Shape
+    from voronoi_tiles.gradients.shape_gradient import ShapeGradient
+    from voronoi_tiles.gradients.tile_gradient import MovingPoints, TileGradient
     from voronoi_tiles.groups.wallpaper import GROUPS, Lattice, WallpaperGroup
     from voronoi_tiles.paths.paths import Paths
     from voronoi_tiles.pictures.rendered import Rendering
@@ -107,6 +109,7 @@ __all__ = [
     "LineArc",
     "Marks",
     "MissingLibraryError",
+    "MovingPoints",
     "Neighbour",
     "NodedSite",
     "Operation",
@@ -125,6 +128,7 @@ __all__ = [
     "RenderOptions",
     "Rendering",
     "Shape",
+    "ShapeGradient",
     "Site",
     "Solid",
     "SolidJob",
@@ -136,6 +140,7 @@ __all__ = [
     "Stroke",
     "Tile",
     "TileCopy",
+    "TileGradient",
     "Tiling",
     "TouchingCopiesError",
     "TriangleMesh",
@@ -191,6 +196,8 @@ _HOMES = {
     "voronoi_tiles.formats.burns": "Burn",
     "voronoi_tiles.formats.page": "Drawing Layer",
     "voronoi_tiles.formats.shapes": "Dots DrawingError ReadDrawing Shape",
+    "voronoi_tiles.gradients.shape_gradient": "ShapeGradient",
+    "voronoi_tiles.gradients.tile_gradient": "MovingPoints TileGradient",
     "voronoi_tiles.groups.wallpaper": "GROUPS Lattice WallpaperGroup",
     "voronoi_tiles.paths.paths": "Paths",
     "voronoi_tiles.pictures.rendered": "Rendering",

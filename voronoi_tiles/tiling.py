@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import io
 import os
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, Unpack, get_args, overload
 
 import numpy as np
 
 from voronoi_tiles.base.arguments import instance, path_name
-from voronoi_tiles.base.errors import ArgumentError, CheckError, UnknownNameError
+from voronoi_tiles.base.errors import ArgumentError, UnknownNameError
 from voronoi_tiles.base.files import refuse_overwriting, write_whole
 from voronoi_tiles.base.maps import Placement
 from voronoi_tiles.base.text import counted
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     from voronoi_tiles.fabrication.job import Job
     from voronoi_tiles.fabrication.job_fields import Edges
     from voronoi_tiles.fabrication.product import Product
+    from voronoi_tiles.gradients.shape_gradient import ShapeGradient
     from voronoi_tiles.pictures.rendered import Rendering
     from voronoi_tiles.pictures.rendering import RenderOptions
     from voronoi_tiles.raster.renderer import Choice, Method, Provenance
@@ -119,6 +119,21 @@ class Tiling:
         return [
             TileCopy(self.tiles[tile].name, operation, self.tiles[tile].copy(operation)) for tile, operation in found
         ]
+
+    def shape_gradient(self, parameters: str | Iterable[str] | None = None) -> ShapeGradient:
+        """How the tiles move with numbers of the design: derivatives of outlines, areas and lengths, in closed form.
+
+        `parameters` are places in the design file, such as "cell.a" and "site[0].strokes[1].bezier[2][0]"; "cell" and
+        "site[0].strokes[1]" are all that are drawn below them, and None all that are drawn: the cell, points and radii.
+        What places strokes and sites is named in full: "site[0].rotate". Raises ArgumentError for what is none.
+
+        >>> import voronoi_tiles as vt
+        >>> vt.starter("p4").tessellate().shape_gradient("site[0]")["bird"].along(400).velocity.shape
+        (400, 8)
+        """
+        from voronoi_tiles.gradients.shape_gradient import shape_gradient
+
+        return shape_gradient(self.design, [(tile.outline, tile.symmetry) for tile in self.tiles], parameters)
 
     def figures(self) -> dict[str, Any]:
         """What there is to know about the tiles in numbers, as `voronoi-tiles info --json` prints it."""
@@ -218,16 +233,10 @@ class Tiling:
 
         With a cross-check's report the metadata hold what was proved and checked.
         """
-        from voronoi_tiles.fabrication.exact import design_recipe, exact_drawing
-        from voronoi_tiles.formats.svg.writer import write_svg
+        from voronoi_tiles.fabrication.exact import exact_svg
 
         tiles = [(tile.name, tile.outline) for tile in self.tiles]
-        drawing = exact_drawing(tiles, self.design.unit_mm, design_recipe(self.design))
-        if check is not None:
-            drawing = drawing.with_evidence(self.evidence(check))
-        buffer = io.BytesIO()
-        write_svg(drawing, buffer, exact=True)
-        return buffer.getvalue().decode()
+        return exact_svg(self.design, tiles, None if check is None else self.evidence(check))
 
     def text(self, file_format: str, check: CheckReport | None = None) -> str:
         """The exact tiles as a text, "svg" or "json". Raises ArgumentError for another format."""
@@ -309,16 +318,11 @@ class Tiling:
         With a region, as in `copies`, all copies that meet it are drawn. Raises MissingLibraryError where matplotlib is
         not installed.
         """
-        from voronoi_tiles.groups.periodic_colouring import palette
-        from voronoi_tiles.pictures.plotting import axes_of, plot_tiles
+        from voronoi_tiles.pictures.plotting import plot_copies
 
-        ax = axes_of(ax)
-        colours = dict(zip((tile.name for tile in self), palette(len(self)) / 255, strict=True))
-        if region is not None:
-            copies = self.copies(region)
-            plot_tiles(ax, [(copy.outline, None) for copy in copies], [colours[copy.site] for copy in copies])
-        plot_tiles(ax, [(tile.outline, tile.site.ends) for tile in self], colours.values())
-        return ax
+        tiles = {tile.name: (tile.outline, tile.site.ends) for tile in self}
+        copies = () if region is None else ((copy.site, copy.outline) for copy in self.copies(region))
+        return plot_copies(ax, tiles, copies)
 
     def _repr_svg_(self) -> str:
         """Draw the tiles over the copies about them: notebooks show this."""
@@ -357,8 +361,10 @@ class Tiling:
         name = path_name("path", path)
         form = format_of(path, FORMATS) if file_format is None else file_format
         if check is not None:
+            from voronoi_tiles.crosscheck.check_report import require_passed
+
             self._require_own(check)
-            require(check)
+            require_passed(check)
         if job is not None:
             instance("job", job, Job)
         if edges is not None:
@@ -375,12 +381,6 @@ class Tiling:
             )
         evidence = None if check is None else self.evidence(check)
         return write_products(self.design, self.tessellation, name, form, job or Job(), evidence, progress)
-
-
-def require(check: CheckReport) -> None:
-    """Raise CheckError where a cross-check has failed."""
-    if not check.passed:
-        raise CheckError(f"the outlines failed the cross-check: {', '.join(check.failures)}", check)
 
 
 def tessellate(design: Design) -> Tiling:

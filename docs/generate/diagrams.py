@@ -1,7 +1,7 @@
 """The drawings and tables of the documentation, from the project's own numbers: docs/pictures, and tables in pages.
 
 Run it after a change of the engine, of the groups or of an example in docs/design-file.md: python
-docs/generate/diagrams.py [tables] [groups] [strokes] [method] [cones].
+docs/generate/diagrams.py [tables] [groups] [strokes] [method] [cones] [gradients].
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 
 import diagrams_cones
+import diagrams_gradients
 import diagrams_groups
 import diagrams_method
 import diagrams_strokes
@@ -20,6 +21,7 @@ PARTS = {
     "strokes": diagrams_strokes.write,
     "method": diagrams_method.write,
     "cones": diagrams_cones.write,
+    "gradients": diagrams_gradients.write,
 }
 
 

@@ -493,7 +493,7 @@ def test_the_tables_of_the_groups_are_computed() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("part", ["strokes", "method"])
+@pytest.mark.parametrize("part", ["strokes", "method", "gradients"])
 def test_the_drawings_are_made_anew(part: str, tmp_path: Path) -> None:
     """docs/pictures hold what docs/generate draws of the engine's answers: the same paths, to 0.02 of a point."""
     script = (

@@ -18,7 +18,7 @@ RANKS = (
     ("formats",),
     ("designs",),
     ("vector", "raster"),
-    ("fabrication", "preflight", "crosscheck", "pictures"),
+    ("fabrication", "preflight", "crosscheck", "pictures", "gradients"),
     ("tile",),
     ("tiling",),
     ("solid",),

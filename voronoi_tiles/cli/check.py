@@ -59,7 +59,7 @@ def check(
     with a [solid], the drawing at the height 0 is checked, and slices of the solid at heights between its layers.
     """
     from voronoi_tiles.cli.tables import check_text
-    from voronoi_tiles.tiling import require
+    from voronoi_tiles.crosscheck.check_report import require_passed
 
     refuse_output(design, output, (".png",), stream=False)
     with reporting(design), waiting("checking", quiet=False):
@@ -81,7 +81,7 @@ def check(
             report = replace(report, figures=(*report.figures, *figures))
     print_figures(tiling.evidence(report), check_text, as_json=as_json)
     with reporting(design):
-        require(report)
+        require_passed(report)
 
 
 def _refuse_flat(tiling: Tiling, **options: object) -> None:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, Floats
-from voronoi_tiles.base.errors import UnknownNameError
+from voronoi_tiles.base.errors import CheckError, UnknownNameError
 from voronoi_tiles.raster.frame import Frame
 from voronoi_tiles.raster.renderer import Provenance
 
@@ -122,3 +122,9 @@ class CheckReport:
 def _finite(value: float | None) -> float | None:
     """JSON knows no infinity."""
     return None if value is None or not math.isfinite(value) else value
+
+
+def require_passed(check: CheckReport) -> None:
+    """Raise CheckError where a cross-check has failed."""
+    if not check.passed:
+        raise CheckError(f"the outlines failed the cross-check: {', '.join(check.failures)}", check)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import io
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import Any, Final
 
 import numpy as np
 
@@ -22,6 +23,18 @@ HAIRLINE_MM: Final = 0.025
 def design_recipe(design: Design) -> dict[str, str]:
     """What files say of the program and the design that they were made from."""
     return {"program": "voronoi-tiles", "version": __version__, "design": design.source}
+
+
+def exact_svg(design: Design, tiles: Sequence[tuple[str, Outline]], evidence: Mapping[str, Any] | None) -> str:
+    """The named outlines of a design's tiles as an SVG file; with evidence its metadata hold what was proved."""
+    from voronoi_tiles.formats.svg.writer import write_svg
+
+    drawing = exact_drawing(tiles, design.unit_mm, design_recipe(design))
+    if evidence is not None:
+        drawing = drawing.with_evidence(evidence)
+    buffer = io.BytesIO()
+    write_svg(drawing, buffer, exact=True)
+    return buffer.getvalue().decode()
 
 
 def exact_drawing(tiles: Sequence[tuple[str, Outline]], unit_mm: float, recipe: Mapping[str, str]) -> Drawing:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any, assert_never
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes, plane
 from voronoi_tiles.base.errors import MissingLibraryError
+from voronoi_tiles.groups.periodic_colouring import palette
 from voronoi_tiles.vector.arcs import LineArc, ParabolaArc
 from voronoi_tiles.vector.outline import Outline
 
@@ -26,6 +27,21 @@ def axes_of(axes: Any) -> Any:
         ) from error
     axes = plt.gca() if axes is None else axes
     axes.set_aspect("equal")
+    return axes
+
+
+def plot_copies(
+    axes: Any, tiles: Mapping[str, tuple[Outline, Complexes]], copies: Iterable[tuple[str, Outline]]
+) -> Any:
+    """Draw tiles by their names, with the ends of their sites' elements, over copies of them, in a colour each.
+
+    `axes` are as in `axes_of`, and given back.
+    """
+    axes = axes_of(axes)
+    colours = dict(zip(tiles, palette(len(tiles)) / 255, strict=True))
+    beyond = list(copies)
+    plot_tiles(axes, [(outline, None) for _, outline in beyond], [colours[name] for name, _ in beyond])
+    plot_tiles(axes, tiles.values(), colours.values())
     return axes
 
 
