@@ -93,7 +93,7 @@ def points_of(outline: Outline, arc: Ints, t: Floats) -> tuple[Complexes, Comple
 
 
 def along_normals(outline: Outline, place: Complexes, normal: Complexes) -> Floats:
-    """How far an outline is from points along their normals, where it is nearest to them: float64 (n,)."""
+    """How far an outline is from points along their normals, where it is nearest: (n,), NaN for one that misses it."""
     start, control, end = outline.start, outline.control, outline.end
     result = np.empty(len(place))
     for k, (z, n) in enumerate(zip(place.tolist(), normal.tolist(), strict=True)):
@@ -108,7 +108,7 @@ def along_normals(outline: Outline, place: Complexes, normal: Complexes) -> Floa
         met = (t > -1e-9) & (t < 1 + 1e-9)
         t, p, q, r = (part[met] for part in (t, p, q, r))
         s = (1 - t) ** 2 * p + 2 * t * (1 - t) * q + t**2 * r
-        result[k] = s[np.abs(s).argmin()]
+        result[k] = s[np.abs(s).argmin()] if len(s) else np.nan
     return result
 
 

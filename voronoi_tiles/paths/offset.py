@@ -50,7 +50,7 @@ class OffsetError(VoronoiTilesError, ArithmeticError):
         return f"{self.message} at ({self.place.real:.6g}, {self.place.imag:.6g})."
 
 
-class Feet(NamedTuple):
+class OffsetFeet(NamedTuple):
     """Of each segment of an offset where on the region's edge what it is the offset of lies.
 
     That is the region's segment `segment` (intp, n), between the shares `share` (float64, n x 2) of it: from 0 to 1,
@@ -70,7 +70,7 @@ class Offset:
 
     paths: Paths
     lost: tuple[Lost, ...]
-    feet: Feet | None = None
+    feet: OffsetFeet | None = None
 
 
 def offset(region: Paths, distance: float) -> Offset:
@@ -85,12 +85,12 @@ def offset(region: Paths, distance: float) -> Offset:
     _check_region(region, distance)
     long, region = np.flatnonzero(region.start != region.end), without_points(region)
     if distance == 0 or not len(region):
-        return Offset(region, (), Feet(long, np.tile([0.0, 1.0], (len(long), 1))))
+        return Offset(region, (), OffsetFeet(long, np.tile([0.0, 1.0], (len(long), 1))))
     failure: OffsetError | None = None
     for change in _RETRIES:
         try:
             result, feet = _Attempt(region, distance * (1 + change)).result()
-            return replace(result, feet=Feet(long[feet.segment], feet.share))
+            return replace(result, feet=OffsetFeet(long[feet.segment], feet.share))
         except OffsetError as error:
             failure = failure or error
     assert failure is not None
@@ -134,7 +134,7 @@ class _Attempt:
         # Curves that touch or cross at small angles are apart by the tolerance over this length.
         self.blurred = 16 * float(np.sqrt(self.tolerance * size))
 
-    def result(self) -> tuple[Offset, Feet]:
+    def result(self) -> tuple[Offset, OffsetFeet]:
         """The offset, and its feet; raises OffsetError."""
         raw = raw_offset(self.region, self.distance, self.tolerance)
         parts = arrangement(raw.paths, raw.tail, raw.head, raw.nodes, self.tolerance)
@@ -159,7 +159,7 @@ class _Attempt:
         moved = parts.segment[first]
         share = np.column_stack((parts.t0[first], parts.t1[last])) + raw.joins[moved][:, None]
         lost = losses(self.region, self.distance, raw, parts, rings)
-        return Offset(paths, lost), Feet(raw.source[moved], share)
+        return Offset(paths, lost), OffsetFeet(raw.source[moved], share)
 
     def _nearest(self, points: Complexes, beyond: float = 0.0) -> Floats:
         """The distance of each point from the region's edge; infinite where it is more than the offset's + `beyond`."""

@@ -34,7 +34,7 @@ class Deviation(NamedTuple):
         return float(np.max(self.off, initial=0.0))
 
 
-class _Sides(NamedTuple):
+class _SectionSides(NamedTuple):
     """The sides of a tile's sections half way between levels, from `start` to `end`, complex128 (n,).
 
     `slab` (intp, n) is that of each, `before` (intp, n) the side that ends where it starts.
@@ -107,7 +107,7 @@ def _distinct(pairs: CopyPairs, site: int, stabilizers: Sequence[tuple[int, ...]
     return tuple(sorted(found))
 
 
-def _off(sides: _Sides, own: _Strokes, beside: _Strokes) -> Floats:
+def _off(sides: _SectionSides, own: _Strokes, beside: _Strokes) -> Floats:
     """How far the starts of sides are from the true wall, then their middles, then the starts from true corners."""
     place, slab = np.concatenate((sides.start, (sides.start + sides.end) / 2)), np.tile(sides.slab, 2)
     away, (other, copy) = own.away(place, slab)[0], beside.away(place, slab)
@@ -144,7 +144,7 @@ def _meeting(slope: Complexes, gap: Floats, other_slope: Complexes, other_gap: F
     return np.asarray(x + 1j * y)
 
 
-def _sides(mesh: TriangleMesh, heights: Floats, unit: float) -> _Sides:
+def _sides(mesh: TriangleMesh, heights: Floats, unit: float) -> _SectionSides:
     """The sides of sections half way between levels, in the design's units."""
     level = np.searchsorted(heights, mesh.vertices[:, 2])
     corner = level[mesh.triangles]
@@ -163,4 +163,4 @@ def _sides(mesh: TriangleMesh, heights: Floats, unit: float) -> _Sides:
     (end, start), (rising, falling) = ends, names
     order = np.argsort(rising)
     place = np.searchsorted(rising[order], falling).clip(max=len(order) - 1)
-    return _Sides(start, end, slab, order[place])
+    return _SectionSides(start, end, slab, order[place])
