@@ -7,12 +7,13 @@ from pathlib import Path
 
 import pytest
 from helpers.svg_text import svg
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from voronoi_tiles import Design, Job
+from voronoi_tiles.base.maps import Affine
 from voronoi_tiles.formats.reading import DrawingError, ReadDrawing
-from voronoi_tiles.formats.svg.reader import svg_drawing
+from voronoi_tiles.formats.svg.reader import drawing_of_tree, svg_drawing, svg_tree
 from voronoi_tiles.preflight import judge
 
 RECT = '<rect {} class="w" width="20" height="10" fill="none" stroke="red"/>'
@@ -336,3 +337,35 @@ def test_sheets_and_art_read_as_the_preflight_does(tmp_path: Path) -> None:
         assert ", 100.0% of the sheet drawn on 100 x 100 mm" in product.summary()
     (engraved,) = (layer for layer in tiling.make(Job()).drawing.layers if layer.work == "engrave")
     assert len(engraved.paths) == 2
+
+
+def test_several_elements_of_a_tree_are_read() -> None:
+    """Each shape says in which of them it stands, the outermost; clones of them are none of them."""
+    body = (
+        '<g id="a"><path d="M 1 1 H 9"/><g id="b"><path d="M 2 2 V 9"/>'
+        '<path id="dot" d="M 3 3 L 3 3" stroke="red"/></g></g>'
+        '<path id="c" d="M 3 3 V 9"/><use href="#c"/><path d="M 4 4 V 9"/><text>T</text>'
+    )
+    root, _ = svg_tree(
+        f'<svg xmlns="http://www.w3.org/2000/svg" width="9in" viewBox="0 0 9 9">{body}</svg>'.encode(), "t"
+    )
+    drawing = drawing_of_tree(root, "t", {"a", "b", "c"})
+    assert [shape.within for shape in drawing.shapes] == ["a", "a", "c"]
+    assert [dots.within for dots in drawing.dots] == ["a"]
+    assert [shape.within for shape in drawing_of_tree(root, "t", {"b"}).shapes] == ["b"]
+    assert (dict(drawing.ignored), drawing.clones) == ({}, 0)
+    assert [shape.within for shape in drawing_of_tree(root, "t", None).shapes] == [""] * 5
+    assert drawing.to_page(2 + 1j) == pytest.approx(2 * 25.4 + 8j * 25.4)
+
+
+numbers = st.complex_numbers(max_magnitude=100, allow_nan=False, allow_infinity=False)
+
+
+@given(numbers, numbers, numbers, numbers)
+def test_the_inverse_of_a_map_undoes_it(a: complex, b: complex, c: complex, place: complex) -> None:
+    """Of any map that is not nearly flat."""
+    assume(abs(abs(a) - abs(b)) > 1e-3 and abs(a) + abs(b) > 1e-2)
+    by = Affine(a, b, c)
+    worst = (1 + abs(place) + abs(c)) * (abs(a) + abs(b) + 1) / abs(abs(a) - abs(b))
+    assert abs(by.inverse(by(place)) - place) <= 1e-14 * worst
+    assert abs(by(by.inverse(place)) - place) <= 1e-14 * worst

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from voronoi_tiles.base.arrays import Complexes, Floats, ranges
-from voronoi_tiles.base.maps import move
+from voronoi_tiles.base.maps import from_matrix, move
 from voronoi_tiles.paths.areas import ring_areas
 from voronoi_tiles.paths.paths import ARC, CUBIC, LINE, QUAD, Paths
 
@@ -85,6 +85,21 @@ def test_moved(paths: Paths, angle: float, scale: float, conj: bool) -> None:
         assert np.abs(factor * (before.conj() if conj else before) + shift - after).max() < 1e-8
     assert image.lengths == pytest.approx(paths.lengths * scale, rel=1e-7)
     assert image.bulges() == pytest.approx(paths.bulges() * (-1 if conj else 1), rel=1e-9, abs=1e-12)
+    assert (image.control[image.kind == LINE] == 0).all()
+    assert (image.control[image.kind != CUBIC, 1] == 0).all()
+
+
+@SETTINGS
+@given(drawings(), st.tuples(*[st.floats(-3, 3)] * 6))
+def test_mapped(paths: Paths, parts: tuple[float, ...]) -> None:
+    """The image of every point of what is no circular arc under an affine map, joined where it was."""
+    a, b, c, d, e, f = parts
+    paths = paths.take(np.flatnonzero(np.bincount(paths.owner, paths.kind == ARC, len(paths)) == 0))
+    image = paths.mapped(from_matrix(*parts))
+    check_joints(image)
+    for before, after in zip(samples(paths), samples(image), strict=True):
+        x, y = before.real, before.imag
+        assert np.abs((a * x + c * y + e) + 1j * (b * x + d * y + f) - after).max(initial=0.0) < 1e-8
     assert (image.control[image.kind == LINE] == 0).all()
     assert (image.control[image.kind != CUBIC, 1] == 0).all()
 

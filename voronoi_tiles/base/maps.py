@@ -153,6 +153,13 @@ class Affine(NamedTuple):
         return self.a * z + self.b * z.conjugate() + self.c
 
     @property
+    def inverse(self) -> Affine:
+        """The map that undoes this one, but for rounding. Raises ZeroDivisionError where all goes to a line."""
+        area = (abs(self.a) - abs(self.b)) * (abs(self.a) + abs(self.b))
+        a, b = self.a.conjugate() / area, -self.b / area
+        return Affine(a, b, -(a * self.c + b * self.c.conjugate()))
+
+    @property
     def is_similar(self) -> bool:
         """Whether circles stay circles."""
         a, b = abs(self.a), abs(self.b)

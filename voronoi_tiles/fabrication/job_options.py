@@ -67,7 +67,10 @@ class JobError(ArgumentError):
 
 @dataclass(eq=False)
 class Option(Generic[Given, Kept]):
-    """An option of a job: `read` makes what is kept of what is given under a name; `words` are those that it takes."""
+    """An option of a job: `read` makes what is kept of what is given under a name; `words` are those that it takes.
+
+    `limits` are the least and the greatest number, where there are any.
+    """
 
     default: Kept
     read: Callable[[str, Any], Kept]
@@ -76,6 +79,7 @@ class Option(Generic[Given, Kept]):
     kind: Kind
     shown: str = ""
     words: tuple[str, ...] = ()
+    limits: tuple[float, float] | None = None
 
     def __set_name__(self, owner: type, name: str) -> None:
         self.name = name
@@ -145,7 +149,7 @@ def length(
             raise JobError(f"`{name}` {size:g} mm cannot be", remedy=f"Give a length from {least:g} to {most:,.0f} mm.")
         return size
 
-    return Option(default, read, help, kind="length", shown=shown)
+    return Option(default, read, help, kind="length", shown=shown, limits=(least, most))
 
 
 def rates(help: str, *, shown: str) -> Option[Rates, str | None]:  # noqa: A002 - as in Option

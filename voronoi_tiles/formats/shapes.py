@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.errors import DesignError
+from voronoi_tiles.base.maps import IDENTITY_MAP, Affine
 from voronoi_tiles.paths.paths import Paths
 
 BYTES_MAX: Final = 256 * 2**20
@@ -58,7 +59,8 @@ class Shape:
 
     `paths` are in millimetres, y up; of a file with a page its lower left corner is the origin. `layer` is the name of
     its layer, "" where it has none. `stroke` and `fill` are "#rrggbb", None where there is none; `stroke_width` is in
-    millimetres, None where the file does not say. `source` names the object in the file.
+    millimetres, None where the file does not say. `source` names the object in the file, and `within` is the id of the
+    element that was asked for, the outermost of several, that it is or stands in; "" where none was.
     """
 
     paths: Paths
@@ -67,6 +69,7 @@ class Shape:
     fill: str | None
     stroke_width: float | None
     source: str
+    within: str = ""
 
     def __repr__(self) -> str:
         return f"<Shape {self.source!r}: {len(self.paths)} paths on layer {self.layer!r}>"
@@ -83,6 +86,7 @@ class Dots:
     layer: str
     stroke: str | None
     source: str
+    within: str = ""
 
     def __repr__(self) -> str:
         return f"<Dots {self.source!r}: {len(self.places)} on layer {self.layer!r}>"
@@ -112,6 +116,7 @@ class ReadDrawing:
     dots: tuple[Dots, ...] = ()
     unit_guess: str = ""
     job: Mapping[str, Any] = field(default_factory=dict)
+    to_page: Affine = IDENTITY_MAP
 
     def __repr__(self) -> str:
         return f"<ReadDrawing {self.format}: {len(self.shapes)} shapes>"

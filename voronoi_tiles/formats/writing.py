@@ -30,7 +30,7 @@ def write_drawing(
         case "svg":
             from voronoi_tiles.formats.svg.writer import write_svg
 
-            write_svg(_without_arcs(drawing), out)
+            write_svg(without_arcs(drawing), out)
         case "dxf":
             from voronoi_tiles.formats.dxf.writer import write_dxf
 
@@ -73,8 +73,8 @@ def recoloured(
     return replace(drawing, layers=tuple(layers))
 
 
-def _without_arcs(drawing: Drawing) -> Drawing:
-    """Replace circular arcs by cubic curves."""
+def without_arcs(drawing: Drawing) -> Drawing:
+    """The same drawing with cubic curves in the place of circular arcs."""
     layers = [
         replace(layer, paths=to_cubics(layer.paths, accuracy=CUBIC_ACCURACY_MM))
         if (layer.paths.kind == ARC).any()

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints, ranges
 from voronoi_tiles.base.errors import ArgumentError
-from voronoi_tiles.base.maps import move
+from voronoi_tiles.base.maps import Affine, move
 
 Kinds = NDArray[np.uint8]
 
@@ -151,6 +151,15 @@ class Paths:
         """The image under z -> factor z + shift, or factor conj(z) + shift."""
         points = np.stack((self.start, self.end, *self.control.T))
         image = move(points, factor, shift, conj)
+        return replace(self, start=image[0], end=image[1], control=self._used(image[2:].T))
+
+    def mapped(self, by: Affine) -> Paths:
+        """The image under an affine map, of paths without ARCs, which it may make ellipses of."""
+        points = np.stack((self.start, self.end, *self.control.T))
+        (a, b), (c, d) = ((by.a + by.b).real, (by.b - by.a).imag), ((by.a + by.b).imag, (by.a - by.b).real)
+        image = np.empty_like(points)  # in real numbers: see `move`
+        image.real = a * points.real + b * points.imag + by.c.real
+        image.imag = c * points.real + d * points.imag + by.c.imag
         return replace(self, start=image[0], end=image[1], control=self._used(image[2:].T))
 
     def shifted(self, shift: Complexes) -> Paths:

@@ -8,7 +8,7 @@ counted; nothing outside the file is opened.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from functools import partial
 from typing import Final, NamedTuple
 
@@ -52,11 +52,26 @@ def svg_drawing(data: bytes, file: str, element: str | None = None) -> ReadDrawi
     Curves keep their kind; arcs of ellipses, and of circles under a transform that makes ellipses of them, become
     cubics within CURVE_ACCURACY. Raises DrawingError for what is broken, hostile or beyond the limits.
     """
+    root, sheets = svg_tree(data, file)
+    return drawing_of_tree(root, file, None if element is None else {element}, sheets=sheets, cloned=True)
+
+
+def svg_tree(data: bytes, file: str) -> tuple[Node, int]:
+    """The elements of an SVG file, and how many style sheets of other files it asks for. Raises DrawingError."""
     root, sheets = parse_tree(data, file, frozenset({f"{SVG}style", "style"}))
-    tag = tag_of(root)
-    if tag != "svg":
+    if tag_of(root) != "svg":
         raise DrawingError(f"no SVG drawing: its root is <{root.tag.rpartition(' ')[2][:40]}>", file=file)
-    return _SvgWalk(root, file, element, Counter({"style sheet of another file": sheets})).drawing()
+    return root, sheets
+
+
+def drawing_of_tree(
+    root: Node, file: str, elements: Collection[str] | None, *, sheets: int = 0, cloned: bool = False
+) -> ReadDrawing:
+    """What a tree draws, as `svg_drawing`; of some elements alone, by their ids, where these are given.
+
+    `sheets` counts style sheets that are not there. With `cloned` clones of these elements are drawn as well.
+    """
+    return _SvgWalk(root, file, elements, cloned, Counter({"style sheet of another file": sheets})).drawing()
 
 
 def _at(error: DrawingError, node: Node, file: str) -> DrawingError:
@@ -73,19 +88,23 @@ class _SvgVisit(NamedTuple):
     layer: str
     depth: int
     users: frozenset[int]  # the clones around it, by their targets: a clone of one of them is a circle
-    chosen: bool  # whether it is the element that is asked for, or stands in it
+    chosen: bool  # whether it is an element that is asked for, or stands in one
     view: tuple[float, float]  # what percentages refer to
     clips: tuple[Clip, ...] = ()
     faded: bool = False  # whether an opacity of 0 hides it
     size: tuple[str | None, str | None] | None = None  # width and height of the clone that draws it
+    within: str = ""  # the id of that element
 
 
 class _SvgWalk:
     """Draws a tree, with its own stack: the depth of a file is no depth of calls."""
 
-    def __init__(self, root: Node, file: str, element: str | None, ignored: Counter[str]) -> None:
+    def __init__(
+        self, root: Node, file: str, elements: Collection[str] | None, cloned: bool, ignored: Counter[str]
+    ) -> None:
         self._root = root
-        self._element = element
+        self._elements = elements
+        self._cloned = cloned
         self._file = file
         self._pen = Pen()
         self._cascade = Cascade(root)
@@ -99,8 +118,9 @@ class _SvgWalk:
     def drawing(self) -> ReadDrawing:
         """All that is drawn."""
         self._index()
-        if self._element is not None and self._element not in self._targets:
-            raise self._no_element(self._element)
+        for element in self._elements or ():
+            if element not in self._targets:
+                raise self._no_element(element)
         try:
             page = self._begin()
         except DrawingError as error:
@@ -132,6 +152,7 @@ class _SvgWalk:
             ignored=dict(sorted((+self._ignored).items())),
             clones=self._clones,
             dots=dots,
+            to_page=Affine(0j, 1 + 0j, complex(0.0, page.height or 0.0)) @ page.to_page,
         )
 
     def _begin(self) -> Page:
@@ -145,8 +166,10 @@ class _SvgWalk:
         style = style._replace(units=Units(em, em, page.window))
         # y is turned about the page's height; a file without one keeps the origin where it is.
         to_page = Affine(0j, 1 + 0j, complex(0.0, page.height or 0.0)) @ page.to_page
-        chosen = self._element in {None, root.attributes.get("id")}
+        name = root.attributes.get("id", "")
+        chosen = self._elements is None or name in self._elements
         visit = _SvgVisit(root, to_page, style, "", 0, frozenset(), chosen, page.view)
+        visit = visit._replace(within=name if chosen and self._elements is not None else "")
         said.note = partial(self._leave_out, chosen)
         self._note_effects(visit, said)
         if placed(said, page.view, style.units, None) != IDENTITY_MAP:
@@ -168,7 +191,7 @@ class _SvgWalk:
             shown = (style.stroke_shown, style.fill_shown)
             stroke, fill = (None if paint is None else paint.rgb for paint in shown)
             if len(places):
-                dots.append(Dots(places, visit.layer, stroke, source))
+                dots.append(Dots(places, visit.layer, stroke, source, visit.within))
             if not len(paths):
                 continue
             held = [clip.holds(paths) for clip in visit.clips]
@@ -177,7 +200,7 @@ class _SvgWalk:
             if False in held:
                 continue
             width = style.width.of(diagonal(visit.view)) * visit.to_page.scale
-            shapes.append(Shape(paths, visit.layer, stroke, fill, width, source))
+            shapes.append(Shape(paths, visit.layer, stroke, fill, width, source, visit.within))
         return tuple(shapes), tuple(dots)
 
     def _leave_out(self, chosen: bool, what: str) -> None:
@@ -218,8 +241,7 @@ class _SvgWalk:
             raise DrawingError(f"clones and groups nested more than {DEPTH_MAX:,} deep", remedy="Ungroup the drawing.")
         node = visit.node
         tag = tag_of(node)
-        if not visit.chosen and node.attributes.get("id") == self._element:
-            visit = visit._replace(chosen=True)
+        visit = self._asked(visit)
         is_viewport = tag == "svg" or (tag == "symbol" and visit.size is not None)
         if not tag or (tag in SILENT and not is_viewport) or not applies(node):
             return
@@ -250,6 +272,13 @@ class _SvgWalk:
             if node.attributes.get(f"{INKSCAPE}groupmode") == "layer":
                 visit = visit._replace(layer=node.attributes.get(f"{INKSCAPE}label", node.attributes.get("id", "")))
             self._push(visit, first_that_applies(node) if tag == "switch" else node.children)
+
+    def _asked(self, visit: _SvgVisit) -> _SvgVisit:
+        """An element, chosen where it is asked for."""
+        name = visit.node.attributes.get("id", "")
+        if visit.chosen or name not in (self._elements or ()) or (visit.users and not self._cloned):
+            return visit
+        return visit._replace(chosen=True, within=name)
 
     def _note_effects(self, visit: _SvgVisit, said: Declarations) -> None:
         """Count the effects of an element, which are not followed."""
