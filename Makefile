@@ -153,6 +153,10 @@ tests/readers/.venv-%/.installed: tests/readers/%.txt
 screenshots: $(INSTALLED_DEV)
 	$(VENV)/bin/python docs/generate/screenshots.py
 
+# The dialogs and drawings of Inkscape itself, on a screen that nobody sees.
+inkscape-pictures: $(INSTALLED_DOCS)
+	$(VENV)/bin/python docs/generate/inkscape_pictures.py
+
 gallery: $(INSTALLED_DOCS)
 	$(VENV)/bin/python docs/generate/gallery.py
 

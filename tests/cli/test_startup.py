@@ -50,6 +50,22 @@ def test_a_command_loads_what_it_needs(command: str, needed: str, tmp_path: Path
     assert loaded <= set(needed.split()), loaded - set(needed.split())
 
 
+def test_tiles_within_inkscape_load_little(tmp_path: Path) -> None:
+    """A live preview starts anew with every change of a number: numpy, and what reads styles."""
+    (tmp_path / "a.svg").write_text(
+        '<svg xmlns="http://www.w3.org/2000/svg" width="9in" height="9in"><path id="p" d="M 9 9 Q 99 0 70 80"/></svg>',
+        encoding="utf-8",
+    )
+    script = (
+        "import sys\nfrom voronoi_tiles.inkscape.extension import run\n"
+        "sys.argv[1:] = ['tiles', '--id=p', '--cell=numbers', '--side_a=99', '--group=p4', 'a.svg']\n"
+        "try:\n    run()\nexcept SystemExit as exit:\n    assert not exit.code, exit.code\n"
+        "print(*sys.modules, file=sys.stderr)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True, cwd=tmp_path)
+    assert (HEAVY | {"click"}) & set(done.stderr.splitlines()[-1].split()) == {"numpy", "tinycss2"}
+
+
 SERVER = {"starlette", "uvicorn", "websockets"}
 """What the studio's server is made of."""
 

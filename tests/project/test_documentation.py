@@ -42,6 +42,14 @@ PAGES = [ROOT / "README.md", *sorted(DOCS.glob("*.md"))]
 OURS = {name: command for name in COMMANDS if (command := cli.get_command(click.Context(cli), name))}
 """The commands of the command line."""
 
+
+def parameters(command: click.Command) -> Iterator[click.Parameter]:
+    """The parameters of a command, and of those that stand below it."""
+    yield from command.params
+    for below in command.commands.values() if isinstance(command, click.Group) else ():
+        yield from parameters(below)
+
+
 NOT_RUN = {
     "pip install -e .": "needs the index for the dependencies; the tests run in such an environment already",
     "python3 -m venv .venv": "the tests run in an environment already",
@@ -49,6 +57,9 @@ NOT_RUN = {
     ".ci/run": "runs these tests",
     "voronoi-tiles watch bird.toml": "runs until it is interrupted; test_watch.py does",
     "voronoi-tiles studio bird.toml": "serves until it is interrupted; the tests of the studio do",
+    "voronoi-tiles inkscape install": "would change what who runs the tests has; test_installing.py does it aside",
+    'xvfb-run -a inkscape --batch-process --actions="select-by-id:path1,path2;voronoi-tiles.tiles.noprefs;'
+    'export-filename:out.svg;export-do" drawing.svg': "takes a quarter of a minute; test_within_inkscape.py does",
 }
 """Commands of the pages that no test runs, each with the reason. Those of make are checked by their targets."""
 
@@ -450,7 +461,7 @@ def test_every_command_and_option_is_documented() -> None:
     missing = [
         f"{name} {flag}"
         for name, command in OURS.items()
-        for parameter in command.params
+        for parameter in parameters(command)
         if isinstance(parameter, click.Option)
         for flag in ["|".join(parameter.opts)]
         if not any(
@@ -463,9 +474,10 @@ def test_every_command_and_option_is_documented() -> None:
 
 def test_no_option_is_invented() -> None:
     """Each option in the pages is one of some command."""
-    known = {flag for command in OURS.values() for parameter in command.params for flag in parameter.opts}
+    known = {flag for command in OURS.values() for parameter in parameters(command) for flag in parameter.opts}
     foreign = {"--help", "--version", "--verbose", "--no-build-isolation", "--strict", "--cov"}
     foreign |= {"--sites", "--even"}  # of docs/generate/census.py
+    foreign |= {"--actions", "--batch-process", "--export-type"}  # of Inkscape
     for page in PAGES:
         named = set(re.findall(r"(?<![\w-])--[a-z][a-z-]+", page.read_text(encoding="utf-8")))
         assert named <= known | foreign, page.name

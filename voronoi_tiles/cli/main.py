@@ -26,6 +26,7 @@ COMMANDS: Final = (
     "coupon",
     "export",
     "info",
+    "inkscape",
     "new",
     "preflight",
     "render",
