@@ -90,7 +90,7 @@ def test_messages_speak_of_the_dialog() -> None:
     assert in_dialog(text) == '"kerf" needs "edges: pieces". Leave "label height" out, or "grain"'
 
 
-@pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.stem)
+@pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.name)
 def test_files_are_such_as_inkscape_reads(entry: Entry, tmp_path: Path) -> None:
     """By the schema that comes with Inkscape; no dependency that would hide an entry without a word."""
     text = inx_text(entry, "run.py", "a test")

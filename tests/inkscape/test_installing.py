@@ -16,7 +16,7 @@ from voronoi_tiles.inkscape import found_inkscape
 from voronoi_tiles.inkscape.installation import own_files
 from voronoi_tiles.inkscape.launcher import environment
 
-FILES = {"tiles.inx", "sheet.inx", "open-toml.inx", "open-svg.inx", "run_tiles.py", "run_sheet.py", "run_open.py"}
+FILES = {name for entry in ("tiles", "sheet", "strokes", "open") for name in (f"{entry}.inx", f"run_{entry}.py")}
 
 DRAWING = PAGES[0].svg(OBJECTS["cubics"].element)
 WORDS = ("--id=cubics", "--group=p1", "--cell=numbers", "--side_a=120")
@@ -229,7 +229,8 @@ def test_errors_are_sentences(tmp_path: Path) -> None:
         ),
         ("tiles", "--id=cubics", "none.svg"): (2, "none.svg: cannot be read: No such file or directory."),
         ("tiles",): (2, "this is for Inkscape to call, with one drawing. See its menu Extensions."),
-        ("open", "a.svg"): (2, "a.svg: no file of ours"),
+        ("open", "a.svg"): (2, "a.svg: is a drawing, not a design."),
+        ("strokes", "a.svg"): (2, "the drawing does not say which design it was made from. Open a file that"),
     }
     for (kind, *words), (code, text) in cases.items():
         done = started(folder, kind, *words)

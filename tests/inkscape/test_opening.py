@@ -8,7 +8,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 import pytest
 from helpers.examples import path_of
-from helpers.inkscape_drawings import difference, edges_of_path, paths_of, run
+from helpers.inkscape_drawings import PAGES, difference, edges_of_path, paths_of, run
 
 from voronoi_tiles import Design, Job
 from voronoi_tiles.base.errors import VoronoiTilesError
@@ -106,17 +106,35 @@ def test_the_tiles_are_the_designs_and_lie_on_the_page(tmp_path: Path) -> None:
         assert found[:, ::2].imag.max() < height - 9
 
 
-def test_files_of_ours_are_opened_by_their_recipe(tmp_path: Path) -> None:
-    """The exact tiles, a sheet for a cutter, a drawing that was made in Inkscape: all give that of their design."""
-    design = Design.load(path_of("p4-hook"))
-    design.save(tmp_path / "d.toml")
+@pytest.mark.parametrize("kind", ["exact", "sheet", "drawing"])
+def test_the_design_of_a_drawing_is_laid_beside_it(kind: str, tmp_path: Path) -> None:
+    """Of files of ours, and of what was made in Inkscape; nothing else changes, and the strokes give its tiles."""
+    design = in_segments(Design.load(path_of("p4-hook")))
     tiling = design.tessellate()
-    tiling.export(tmp_path / "exact.svg")
-    tiling.export(tmp_path / "sheet.svg", job=Job(sheet=(200, 150), kerf=0.2))
-    expected = answer("open", [str(tmp_path / "d.toml")])
-    (tmp_path / "again.svg").write_bytes(expected)
-    for name in ("exact.svg", "sheet.svg", "again.svg"):
-        assert answer("open", [str(tmp_path / name)]) == expected
+    file = tmp_path / "a.svg"
+    match kind:
+        case "exact":
+            tiling.export(file)
+        case "sheet":
+            tiling.export(file, job=Job(sheet=(200, 150), kerf=0.2))
+        case _:
+            body = '<path id="p" d="M 2 3 C 8 -4 15 14 24 6" style="stroke:#000"/>'
+            file.write_bytes(run(PAGES[5].svg(body), "--id=p", "--group=p1", "--cell=numbers", folder=tmp_path))
+    data = file.read_bytes()
+    made = answer("strokes", [str(file)])
+    words = [f"--id={home}" for home in groups_of(made)]
+    cell = next(one.get("id") for one in ET.fromstring(made).iter() if one.get("id", "").startswith("voronoi-cell-"))
+    group = "p1" if kind == "drawing" else "p4"
+    again = run(made, *words, f"--id={cell}", f"--group={group}", folder=tmp_path)
+    assert max(far(made, again).values()) < 1e-9
+    if kind == "drawing":
+        assert made.startswith(data[: data.index(b'<g xmlns="')])
+    else:
+        at = data.rindex(b"</svg>")
+        assert made.startswith(data[:at])
+        assert made.endswith(data[at:])
+        width = float(ET.fromstring(data).get("width", "").removesuffix("mm"))
+        assert min(edges_of_path(path).real.min() for path in paths_of(made).values()) > width
 
 
 @pytest.mark.parametrize(
@@ -124,8 +142,8 @@ def test_files_of_ours_are_opened_by_their_recipe(tmp_path: Path) -> None:
     [
         ("a.toml", "schema = 1\ngroup = 'p4'", "a.toml, cell: is missing."),
         ("a.toml", "schema = ", "a.toml, line 1: not TOML"),
-        ("a.svg", "<svg/>", "a.svg: no file of ours: it does not say which design it was made from. Open it as SVG"),
-        ("none.toml", None, "none.toml: cannot be read: No such file or directory. Check the name."),
+        ("a.svg", "<svg/>", "a.svg: is a drawing, not a design. Make a design of it: voronoi-tiles new p4"),
+        ("none.toml", None, "none.toml: cannot read the design: No such file or directory. Check the path"),
     ],
 )
 def test_what_is_no_design_is_refused(name: str, content: str | None, message: str, tmp_path: Path) -> None:

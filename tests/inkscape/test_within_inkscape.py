@@ -65,7 +65,7 @@ def test_tiles_come_into_the_drawing(home: Path) -> None:
 
 
 def test_designs_are_opened(home: Path) -> None:
-    """A design file is a drawing; SVG files, also of ours, are what they were."""
+    """A design file is a drawing, with its strokes, cell and tiles; SVG files are what they were."""
     (home / "design.toml").write_text(starter_text("p4"), encoding="utf-8")
     (home / "plain.svg").write_bytes(PAGES[0].svg(OBJECTS["line"].element))
     for name in ("design.toml", "plain.svg"):

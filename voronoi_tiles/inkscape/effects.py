@@ -17,7 +17,7 @@ from voronoi_tiles.formats.svg.reader import svg_tree
 from voronoi_tiles.inkscape.cell_drawing import cell_layer
 from voronoi_tiles.inkscape.cell_frame import CellFrame
 from voronoi_tiles.inkscape.dialog_fields import DesignFields, TilesFields
-from voronoi_tiles.inkscape.own_layers import OwnGroup, drawn_style, layer_text, with_layers
+from voronoi_tiles.inkscape.own_layers import OwnGroup, drawn_style, free_id, layer_text, with_layers
 from voronoi_tiles.inkscape.selected_strokes import Selection, selected
 from voronoi_tiles.inkscape.selection_design import SelectionDesign, design_of, touching_error
 
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 COLOUR: Final = "#000000"
 """The colour of outlines."""
 
-_FILE: Final = "the drawing"
+DRAWING: Final = "the drawing"
 """What messages call it: Inkscape hands over a copy, whose name says nothing."""
 
 
@@ -111,8 +111,8 @@ class _Run:
     @classmethod
     def of(cls, data: bytes, ids: Sequence[str], fields: DesignFields) -> _Run:
         """Compute the tiles of what is selected."""
-        root, _ = svg_tree(data, _FILE)
-        selection = selected(root, _FILE, ids)
+        root, _ = svg_tree(data, DRAWING)
+        selection = selected(root, DRAWING, ids)
         made = design_of(selection, fields)
         try:
             return cls(selection, made, made.design.tessellate())
@@ -127,11 +127,7 @@ class _Run:
 
     def free_id(self, wanted: str) -> str:
         """An id that nothing in the drawing begins with, but what is replaced."""
-        name, number = wanted, 1
-        while any(known.startswith(name) for known in self.selection.names):
-            number += 1
-            name = f"{wanted}-{number}"
-        return name
+        return free_id(wanted, self.selection.names)
 
     def cell(self) -> bytes:
         """The layer of a cell that was fitted, nothing where the drawing has it."""

@@ -10,7 +10,7 @@ from voronoi_tiles.fabrication.job_fields import JobFields
 from voronoi_tiles.fabrication.job_options import Option, OptionTable
 from voronoi_tiles.inkscape.dialog_fields import DesignFields, TilesFields
 
-EntryName = Literal["tiles", "sheet", "open"]
+EntryName = Literal["tiles", "sheet", "strokes", "open"]
 
 MENU: Final = "Voronoi tiles"
 """The submenu of Extensions, and what the names of file types begin with."""
@@ -42,13 +42,12 @@ ELSEWHERE: Final[Mapping[str, str]] = {
 
 @dataclass(frozen=True)
 class Entry:
-    """An entry: its files' stem, its name, a line and more lines on it, and the options on the pages of its dialog.
+    """An entry: its name, its title, a line and more lines on it, and the options on the pages of its dialog.
 
     `suffix` is that of the files that it opens, "" where it changes a drawing; `live` says that it can be previewed.
     """
 
-    stem: str
-    kind: EntryName
+    name: EntryName
     title: str
     tip: str
     help: str = ""
@@ -73,7 +72,6 @@ _SHEET_HELP: Final = """\
 The sheet comes to a layer of its own, its lower left corner in that of the page; the next run replaces it. Without a \
 size it is the page. What is left empty is as usual.
 """
-_OPEN_TIP: Final = "The design's strokes, to be changed, with its cell and its tiles"
 
 
 def _options(*tables: type[OptionTable]) -> dict[str, Option[Any, Any]]:
@@ -84,7 +82,6 @@ def _options(*tables: type[OptionTable]) -> dict[str, Option[Any, Any]]:
 ENTRIES: Final = (
     Entry(
         "tiles",
-        "tiles",
         "Tiles from Selection",
         "The exact tiles that strokes have in a wallpaper group",
         _SELECT + _TILES_HELP,
@@ -94,15 +91,23 @@ ENTRIES: Final = (
     ),
     Entry(
         "sheet",
-        "sheet",
         "Sheet from Selection",
         "A sheet of the tiles that strokes have in a wallpaper group, ready to cut",
         _SELECT + _SHEET_HELP,
         _options(DesignFields, JobFields),
         SHEET_PAGES,
     ),
-    Entry("open-toml", "open", f"{MENU}: a design (*.toml)", _OPEN_TIP, suffix=".toml"),
-    Entry("open-svg", "open", f"{MENU}: the design of a file of ours (*.svg)", _OPEN_TIP, suffix=".svg"),
+    Entry(
+        "strokes",
+        "Strokes of this Drawing",
+        "The strokes, the cell and the tiles of the design that a file of ours was made from, beside its page",
+    ),
+    Entry(
+        "open",
+        f"{MENU}: a design (*.toml)",
+        "The strokes of a design, to be changed, with its cell and its tiles",
+        suffix=".toml",
+    ),
 )
 """All of them, in the order of the menu."""
 

@@ -58,6 +58,10 @@ def answer(entry: EntryName | str, words: Sequence[str]) -> bytes:
 
             given, job = call.arguments(DesignFields, JobFields)
             return sheet(call.drawing(), call.ids, DesignFields(**given), job)
+        case "strokes":
+            from voronoi_tiles.inkscape.opened_design import beside
+
+            return beside(call.drawing())
         case "open":
             from voronoi_tiles.inkscape.opened_design import opened
 

@@ -27,15 +27,15 @@ _MARK: Final = "written by voronoi-tiles inkscape install"
 def own_files(python: str, libraries: Mapping[str, str]) -> dict[str, bytes]:
     """The files of all entries by their names, for an interpreter and where that finds libraries."""
     mark = f"{_MARK} {__version__}"
-    files = {f"{entry.stem}.inx": inx_text(entry, f"run_{entry.kind}.py", mark).encode() for entry in ENTRIES}
+    files = {f"{entry.name}.inx": inx_text(entry, f"run_{entry.name}.py", mark).encode() for entry in ENTRIES}
     source = Path(launcher.__file__).read_text(encoding="utf-8")
-    for kind in dict.fromkeys(entry.kind for entry in ENTRIES):
+    for entry in ENTRIES:
         filled = source
-        for name, value in (("ENTRY", kind), ("PYTHON", python), ("LIBRARIES", dict(libraries))):
+        for name, value in (("ENTRY", entry.name), ("PYTHON", python), ("LIBRARIES", dict(libraries))):
             empty = f"\n{name} = {getattr(launcher, name)!r}".replace("'", '"')
             assert filled.count(empty) == 1, name
             filled = filled.replace(empty, f"\n{name} = {value!r}")
-        files[f"run_{kind}.py"] = f"# {mark}\n{filled}".encode()
+        files[f"run_{entry.name}.py"] = f"# {mark}\n{filled}".encode()
     return files
 
 

@@ -39,7 +39,7 @@ def inx_text(entry: Entry, launcher: str, mark: str) -> str:
     """The .inx file of an entry that is run by a launcher, the name of a Python file beside it; `mark` is a comment."""
     root = ET.Element("inkscape-extension", xmlns=_NAMESPACE)
     _child(root, "name", entry.title)
-    _child(root, "id", f"voronoi-tiles.{entry.stem}")
+    _child(root, "id", f"voronoi-tiles.{entry.name}")
     if entry.pages:
         book = _child(root, "param", name="page", type="notebook")
         for title, names in entry.pages.items():
@@ -52,7 +52,7 @@ def inx_text(entry: Entry, launcher: str, mark: str) -> str:
     if entry.suffix:
         reads = _child(root, "input")
         _child(reads, "extension", entry.suffix)
-        _child(reads, "mimetype", {".toml": "application/toml", ".svg": "image/svg+xml"}[entry.suffix])
+        _child(reads, "mimetype", f"application/{entry.suffix.removeprefix('.')}")
         _child(reads, "filetypename", entry.title)
         _child(reads, "filetypetooltip", entry.tip)
     else:
@@ -77,7 +77,7 @@ def _add_parameter(page: ET.Element, name: str, option: Option[Any, Any]) -> Non
     """Add the widget of an option. What is left empty is not said."""
     common = {
         "name": name,
-        "gui-text": f"{_label(name).capitalize()}{_unit(option)}:",
+        "gui-text": f"{_label(name).capitalize()}{_taken(option)}",
         "gui-description": in_dialog(option.help),
     }
     if option.limits is not None and option.default is not None:
@@ -98,9 +98,12 @@ def _add_parameter(page: ET.Element, name: str, option: Option[Any, Any]) -> Non
         _child(box, "option", shown, value=word)
 
 
-def _unit(option: Option[Any, Any]) -> str:
-    """What the numbers of an option are, in parentheses."""
-    return {"length": " (mm)", "angle": " (degrees)"}.get(option.kind, "")
+def _taken(option: Option[Any, Any]) -> str:
+    """What is behind the name of an option: what its numbers are, or what may be written."""
+    if option.kind in {"flag", "word"}:
+        return "" if option.kind == "flag" else ":"
+    units = {"length": "mm", "angle": "degrees"}
+    return f" ({units.get(option.kind, option.shown.replace('|', ', '))}):"
 
 
 def _words(name: str, option: Option[Any, Any]) -> dict[str, str]:

@@ -1,6 +1,6 @@
 """Started by Inkscape, with whatever Python that has; starts the one that has voronoi_tiles, and hands everything on.
 
-`voronoi-tiles inkscape install` copies this file beside its .inx files, once for each kind of entry, with ENTRY, PYTHON
+`voronoi-tiles inkscape install` copies this file beside its .inx files, once for each entry, with ENTRY, PYTHON
 and LIBRARIES filled in. It runs with Pythons from 3.8 on, and needs no other module of ours.
 """
 
@@ -10,7 +10,7 @@ import os
 import sys
 
 ENTRY = ""
-"""What is asked for: the kind of an entry."""
+"""What is asked for: the name of an entry."""
 
 PYTHON = ""
 """The interpreter in whose environment voronoi_tiles is installed."""

@@ -4,26 +4,29 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 import numpy as np
 
 from voronoi_tiles.base.arrays import Complexes
-from voronoi_tiles.base.documents import read_bytes
-from voronoi_tiles.base.errors import DesignError, why_not_opened
+from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import Affine, Placement
 from voronoi_tiles.designs import schema
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.fabrication.exact import design_recipe
 from voronoi_tiles.formats.page import fitting_page
 from voronoi_tiles.formats.recipe import recipe_of
-from voronoi_tiles.formats.shapes import BYTES_MAX
 from voronoi_tiles.formats.svg.path_text import decimal_text, path_data
+from voronoi_tiles.formats.svg.reader import drawing_of_tree, svg_tree
 from voronoi_tiles.inkscape.cell_drawing import cell_layer
 from voronoi_tiles.inkscape.cell_frame import CellFrame, corners_of
-from voronoi_tiles.inkscape.effects import outlines
-from voronoi_tiles.inkscape.own_layers import OwnGroup, drawn_style, layer_text
+from voronoi_tiles.inkscape.effects import DRAWING, outlines
+from voronoi_tiles.inkscape.own_layers import OwnGroup, drawn_style, free_id, layer_text, with_layers
+from voronoi_tiles.inkscape.selected_strokes import known_elements
 from voronoi_tiles.paths.paths import CUBIC, LINE, Paths
+
+if TYPE_CHECKING:
+    from voronoi_tiles.tiling import Tiling
 
 _MARGIN_MM: Final = 10.0
 """What is free about the cell and the tiles; millimetres."""
@@ -42,70 +45,94 @@ _HEAD: Final = (
 
 
 def opened(file: str) -> bytes:
-    """The drawing of a design file, or of the design that a file of ours was made from: SVG, in millimetres.
+    """The drawing of a design file: SVG, in millimetres.
 
     Its strokes are in a group for each site, what a selection is made of, with the curves that they have; its cell is
     the rectangle with that label. Raises VoronoiTilesError.
     """
-    design = _design_in(file)
-    tiling = design.tessellate()
-    unit = design.unit_mm
-    sides = {name: side * (1.0 if name == "angle" else design.scale * unit) for name, side in design.cell.items()}
-    strokes = {site.name: list(_strokes(design, k)) for k, site in enumerate(design.noded)}
-    cell = CellFrame(sides, 0j, 1 + 0j)
-    boxes = np.array([tile.bounds for tile in tiling]) * unit
-    a, b = (corner - cell.origin for corner in corners_of(cell, design.group)[1:])
-    drawn = np.concatenate([points.ravel() for listed in strokes.values() for points in listed]) * unit
-    x = np.concatenate([boxes[:, ::2].ravel(), [0.0, a.real, b.real, (a + b).real], drawn.real])
-    y = np.concatenate([boxes[:, 1::2].ravel(), [0.0, b.imag], drawn.imag])
-    low, high = complex(x.min(), y.min()), complex(x.max(), y.max())
-    margin = _MARGIN_MM * (1 + 1j)
-    width, height, corner = fitting_page(
-        (low - margin).real, (low - margin).imag, (high + margin).real, (high + margin).imag
-    )
-    frame = cell._replace(origin=-corner)
+    parts = _Parts.of(Design.load(file))
+    width, height, corner = fitting_page(*parts.bounds)
     to_page = Affine(0j, 1 + 0j, complex(0.0, height))
-    groups = [
-        OwnGroup(
-            name,
-            drawn_style(_COLOUR, _LINE_MM, to_page) + ";stroke-linecap:round",
-            [(_data(points * unit + frame.origin, to_page), "") for points in listed],
-        )
-        for name, listed in strokes.items()
-    ]
-    layers = (
-        layer_text(
-            "tiles",
-            "tiles",
-            "voronoi-tiles",
-            [outlines(tiling, frame, to_page, _LINE_MM)],
-            recipe=design_recipe(design),
-            notes=tuple(_notes(design)),
-        ),
-        cell_layer(frame, design.group, to_page, "voronoi-cell"),
-        layer_text(None, "strokes", "voronoi-strokes", groups),
-    )
     head = _HEAD.format(decimal_text(width), decimal_text(height))
-    return head.encode() + b"\n".join(layers) + b"\n</svg>\n"
+    return head.encode() + parts.layers(-corner, to_page, frozenset()) + b"\n</svg>\n"
 
 
-def _design_in(file: str) -> Design:
-    """The design of a file, or that of the recipe in a drawing."""
-    try:
-        data = read_bytes(file, BYTES_MAX + 1)
-    except (OSError, ValueError) as error:
-        reason = why_not_opened(file, error)
-        raise DesignError(f"cannot be read: {reason}", file=file, remedy="Check the name.") from None
-    recipe = recipe_of(data)
-    if "design" in recipe:
-        return Design.loads(recipe["design"], format="json", file=file, name=file)
-    if data.lstrip()[:1] == b"<":
+def beside(data: bytes) -> bytes:
+    """A drawing with what `opened` gives of the design that it was made from, to the right of its page.
+
+    Raises VoronoiTilesError.
+    """
+    root, _ = svg_tree(data, DRAWING)
+    drawing = drawing_of_tree(root, DRAWING, ())
+    text = recipe_of(data).get("design")
+    if text is None:
         raise DesignError(
-            "no file of ours: it does not say which design it was made from",
-            file=file,
-            remedy="Open it as SVG, and use Extensions > Voronoi tiles.",
+            "the drawing does not say which design it was made from",
+            remedy="Open a file that voronoi-tiles has written, or one with a layer of tiles.",
         )
-    return Design.load(file)
+    parts = _Parts.of(Design.loads(text, format="json", file=DRAWING))
+    left, bottom, _, _ = parts.bounds
+    origin = complex((drawing.width or 0.0) - left, -bottom)
+    names = frozenset(known_elements(root)[1])
+    return with_layers(data, "tiles", parts.layers(origin, drawing.to_page, names))
+
+
+class _Parts(NamedTuple):
+    """What there is to draw of a design, in millimetres about its origin.
+
+    `strokes` are those of each site by its name, polylines, (n,), and cubic pieces, (k, 4); `bounds` are those of all,
+    with a margin.
+    """
+
+    tiling: Tiling
+    cell: CellFrame
+    strokes: dict[str, list[Complexes]]
+    bounds: tuple[float, float, float, float]
+
+    @classmethod
+    def of(cls, design: Design) -> _Parts:
+        """The parts of a design."""
+        tiling, unit = design.tessellate(), design.unit_mm
+        sides = {name: side * (1.0 if name == "angle" else design.scale * unit) for name, side in design.cell.items()}
+        cell = CellFrame(sides, 0j, 1 + 0j)
+        strokes = {site.name: [unit * one for one in _strokes(design, k)] for k, site in enumerate(design.noded)}
+        boxes = np.array([tile.bounds for tile in tiling]) * unit
+        _, a, b = corners_of(cell, design.group)
+        points = np.concatenate(
+            [
+                (boxes[:, ::2] + 1j * boxes[:, 1::2]).ravel(),
+                np.array([0j, a, b, a + b]),
+                *(one.ravel() for listed in strokes.values() for one in listed),
+            ]
+        )
+        low, high = complex(points.real.min(), points.imag.min()), complex(points.real.max(), points.imag.max())
+        margin = _MARGIN_MM
+        return cls(
+            tiling, cell, strokes, (low.real - margin, low.imag - margin, high.real + margin, high.imag + margin)
+        )
+
+    def layers(self, origin: complex, to_page: Affine, names: frozenset[str]) -> bytes:
+        """The layers of tiles, cell and strokes, the design's origin at a place of the page; `names` are ids taken."""
+        frame = self.cell._replace(origin=origin)
+        style = drawn_style(_COLOUR, _LINE_MM, to_page) + ";stroke-linecap:round"
+        groups = [
+            OwnGroup(name, style, [(_data(points + origin, to_page), "") for points in listed])
+            for name, listed in self.strokes.items()
+        ]
+        design = self.tiling.design
+        layers = (
+            layer_text(
+                "tiles",
+                "tiles",
+                free_id("voronoi-tiles", names),
+                [outlines(self.tiling, frame, to_page, _LINE_MM)],
+                recipe=design_recipe(design),
+                notes=tuple(_notes(design)),
+            ),
+            cell_layer(frame, design.group, to_page, free_id("voronoi-cell", names)),
+            layer_text(None, "strokes", free_id("voronoi-strokes", names), groups),
+        )
+        return b"\n".join(layers)
 
 
 def _strokes(design: Design, site: int) -> Iterator[Complexes]:

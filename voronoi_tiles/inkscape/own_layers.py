@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from html import escape
 from typing import Final, Literal, NamedTuple
 from xml.parsers import expat
@@ -59,6 +59,15 @@ def layer_text(
         parts.append("</g>")
     parts.append(f"{more}</g>")
     return "\n".join(parts).encode("ascii", "xmlcharrefreplace")
+
+
+def free_id(wanted: str, names: Collection[str]) -> str:
+    """An id that none of some names begins with: as it is wanted, or with a number."""
+    name, number = wanted, 1
+    while any(known.startswith(name) for known in names):
+        number += 1
+        name = f"{wanted}-{number}"
+    return name
 
 
 def drawn_style(colour: str, line: float, to_page: Affine) -> str:

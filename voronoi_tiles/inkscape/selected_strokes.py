@@ -68,7 +68,7 @@ class Selection:
 
 def selected(root: Node, file: str, ids: Sequence[str]) -> Selection:
     """What is selected of a drawing. Raises DesignError where that is nothing, or what makes no strokes."""
-    own, known = _own_and_known(root)
+    own, known = known_elements(root)
     chosen = [name for name in known if name in set(ids) and name not in own]
     if not chosen:
         what, remedy = "nothing is selected", "Select the strokes of a tile: paths, shapes, or groups."
@@ -101,7 +101,7 @@ def selected(root: Node, file: str, ids: Sequence[str]) -> Selection:
     )
 
 
-def _own_and_known(root: Node) -> tuple[set[str], dict[str, Node]]:
+def known_elements(root: Node) -> tuple[set[str], dict[str, Node]]:
     """The ids of what stands in layers of ours, and all elements that are drawn by their ids, in the file's order."""
     own: set[str] = set()
     known: dict[str, Node] = {}
