@@ -16,7 +16,7 @@ from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
-from scipy import ndimage, signal, sparse, spatial
+from scipy import ndimage, sparse, spatial
 
 from voronoi_tiles.base.arrays import Complexes, Floats, counting, plane
 from voronoi_tiles.base.errors import DesignError
@@ -124,7 +124,7 @@ class _Silhouette:
             self._picture(_snapped(-move(points, factor, 0j, conj), self.pixel))
             for points in (self.points, self.bridged)
         )
-        pairs = signal.fftconvolve(bridged, image) + signal.fftconvolve(own, image_bridged)
+        pairs = _convolved(bridged, image) + _convolved(own, image_bridged)
         field = np.pad(pairs < 0.5, math.ceil(_REACH * _PIXELS) + 1, constant_values=True)  # whole, but for rounding
         distance: Floats = ndimage.distance_transform_edt(field) * self.pixel
         return np.minimum(distance, _REACH * self.diameter)
@@ -136,6 +136,17 @@ class _Silhouette:
         cells = np.rint(plane(points / self.pixel)).astype(np.intp) + half
         picture[cells[:, 1], cells[:, 0]] = 1.0
         return picture
+
+
+def _convolved(one: Floats, other: Floats) -> Floats:
+    """The convolution of two pictures, as large as both together.
+
+    That of scipy.signal is the same; its import takes longer than all else that is done here.
+    """
+    shape = [a + b - 1 for a, b in zip(one.shape, other.shape, strict=True)]
+    fast = [2 ** math.ceil(math.log2(side)) for side in shape]
+    product = np.fft.irfft2(np.fft.rfft2(one, fast) * np.fft.rfft2(other, fast), fast)
+    return product[: shape[0], : shape[1]]
 
 
 def _samples(ends: Complexes, step: float) -> Complexes:
