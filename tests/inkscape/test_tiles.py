@@ -146,6 +146,34 @@ def test_a_layer_is_replaced_wherever_it_is(moved: Callable[[bytes], bytes], tmp
     assert len(ET.fromstring(again).findall("./*[@{urn:voronoi-tiles:recipe}role]")) == 1
 
 
+def test_tiles_that_were_moved_to_another_layer_stay(tmp_path: Path) -> None:
+    """They are drawings like others then: kept, and no id is there twice."""
+    drawing = MM.svg(OBJECTS["cubics"].element, '<g id="kept">KEPT</g>')
+    made = run(drawing, "--id=cubics", *CELL, folder=tmp_path)
+    path = re.search(rb'<path id="voronoi-tiles-0-0".*?/>', made)
+    assert path is not None
+    kept = made.replace(path[0], b"").replace(b"KEPT", path[0])
+    again = run(kept, "--id=cubics", *CELL, "--side_a=130", folder=tmp_path)
+    assert path[0] in again
+    ids = [found.get("id") for found in ET.fromstring(again).iter() if found.get("id")]
+    assert len(ids) == len(set(ids))
+    assert len(paths_of(again)) == 1
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "latin-1", "utf-8-sig"])
+def test_other_encodings_are_kept_or_refused(encoding: str, tmp_path: Path) -> None:
+    """Nothing is put into bytes that it does not fit."""
+    text = MM.svg(OBJECTS["cubics"].element.replace('id="cubics"', 'id="cubics" inkscape:label="Küche"')).decode()
+    drawing = text.replace("UTF-8", encoding.removesuffix("-sig")).encode(encoding)
+    if encoding == "utf-16":
+        with pytest.raises(VoronoiTilesError, match="in another encoding than UTF-8"):
+            run(drawing, "--id=cubics", *CELL, folder=tmp_path)
+        return
+    made = run(drawing, "--id=cubics", *CELL, folder=tmp_path)
+    assert made.startswith(drawing[: drawing.rindex(b"</svg>")])
+    assert len(paths_of(made)) == 1
+
+
 def test_each_group_is_a_site(tmp_path: Path) -> None:
     """Named as it is called; what is in no group is one site together; together they fill the cell."""
     body = (

@@ -9,6 +9,7 @@ from xml.parsers import expat
 
 from voronoi_tiles.base.maps import Affine
 from voronoi_tiles.base.text import xml_text
+from voronoi_tiles.formats.shapes import DrawingError
 from voronoi_tiles.formats.svg.path_text import decimal_text
 from voronoi_tiles.formats.svg.writer import INKSCAPE_NAMESPACE, RECIPE_NAMESPACE
 
@@ -94,7 +95,7 @@ def recipe_text(recipe: Mapping[str, str]) -> str:
 def with_layers(data: bytes, role: Role, layers: bytes) -> bytes:
     """A drawing with layers in the place of the one that has this role, or above all others.
 
-    Raises ValueError for a drawing without any element.
+    Raises DrawingError for a drawing without any element, and for one whose bytes are not as in UTF-8.
     """
     places = _Places(data, role)
     new = bytearray(data)
@@ -125,8 +126,10 @@ class _Places:
         self._parser.EndElementHandler = self._finish
         self._parser.DefaultHandler = self._other
         self._parser.Parse(data, True)
-        if self.end < 0:
-            raise ValueError("the outermost element is empty")
+        if self.end < 0 or not data.startswith(b"</", self.end):
+            raise DrawingError(
+                "the drawing is empty, or in another encoding than UTF-8", remedy="Draw something, and save it."
+            )
 
     def _start(self, _tag: str, attributes: dict[str, str]) -> None:
         inside = bool(self._open) and self._open[-1][1]
