@@ -349,13 +349,13 @@ def test_several_elements_of_a_tree_are_read() -> None:
     root, _ = svg_tree(
         f'<svg xmlns="http://www.w3.org/2000/svg" width="9in" viewBox="0 0 9 9">{body}</svg>'.encode(), "t"
     )
-    drawing = drawing_of_tree(root, "t", {"a", "b", "c"})
+    drawing, to_page = drawing_of_tree(root, "t", {"a", "b", "c"})
     assert [shape.within for shape in drawing.shapes] == ["a", "a", "c"]
     assert [dots.within for dots in drawing.dots] == ["a"]
-    assert [shape.within for shape in drawing_of_tree(root, "t", {"b"}).shapes] == ["b"]
+    assert [shape.within for shape in drawing_of_tree(root, "t", {"b"}).read.shapes] == ["b"]
     assert (dict(drawing.ignored), drawing.clones) == ({}, 0)
-    assert [shape.within for shape in drawing_of_tree(root, "t", None).shapes] == [""] * 5
-    assert drawing.to_page(2 + 1j) == pytest.approx(2 * 25.4 + 8j * 25.4)
+    assert [shape.within for shape in drawing_of_tree(root, "t", None).read.shapes] == [""] * 5
+    assert to_page(2 + 1j) == pytest.approx(2 * 25.4 + 8j * 25.4)
 
 
 numbers = st.complex_numbers(max_magnitude=100, allow_nan=False, allow_infinity=False)

@@ -11,7 +11,6 @@ from typing import Any, Final
 
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.errors import DesignError
-from voronoi_tiles.base.maps import IDENTITY_MAP, Affine
 from voronoi_tiles.paths.paths import Paths
 
 BYTES_MAX: Final = 256 * 2**20
@@ -116,7 +115,6 @@ class ReadDrawing:
     dots: tuple[Dots, ...] = ()
     unit_guess: str = ""
     job: Mapping[str, Any] = field(default_factory=dict)
-    to_page: Affine = IDENTITY_MAP
 
     def __repr__(self) -> str:
         return f"<ReadDrawing {self.format}: {len(self.shapes)} shapes>"

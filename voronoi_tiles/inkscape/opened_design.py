@@ -50,7 +50,7 @@ def opened(file: str) -> bytes:
     Its strokes are in a group for each site, what a selection is made of, with the curves that they have; its cell is
     the rectangle with that label. Raises VoronoiTilesError.
     """
-    parts = _Parts.of(Design.load(file))
+    parts = _DesignParts.of(Design.load(file))
     width, height, corner = fitting_page(*parts.bounds)
     to_page = Affine(0j, 1 + 0j, complex(0.0, height))
     head = _HEAD.format(decimal_text(width), decimal_text(height))
@@ -63,21 +63,21 @@ def beside(data: bytes) -> bytes:
     Raises VoronoiTilesError.
     """
     root, _ = svg_tree(data, DRAWING)
-    drawing = drawing_of_tree(root, DRAWING, ())
+    drawing, to_page = drawing_of_tree(root, DRAWING, ())
     text = recipe_of(data).get("design")
     if text is None:
         raise DesignError(
             "the drawing does not say which design it was made from",
             remedy="Open a file that voronoi-tiles has written, or one with a layer of tiles.",
         )
-    parts = _Parts.of(Design.loads(text, format="json", file=DRAWING))
+    parts = _DesignParts.of(Design.loads(text, format="json", file=DRAWING))
     left, bottom, _, _ = parts.bounds
     origin = complex((drawing.width or 0.0) - left, -bottom)
     names = frozenset(known_elements(root)[1])
-    return with_layers(data, "tiles", parts.layers(origin, drawing.to_page, names))
+    return with_layers(data, "tiles", parts.layers(origin, to_page, names))
 
 
-class _Parts(NamedTuple):
+class _DesignParts(NamedTuple):
     """What there is to draw of a design, in millimetres about its origin.
 
     `strokes` are those of each site by its name, polylines, (n,), and cubic pieces, (k, 4); `bounds` are those of all,
@@ -90,7 +90,7 @@ class _Parts(NamedTuple):
     bounds: tuple[float, float, float, float]
 
     @classmethod
-    def of(cls, design: Design) -> _Parts:
+    def of(cls, design: Design) -> _DesignParts:
         """The parts of a design."""
         tiling, unit = design.tessellate(), design.unit_mm
         sides = {name: side * (1.0 if name == "angle" else design.scale * unit) for name, side in design.cell.items()}

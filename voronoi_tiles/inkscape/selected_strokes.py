@@ -82,7 +82,7 @@ def selected(root: Node, file: str, ids: Sequence[str]) -> Selection:
     _refuse_lost(known[name] for name in chosen)
     cell = _cell(known.values(), {*chosen}, own)
     wanted = {*chosen} if cell is None else {*chosen, cell.attributes["id"]}
-    drawing = drawing_of_tree(root, file, wanted)
+    drawing, to_page = drawing_of_tree(root, file, wanted)
     for what in _CLONED:
         if what in drawing.ignored:
             raise DesignError(
@@ -96,9 +96,7 @@ def selected(root: Node, file: str, ids: Sequence[str]) -> Selection:
         drawing = _without(drawing, source)
     size = None if drawing.width is None or drawing.height is None else (drawing.width, drawing.height)
     names = frozenset(known).difference(own)
-    return Selection(
-        tuple(_sites(drawing, known, chosen)), corners, tuple(_notes(drawing)), size, drawing.to_page, names
-    )
+    return Selection(tuple(_sites(drawing, known, chosen)), corners, tuple(_notes(drawing)), size, to_page, names)
 
 
 def known_elements(root: Node) -> tuple[set[str], dict[str, Node]]:

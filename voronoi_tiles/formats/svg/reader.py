@@ -53,7 +53,14 @@ def svg_drawing(data: bytes, file: str, element: str | None = None) -> ReadDrawi
     cubics within CURVE_ACCURACY. Raises DrawingError for what is broken, hostile or beyond the limits.
     """
     root, sheets = svg_tree(data, file)
-    return drawing_of_tree(root, file, None if element is None else {element}, sheets=sheets, cloned=True)
+    return drawing_of_tree(root, file, None if element is None else {element}, sheets=sheets, cloned=True).read
+
+
+class SvgDrawing(NamedTuple):
+    """What was read, and the map from user units of the outermost element, y down, to its millimetres."""
+
+    read: ReadDrawing
+    to_page: Affine
 
 
 def svg_tree(data: bytes, file: str) -> tuple[Node, int]:
@@ -66,7 +73,7 @@ def svg_tree(data: bytes, file: str) -> tuple[Node, int]:
 
 def drawing_of_tree(
     root: Node, file: str, elements: Collection[str] | None, *, sheets: int = 0, cloned: bool = False
-) -> ReadDrawing:
+) -> SvgDrawing:
     """What a tree draws, as `svg_drawing`; of some elements alone, by their ids, where these are given.
 
     `sheets` counts style sheets that are not there. With `cloned` clones of these elements are drawn as well.
@@ -115,7 +122,7 @@ class _SvgWalk:
         self._clones = 0
         self._stack: list[_SvgVisit] = []
 
-    def drawing(self) -> ReadDrawing:
+    def drawing(self) -> SvgDrawing:
         """All that is drawn."""
         self._index()
         for element in self._elements or ():
@@ -142,7 +149,7 @@ class _SvgWalk:
                 raise _at(error, visit.node, self._file) from None
         shapes, dots = self._shapes()
         self._ignored["style rule"] += self._cascade.unread
-        return ReadDrawing(
+        read = ReadDrawing(
             format="svg",
             width=page.width,
             height=page.height,
@@ -152,8 +159,8 @@ class _SvgWalk:
             ignored=dict(sorted((+self._ignored).items())),
             clones=self._clones,
             dots=dots,
-            to_page=Affine(0j, 1 + 0j, complex(0.0, page.height or 0.0)) @ page.to_page,
         )
+        return SvgDrawing(read, page.upwards)
 
     def _begin(self) -> Page:
         """Read the page, and have what it holds drawn."""
@@ -164,8 +171,7 @@ class _SvgWalk:
         page = read_page(said.geometry(), style.units, said.note)
         em = style.units.em
         style = style._replace(units=Units(em, em, page.window))
-        # y is turned about the page's height; a file without one keeps the origin where it is.
-        to_page = Affine(0j, 1 + 0j, complex(0.0, page.height or 0.0)) @ page.to_page
+        to_page = page.upwards
         name = root.attributes.get("id", "")
         chosen = self._elements is None or name in self._elements
         visit = _SvgVisit(root, to_page, style, "", 0, frozenset(), chosen, page.view)

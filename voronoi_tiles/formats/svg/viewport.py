@@ -32,6 +32,11 @@ class Page(NamedTuple):
     view: tuple[float, float]
     window: tuple[float, float]
 
+    @property
+    def upwards(self) -> Affine:
+        """The map with y turned about the page's height; a file without one keeps the origin where it is."""
+        return Affine(0j, 1 + 0j, complex(0.0, self.height or 0.0)) @ self.to_page
+
 
 def read_page(attributes: Mapping[str, str], units: Units, note: Note) -> Page:
     """The page of the root element; a size that is no length is noted, and as good as none.
