@@ -32,6 +32,20 @@ def test_nearest_are_those_of_a_tree(number: int, count: int) -> None:
     assert all(len(set(row)) == count for row in index.tolist())
 
 
+@pytest.mark.parametrize("count", [1, 5])
+def test_without_scipy_nearest_are_the_same(count: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Blender's Python has none: many points are looked through in portions."""
+    random = np.random.default_rng(count)
+    among, points = (random.random((2, n, 2)).view(np.complex128)[0, :, 0] for n in (3000, 4000))
+    tree = Neighbours(among)
+    monkeypatch.setitem(sys.modules, "scipy.spatial", None)
+    plain = Neighbours(among)
+    assert plain._tree is None
+    assert tree._tree is not None
+    for one, other in zip(plain.nearest(points, count), tree.nearest(points, count), strict=True):
+        assert one == pytest.approx(other, rel=1e-12)
+
+
 @pytest.mark.parametrize("edges", [0, 1, 30, 60, 200])
 @pytest.mark.parametrize("seed", range(5))
 def test_components_are_those_of_scipy(seed: int, edges: int) -> None:
