@@ -22,7 +22,7 @@ RANKS = (
     ("tile",),
     ("tiling",),
     ("solid",),
-    ("inkscape", "studio"),
+    ("blender", "inkscape", "studio"),
     ("cli",),
 )
 """Every package and module below the root package; those of one rank do not import each other, but for BESIDE."""

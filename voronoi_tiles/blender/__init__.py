@@ -1,0 +1,1 @@
+"""What the extension for Blender asks of the engine, in arrays: nothing here knows of Blender."""
