@@ -7,6 +7,9 @@
 #   make format  rewrite the sources' layout         make clean   remove all that was made here
 #   make docs    the documentation, in docs/_build   make paper   docs/paper.md: the paper, reproduced and measured
 #   make wheels  what a release is made of: the source and a wheel for each platform, in dist
+#   make blender the extension for Blender, a file for each platform, in dist
+#   make blender-pictures  those of docs/blender.md, rendered
+#   make blender-versions  its tests in the oldest and the newest Blender that it is for
 #   make gallery the pictures of docs/gallery.md     make diagrams  the drawings of the other pages
 #   make screenshots  those of docs/studio.md, by the tests' browser
 #   make readers  docs/readers.md: what other programs make of our files, measured
@@ -14,7 +17,7 @@
 #   make page-format rewrite the layout of the page's modules, and of the tests' scripts
 
 .DEFAULT_GOAL := help
-.PHONY: help demo studio test test-slow test-pythons environment environments lint format types bench fuzz docs paper gallery diagrams screenshots wheels readers reader-programs page-tools page-format clean
+.PHONY: help demo studio test test-slow test-pythons environment environments lint format types bench fuzz docs paper gallery diagrams screenshots wheels blender blender-programs blender-pictures blender-versions readers reader-programs page-tools page-format clean
 .DELETE_ON_ERROR:
 
 PYTHON ?= python3
@@ -78,9 +81,9 @@ test: $(INSTALLED_DEV)
 test-slow: $(INSTALLED_DEV)
 	$(VENV)/bin/python -m pytest -m slow -n auto --dist worksteal $(PYTEST)
 
-# What the page does in a browser is the same whatever Python serves it; the wheel is one for all; and numpy and the kernels
+# What the page does in a browser is the same whatever Python serves it, Blender has its own; the wheel is one for all; and numpy and the kernels
 # compute the same: of that each Python takes other cases.
-ANOTHER := $(patsubst %,--ignore-glob=*/test_%,browser* page_* accessibility* wheel*) --thin
+ANOTHER := $(patsubst %,--ignore-glob=*/test_%,browser* page_* accessibility* wheel* addon*) --thin
 
 # $(call each-python,TARGET): made for every other Python that is here, in an environment of its own.
 define each-python
@@ -112,7 +115,7 @@ types: $(INSTALLED_DEV)
 	rm -rf $(TYPES)/voronoi_tiles && mkdir -p $(TYPES)/voronoi_tiles
 	ln -s $(addprefix ../../,$(wildcard voronoi_tiles/*) vector raster) $(TYPES)/voronoi_tiles
 	cd $(TYPES) && $(abspath $(VENV))/bin/mypy --config-file ../pyproject.toml --cache-dir cache \
-	    voronoi_tiles $(addprefix ../,tests bench docs setup.py .ci/pythons.py)
+	    voronoi_tiles $(addprefix ../,tests bench blender docs setup.py .ci/pythons.py)
 
 # targets.py exits with 3 where not all that was asked is reached, which its tables say; anything else is a failure.
 bench: $(INSTALLED_DEV)
@@ -173,6 +176,29 @@ wheels: $(INSTALLED_DEV)
 	        $(VENV)/bin/python -m pip wheel --quiet --no-deps --wheel-dir dist dist/*.tar.gz || exit 1; \
 	done
 	@ls -l dist
+
+# With our wheels, and pip's of the libraries that it needs.
+blender: wheels
+	$(VENV)/bin/python blender/build.py
+
+# Blender as a Python module, 0.8 GB, which takes one version of Python alone.
+blender-programs: tests/readers/.venv-blender/.installed
+
+tests/readers/.venv-blender/.installed: PYTHON := $(or $(shell command -v python3.11),$(PYTHON))
+
+blender-pictures: $(INSTALLED_DEV) blender-programs
+	$(VENV)/bin/python docs/generate/blender.py
+
+# The tests of the extension in other versions: for each its number, and the Python that it takes.
+BLENDERS ?= 4.2.23-python3.11 4.5.15-python3.11 5.3.0-python3.13
+
+blender-versions: $(INSTALLED_DEV)
+	set -e; for one in $(BLENDERS); do \
+	    there=tests/readers/.venv-blender-$${one%-*}; \
+	    test -e $$there/.installed || { $${one#*-} -m venv $$there; $$there/bin/python $(PIP) bpy==$${one%-*}; touch $$there/.installed; }; \
+	    VORONOI_TILES_REQUIRE_BLENDER=1 VORONOI_TILES_BLENDER=$$there/bin/python \
+	        $(VENV)/bin/python -m pytest tests/blender/test_addon.py -m slow $(PYTEST) || exit 1; \
+	done
 
 # Of exactly the versions that package-lock.json names; nothing of it runs in the page.
 page-tools: tests/studio/node_modules/.package-lock.json

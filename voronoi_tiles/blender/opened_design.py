@@ -47,7 +47,7 @@ def opened(design: Design) -> OpenedDesign:
 def _spline(points: Complexes, curved: bool) -> DrawnSpline:
     """A stroke as it is read: a polyline, or cubic curves one after the other."""
     if not curved:
-        closed = len(points) > 3 and points[0] == points[-1]
+        closed = len(points) > 3 and bool(points[0] == points[-1])
         return DrawnSpline("poly", points[:-1] if closed else points, closed)
     ends = np.append(points[:, 0], points[-1, 3])
     left, right = np.append(points[:1, 0], points[:, 2]), np.append(points[:, 1], points[-1:, 3])

@@ -1,0 +1,346 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What one can ask for: tiles of what is selected, a starter, a design file, solids, files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+import bpy
+import numpy as np
+from bpy.props import EnumProperty, StringProperty
+from mathutils import Vector
+
+from voronoi_tiles.base.errors import TouchingCopiesError, VoronoiTilesError
+from voronoi_tiles.blender.cubic_splines import coordinates
+from voronoi_tiles.blender.drawn_splines import DrawnSpline
+from voronoi_tiles.blender.drawn_tiling import decimal
+from voronoi_tiles.blender.opened_design import OpenedDesign, opened, proposed_cell
+from voronoi_tiles.blender.polygon_mesh import PolygonMesh
+from voronoi_tiles.blender.solid_meshes import placed_solids
+from voronoi_tiles.blender.written_files import SUFFIXES, FileJob, write_file
+from voronoi_tiles.designs.design import Design
+from voronoi_tiles.designs.drawn_solid import Solid
+from voronoi_tiles.designs.starters import starter
+from voronoi_tiles.fabrication.job import Job
+from voronoi_tiles.groups.wallpaper import GROUPS
+from voronoi_tiles.solid.solid_job import SolidJob
+
+from . import reading, showing
+from .requirements import missing
+from .settings import DRAWN, tiling_of
+from .updating import rebuild
+
+LARGER = 1.25
+"""By how much a proposed cell grows where copies touch in it; a factor."""
+
+TRIES = 12
+"""How often; a count."""
+
+GROUP_ITEMS = [(name, name, f"{group.system} cell, {group.order} copies") for name, group in GROUPS.items()]
+
+
+class _Operator(bpy.types.Operator):
+    """An operator that says what is wrong in a sentence."""
+
+    bl_options = {"REGISTER", "UNDO"}
+
+    def execute(self, context: Any) -> set[str]:
+        try:
+            self.done(context)
+        except VoronoiTilesError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+    def done(self, context: Any) -> None:
+        raise NotImplementedError
+
+
+class _OnTiling(_Operator):
+    """An operator on the tiling of the active object."""
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return tiling_of(context.object) is not None
+
+
+class VORONOI_TILES_OT_tile(_Operator):
+    """Make the selected curves and grease pencils the sites of a tiling, or of the one that is selected as well"""
+
+    bl_idname = "voronoi_tiles.tile"
+    bl_label = "Tile"
+    __annotations__ = {"group": EnumProperty(name="Group", items=GROUP_ITEMS, default="p4")}
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return any(item.type in DRAWN for item in context.selected_objects)
+
+    def done(self, context: Any) -> None:
+        chosen = [
+            item for item in context.selected_objects if item.type in DRAWN and item.voronoi_tiles.role in ("", "site")
+        ]
+        there = next((found for item in context.selected_objects if (found := tiling_of(item))), None)
+        if there is not None:
+            add_sites(there, chosen)
+            rebuild(there)
+            return
+        context.view_layer.update()
+        tiling = new_tiling(context, self.group, chosen[0].name)
+        add_sites(tiling, chosen)
+        _propose(context, tiling, chosen)
+        rebuild(tiling)
+
+
+class VORONOI_TILES_OT_starter(_Operator):
+    """Draw a starter of a group, and its tiles"""
+
+    bl_idname = "voronoi_tiles.starter"
+    bl_label = "Starter"
+    __annotations__ = {"group": EnumProperty(name="Group", items=GROUP_ITEMS, default="p4")}
+
+    def done(self, context: Any) -> None:
+        draw_design(context, self.group, opened(starter(self.group)))
+
+
+class VORONOI_TILES_OT_open(_Operator):
+    """Draw the sites of a design file, and its tiles"""
+
+    bl_idname = "voronoi_tiles.open"
+    bl_label = "Open a Design"
+    __annotations__ = {
+        "filepath": StringProperty(subtype="FILE_PATH"),
+        "filter_glob": StringProperty(default="*.toml;*.json", options={"HIDDEN"}),
+    }
+
+    def invoke(self, context: Any, _event: Any) -> set[str]:
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def done(self, context: Any) -> None:
+        draw_design(context, Path(self.filepath).stem, opened(Design.load(self.filepath)))
+
+
+class VORONOI_TILES_OT_update(_OnTiling):
+    """Compute the tiles of the active tiling, and prove them"""
+
+    bl_idname = "voronoi_tiles.update"
+    bl_label = "Update"
+
+    def done(self, context: Any) -> None:
+        rebuild(tiling_of(context.object))
+
+
+class VORONOI_TILES_OT_remove(_OnTiling):
+    """Remove the tiling and its tiles; what is drawn stays"""
+
+    bl_idname = "voronoi_tiles.remove"
+    bl_label = "Remove Tiling"
+
+    def done(self, context: Any) -> None:
+        showing.remove_all(tiling_of(context.object))
+
+
+class VORONOI_TILES_OT_solids(_OnTiling):
+    """Show solids in the field: prisms with clearance and chamfer, or lofts; they stay until the drawing changes"""
+
+    bl_idname = "voronoi_tiles.solids"
+    bl_label = "Make Solids"
+
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        return not missing() and super().poll(context)
+
+    def done(self, context: Any) -> None:
+        tiling = tiling_of(context.object)
+        settings = tiling.voronoi_tiles
+        settings.field = True
+        rebuild(tiling)
+        if settings.message:
+            self.report({"ERROR"}, settings.message)
+            return
+        job, solid = solid_jobs(settings)
+        made = placed_solids(reading.drawn_tiling(tiling), settings.unit_mm, job, solid)
+        sites = reading.drawn_sites(tiling)
+        for (number, mirrored), mesh in showing.sources(tiling).items():
+            pivot = complex(*sites[number].pivot)
+            showing.set_mesh(mesh, about(made.meshes[number], pivot, mirrored=mirrored))
+        settings.solids = made.proved
+
+
+class VORONOI_TILES_OT_export(_OnTiling):
+    """Write the tiles as a file, proved and exact: cut sheets, solids, or the design for the command line"""
+
+    bl_idname = "voronoi_tiles.export"
+    bl_label = "Export Tiles"
+    bl_options = {"REGISTER"}
+    __annotations__ = {
+        "filepath": StringProperty(subtype="FILE_PATH"),
+        "filter_glob": StringProperty(default=";".join(f"*{suffix}" for suffix in SUFFIXES), options={"HIDDEN"}),
+    }
+
+    def invoke(self, context: Any, _event: Any) -> set[str]:
+        name = bpy.path.clean_name(tiling_of(context.object).name)
+        self.filepath = str(Path(bpy.path.abspath("//") or Path.home()) / f"{name}.svg")
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def done(self, context: Any) -> None:
+        tiling = tiling_of(context.object)
+        settings = tiling.voronoi_tiles
+        prisms, solid = solid_jobs(settings)
+        flat = Job(sheet=settings.sheet or None, kerf=settings.kerf) if settings.sheet or settings.kerf else None
+        job = FileJob(settings.unit_mm, flat, prisms, solid)
+        self.report({"INFO"}, write_file(reading.drawn_tiling(tiling), bpy.path.abspath(self.filepath), job))
+
+
+def solid_jobs(settings: Any) -> tuple[SolidJob, Solid | None]:
+    """The job of prisms in millimetres, and how strokes move in units, None where they do not."""
+    if settings.loft:
+        return SolidJob(), Solid(
+            decimal(settings.height),
+            layers=settings.layers,
+            turn=decimal(settings.turn),
+            scale=decimal(settings.grow),
+            shift=tuple(map(decimal, settings.shift)),
+            about=tuple(map(decimal, settings.about)),
+        )
+    return (
+        SolidJob(
+            height=decimal(settings.height) * decimal(settings.unit_mm),
+            clearance=decimal(settings.clearance),
+            chamfer=decimal(settings.chamfer),
+        ),
+        None,
+    )
+
+
+def about(mesh: PolygonMesh, pivot: complex, *, mirrored: bool) -> PolygonMesh:
+    """A mesh moved so that a pivot is its origin, and turned over in y."""
+    vertices = mesh.vertices - np.array([pivot.real, pivot.imag, 0.0], np.float32)
+    if not mirrored:
+        return mesh._replace(vertices=vertices)
+    # Triangles: backwards they are seen from outside again.
+    return mesh._replace(vertices=vertices * np.array([1, -1, 1], np.float32), corners=mesh.corners[::-1].copy())
+
+
+def new_tiling(context: Any, group: str, name: str) -> Any:
+    """The empty of a new tiling, and its collections."""
+    results = bpy.data.collections.new(f"{name} tiles")
+    context.scene.collection.children.link(results)
+    field = bpy.data.collections.new(f"{name} field")
+    results.children.link(field)
+    tiling = bpy.data.objects.new(f"{name} tiling", None)
+    tiling.lock_scale = (True, True, True)
+    results.objects.link(tiling)
+    settings = tiling.voronoi_tiles
+    settings.results, settings.field_results = results, field
+    settings.group = group
+    settings.role = "tiling"
+    showing.build_marker(tiling)
+    return tiling
+
+
+def add_sites(tiling: Any, items: Iterable[Any]) -> None:
+    """Make objects sites of a tiling; those of others leave them."""
+    for item in items:
+        old = item.voronoi_tiles.of
+        if old is not None and old != tiling:
+            sites = old.voronoi_tiles.sites
+            for k in reversed(range(len(sites))):
+                if sites[k].object == item:
+                    sites.remove(k)
+        if all(site.object != item for site in tiling.voronoi_tiles.sites):
+            tiling.voronoi_tiles.sites.add().object = item
+        item.voronoi_tiles.role, item.voronoi_tiles.of = "site", tiling
+
+
+def _propose(context: Any, tiling: Any, items: Iterable[Any]) -> None:
+    """A cell about what is drawn, in which its copies keep apart."""
+    settings = tiling.voronoi_tiles
+    frame = np.eye(4)
+    parts = [spline.points for item in items for spline in reading.splines(item, frame)]
+    points = np.concatenate([np.zeros(0, np.complex128), *parts])
+    if not len(points):
+        return
+    cell = proposed_cell(settings.group, points)
+    middle = complex(points.real.min() + points.real.max(), points.imag.min() + points.imag.max()) / 2
+    for _ in range(TRIES):
+        settings.a, settings.b, settings.angle = cell.a, cell.b, cell.angle
+        tiling.location = (cell.origin.real, cell.origin.imag, 0.0)
+        context.view_layer.update()
+        try:
+            reading.drawn_tiling(tiling).tiles()
+        except TouchingCopiesError:
+            larger = middle + LARGER * (cell.origin - middle)
+            cell = cell._replace(a=LARGER * cell.a, b=LARGER * cell.b, origin=larger)
+        except VoronoiTilesError:
+            return
+        else:
+            return
+
+
+def draw_design(context: Any, name: str, design: OpenedDesign) -> Any:
+    """Draw a design: a curve object for each site, and the tiling."""
+    tiling = new_tiling(context, design.group, name)
+    settings = tiling.voronoi_tiles
+    settings.a, settings.b, settings.angle, settings.unit_mm = design.a, design.b, design.angle, design.unit_mm
+    items = []
+    for site, splines in design.sites:
+        curve = bpy.data.curves.new(site, "CURVE")
+        curve.dimensions = "2D"
+        curve.fill_mode = "NONE"
+        for spline in splines:
+            _draw(curve, spline)
+        item = bpy.data.objects.new(site, curve)
+        context.scene.collection.objects.link(item)
+        items.append(item)
+    add_sites(tiling, items)
+    for item in context.selected_objects:
+        item.select_set(False)
+    items[0].select_set(True)
+    context.view_layer.objects.active = items[0]
+    context.view_layer.update()
+    rebuild(tiling)
+    return tiling
+
+
+def _draw(curve: Any, spline: DrawnSpline) -> None:
+    """Add a spline to a curve."""
+    if spline.kind == "bezier":
+        drawn = curve.splines.new("BEZIER")
+        drawn.bezier_points.add(len(spline.points) - 1)
+        for side in ("left", "right"):
+            drawn.bezier_points.foreach_set(f"handle_{side}_type", np.full(len(spline.points), showing.FREE, np.int32))
+        for key, points in (("co", spline.points), ("handle_left", spline.left), ("handle_right", spline.right)):
+            drawn.bezier_points.foreach_set(key, coordinates(points))
+    else:
+        drawn = curve.splines.new("POLY")
+        drawn.points.add(len(spline.points) - 1)
+        for point, place in zip(drawn.points, spline.points.tolist(), strict=True):
+            point.co = Vector((place.real, place.imag, 0.0, 1.0))
+    drawn.use_cyclic_u = spline.closed
+
+
+CLASSES = (
+    VORONOI_TILES_OT_tile,
+    VORONOI_TILES_OT_starter,
+    VORONOI_TILES_OT_open,
+    VORONOI_TILES_OT_update,
+    VORONOI_TILES_OT_remove,
+    VORONOI_TILES_OT_solids,
+    VORONOI_TILES_OT_export,
+)
+
+
+def register() -> None:
+    """Make them known."""
+    for one in CLASSES:
+        bpy.utils.register_class(one)
+
+
+def unregister() -> None:
+    """Forget them."""
+    for one in reversed(CLASSES):
+        bpy.utils.unregister_class(one)

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From objects of Blender to what the engine is given: splines in the plane of the group."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from voronoi_tiles.blender.drawn_splines import DrawnSpline, nurbs_knots
+from voronoi_tiles.blender.drawn_tiling import DrawnTiling, decimal
+
+
+def drawn_tiling(tiling: Any) -> DrawnTiling:
+    """What is drawn of a tiling; objects that are in no scene any more are left out."""
+    settings = tiling.voronoi_tiles
+    frame = np.linalg.inv(np.array(tiling.matrix_world, np.float64))
+    return DrawnTiling(
+        group=settings.group,
+        a=decimal(settings.a),
+        b=decimal(settings.b),
+        angle=decimal(settings.angle),
+        sites=tuple((site.object.name, tuple(splines(site.object, frame))) for site in drawn_sites(tiling)),
+        smoothing=decimal(settings.smoothing) / 100,
+    )
+
+
+def drawn_sites(tiling: Any) -> list[Any]:
+    """The sites whose objects are in a scene: those that have been deleted are kept by their tiling alone."""
+    return [site for site in tiling.voronoi_tiles.sites if site.object and site.object.users_scene]
+
+
+def digest(drawn: DrawnTiling) -> str:
+    """What tells one drawing from another."""
+    found = hashlib.sha256()
+    found.update(repr([drawn.group, drawn.a, drawn.b, drawn.angle, drawn.smoothing]).encode())
+    for name, parts in drawn.sites:
+        found.update(repr((name, len(parts))).encode())
+        for spline in parts:
+            for value in spline:
+                found.update(value.tobytes() if isinstance(value, np.ndarray) else repr(value).encode())
+    return found.hexdigest()
+
+
+def splines(item: Any, frame: Any) -> Iterator[DrawnSpline]:
+    """The splines of a curve, or the strokes of a grease pencil's present frames, seen from a frame."""
+    to_plane = frame @ np.array(item.matrix_world, np.float64)
+    if item.type == "CURVE":
+        yield from (_spline(spline, to_plane) for spline in item.data.splines if spline.point_count_v <= 1)
+        return
+    for layer in item.data.layers:
+        if layer.hide:
+            continue
+        own = to_plane @ np.array(getattr(layer, "matrix_local", None) or layer.matrix_layer, np.float64)
+        old = hasattr(layer, "active_frame")  # before 4.3
+        shown = layer.active_frame if old else layer.current_frame()
+        if shown is None:
+            continue
+        for stroke in shown.strokes if old else shown.drawing.strokes:
+            name = "co" if old else "position"
+            points = np.array([getattr(point, name) for point in stroke.points], np.float64).reshape(-1, 3)
+            yield DrawnSpline("freehand", _plane(points, own), bool(stroke.use_cyclic if old else stroke.cyclic))
+
+
+def _spline(spline: Any, to_plane: Any) -> DrawnSpline:
+    closed = bool(spline.use_cyclic_u)
+    if spline.type == "BEZIER":
+        points, left, right = (
+            _plane(_read(spline.bezier_points, name, 3), to_plane) for name in ("co", "handle_left", "handle_right")
+        )
+        return DrawnSpline("bezier", points, closed, left, right)
+    found = _read(spline.points, "co", 4)
+    points, weights = _plane(found[:, :3], to_plane), found[:, 3]
+    if spline.type == "POLY":
+        return DrawnSpline("poly", points, closed)
+    order = min(spline.order_u, len(points))
+    knots = nurbs_knots(len(points), order, closed=closed, clamped=spline.use_endpoint_u, bezier=spline.use_bezier_u)
+    return DrawnSpline("nurbs", points, closed, order=order, weights=weights, knots=knots)
+
+
+def _read(points: Any, name: str, size: int) -> Any:
+    """A property of all points, float64 (n, size)."""
+    found = np.empty(size * len(points), np.float32)
+    points.foreach_get(name, found)
+    return found.reshape(-1, size).astype(np.float64)
+
+
+def _plane(points: Any, to_plane: Any) -> Any:
+    """Points seen from above, complex128 (n,)."""
+    x, y = (points @ row[:3] + row[3] for row in to_plane[:2])
+    return x + 1j * y

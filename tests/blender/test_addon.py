@@ -1,0 +1,148 @@
+"""The extension in Blender, from its file to its removal: what users do, without a window."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from helpers.blender import Extension, blender_python
+
+import voronoi_tiles as vt
+from voronoi_tiles.base import kernels
+from voronoi_tiles.base.arrays import Complexes
+
+pytestmark = pytest.mark.slow
+
+ULP = 2.0**-23
+"""The spacing of single precision at 1."""
+
+
+def test_blender_accepts_the_file(extension: Extension) -> None:
+    """Its own check of extensions says nothing against it."""
+    code = "import bpy; print(bpy.utils.resource_path('LOCAL'))"
+    said = subprocess.run([blender_python(), "-c", code], capture_output=True, text=True, check=True)
+    checker = Path(said.stdout.splitlines()[-1]) / "scripts" / "addons_core" / "bl_pkg" / "cli" / "blender_ext.py"
+    done = subprocess.run(
+        [blender_python(), checker, "validate", extension.file], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "Success" in done.stdout
+
+
+def test_it_is_installed_used_saved_opened_and_removed(extension: Extension) -> None:
+    """As a user does it: its own engine, compiled; tiles are saved, opened and followed; nothing stays when it goes."""
+    found, folder = extension.run("life")
+    assert Path(found["library"]).is_relative_to(folder / "home" / "extensions")
+    assert (found["kernels"] == "compiled") == (kernels.library() is not None)
+    assert found["same"]
+    assert found["proved"]
+    assert found["copies"] == [36, 36]
+    assert found["follows"]
+    assert found["listening"] == 1
+    left = {"handlers": 0, "settings": False, "operators": False, "panels": False, "objects": found["objects"]}
+    assert found["left"] == left
+    assert found["remain"] == ["lizard"]
+    assert found["collections"] == 0
+
+
+def places(matrices: Any, vertices: Any) -> Complexes:
+    """Where matrices of Blender take the vertices of a mesh, in double precision."""
+    points = np.column_stack((vertices.astype(np.float64), np.ones(len(vertices))))
+    moved = points @ matrices.astype(np.float64).T
+    return np.asarray(moved[:, 0] + 1j * moved[:, 1])
+
+
+def test_instances_are_our_copies_in_all_groups(extension: Extension) -> None:
+    """Within a unit in the last place of single precision; their meshes are closed, and as large as the tiles.
+
+    The unit is that of the copy's largest coordinate, in which Blender adds. Tiles of several sites have chords that
+    their neighbours have as well: together they have the area of the cell.
+    """
+    found, folder = extension.run("groups", ",".join(vt.GROUPS))
+    assert list(found["groups"]) == list(vt.GROUPS)
+    for group, drawn in found["groups"].items():
+        # As it was drawn, in single precision.
+        tiling = vt.Design.load(folder / f"{group}.toml").tessellate()
+        arrays = np.load(folder / f"{group}.npz")
+        sites = [tile.name for tile in tiling]
+        assert len(set(drawn["names"])) == len(drawn["names"]) == 6 * sum(tile.copies_per_cell for tile in tiling)
+        areas = dict.fromkeys(sites, 0.0)
+        for name, matrix, (mesh, closed, area, volume) in zip(
+            drawn["names"], arrays["matrices"], drawn["meshes"], strict=True
+        ):
+            site, operation = name.rsplit(" ", 1)
+            tile = tiling[site]
+            exact = tile.copy(operation)
+            limit = ULP * 2.0 ** np.floor(np.log2(np.abs(np.array(exact.bounds)).max()))
+            there = places(matrix, arrays[mesh])
+            away = there[:, None] - exact.start
+            nearest = away[np.abs(away).argmin(axis=0), np.arange(len(exact))]
+            assert max(np.abs(nearest.real).max(), np.abs(nearest.imag).max()) <= limit, (group, name)
+            assert closed, (group, name)
+            assert volume == pytest.approx(drawn["height"] * area, rel=1e-6)
+            areas[site] += area
+        for tile in tiling:
+            if len(tiling) == 1:
+                assert areas[tile.name] / (6 * tile.copies_per_cell) == pytest.approx(tile.area, rel=1e-6)
+        assert sum(areas.values()) == pytest.approx(6 * tiling.design.lattice.det, rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_what_is_shown_is_what_is_drawn_through_undo(extension: Extension, seed: int) -> None:
+    """After each of 200 steps of dragging, undo, redo, settings and the edit mode; with no exception and no crash."""
+    found, _ = extension.run("drags", str(seed), name=f"drags {seed}")
+    assert found["wrong"] == []
+    assert sum(found["steps"].values()) == 200 == found["shown"] + found["refused"]
+    assert found["shown"] > 100
+    assert found["steps"]["undo"] > 20
+
+
+def test_copies_that_touch_are_marked_and_the_tile_stays(extension: Extension) -> None:
+    """A sentence and a marker at the place; when they part the marker goes. So it is where nothing is drawn."""
+    found, _ = extension.run("touching")
+    assert found["said"].startswith("bird touches its own copy at (")
+    said = [float(number) for number in re.findall(r"-?\d+\.?\d*", found["said"])[:2]]
+    assert found["place"] == pytest.approx([*said, 0.0], abs=1e-2)
+    for key in ("stays", "shown", "back", "hidden", "proved"):
+        assert found[key], key
+    assert found["nothing"].startswith("Nothing is drawn: ")
+
+
+def test_all_kinds_of_drawings_are_read(extension: Extension) -> None:
+    """NURBS as Blender draws them, grease pencil, objects that are moved and turned; one that is deleted goes."""
+    found, _ = extension.run("kinds")
+    for away, ends in found["nurbs"].values():
+        assert away < 1e-3  # of Blender's own chords; 4.2 cuts corners by 4e-4
+        assert ends < 1e-6
+    assert found["tile"] == ["", True, ["hand", "line"]]
+    assert np.array(found["seen"]) == pytest.approx(np.array([[40.0, 9.0], [24.0, 9.0]]), abs=1e-5)
+    assert found["strokes"] == 100
+    assert found["resized"]
+    assert found["left"] == ["", True]
+    assert found["tiles"] == ["hand"]
+
+
+def test_the_panel_asks_for_what_the_group_needs(extension: Extension) -> None:
+    """Sides and angle by the group; solids and files are made; what is missing is said, and not offered."""
+    found, folder = extension.run("asking")
+    assert {"Tile", "Starter", "Open a Design"} <= set(found["nothing"])
+    assert {"Proved", "a", "b", "Angle", "Make Solids", "Export Tiles"} <= set(found["oblique"])
+    assert not {"b", "Angle"} & set(found["hexagonal"])
+    assert found["prisms"][0] == found["lofts"][0] == "FINISHED"
+    assert found["prisms"][1].startswith("closed; ")
+    assert all(closed and volume > 0 for closed, volume in found["closed"])
+    assert found["volumes"] == pytest.approx([20.0 * 900.0], rel=1e-5)
+    assert min(found["files"].values()) > 100
+    assert vt.Design.load(folder / "out.toml").lattice.a == 120.0
+    assert "out.dxf has no suffix of ours" in found["refused"]
+    assert not (folder / "out.dxf").exists()
+    assert found["opened"] == ["p4", 120.0, 1.0, "fish"]
+    assert found["lacking"][0].startswith("No solids")
+    assert found["solids"] is False
+    assert found["other"][0].startswith("voronoi_tiles 0.0.1 is loaded")
+    assert found["old"][0].startswith("On Windows numpy 2 is needed")
+    assert " ".join(found["said"]) == found["old"][0]
