@@ -159,12 +159,13 @@ def unregister() -> None:
 
 
 def tiling_of(item: Any) -> Any:
-    """The empty of the tiling that an object belongs to, None where it belongs to none."""
+    """The empty of the tiling that an object belongs to, None where it belongs to none, or that has been deleted."""
     if item is None:
         return None
-    return item if item.voronoi_tiles.role == "tiling" else item.voronoi_tiles.of
+    found = item if item.voronoi_tiles.role == "tiling" else item.voronoi_tiles.of
+    return found if found is not None and found.users_scene else None
 
 
 def tilings() -> list[Any]:
     """The empties of all tilings in the file."""
-    return [item for item in bpy.data.objects if item.voronoi_tiles.role == "tiling"]
+    return [item for item in bpy.data.objects if item.voronoi_tiles.role == "tiling" and item.users_scene]

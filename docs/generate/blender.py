@@ -12,11 +12,9 @@ from typing import Final
 
 from PIL import Image, ImageFilter
 
-ROOT: Final = Path(__file__).parents[2]
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))
 
-sys.path.insert(0, str(ROOT / "tests"))
-
-from helpers.blender import make_extension
+from helpers.blender import ROOT, make_extension
 
 TWIST: Final = """\
 schema = 1

@@ -124,6 +124,8 @@ def test_all_kinds_of_drawings_are_read(extension: Extension) -> None:
     assert found["resized"]
     assert found["left"] == ["", True]
     assert found["tiles"] == ["hand"]
+    assert found["gone"]
+    assert found["another"] == ["pg", True]
 
 
 def test_the_panel_asks_for_what_the_group_needs(extension: Extension) -> None:

@@ -85,6 +85,16 @@ bpy.data.objects.remove(line)
 bpy.context.view_layer.update()
 bpy.context.view_layer.objects.active = tiling()
 bpy.ops.voronoi_tiles.update()
+tiles = sorted(item.voronoi_tiles.key for item in tiling().children if item.voronoi_tiles.role == "tile")
+message = [settings.message, settings.proved]
+# A tiling whose empty is deleted is gone, though its site names it; another begins.
+for one in list(tiling().users_collection):
+    one.objects.unlink(tiling())
+gone = module("settings").tiling_of(hand)
+bpy.context.view_layer.objects.active = hand
+hand.select_set(True)
+bpy.ops.voronoi_tiles.tile(group="pg")
+another = [tiling().voronoi_tiles.group, tiling().voronoi_tiles.proved]
 answer(
     nurbs=off,
     tile=first,
@@ -92,6 +102,8 @@ answer(
     seen=[[z.real, z.imag] for z in seen],
     resized=sizes != moved,
     strokes=len(drawn["hand"][0].points),
-    left=[settings.message, settings.proved],
-    tiles=sorted(item.voronoi_tiles.key for item in tiling().children if item.voronoi_tiles.role == "tile"),
+    left=message,
+    tiles=tiles,
+    gone=gone is None,
+    another=another,
 )
