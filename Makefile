@@ -187,7 +187,7 @@ blender-programs: tests/readers/.venv-blender/.installed
 tests/readers/.venv-blender/.installed: PYTHON := $(or $(shell command -v python3.11),$(PYTHON))
 
 blender-pictures: $(INSTALLED_DEV) blender-programs
-	$(VENV)/bin/python docs/generate/blender.py
+	$(VENV)/bin/python docs/generate/blender_pictures.py
 
 # The tests of the extension in other versions: for each its number, and the Python that it takes.
 BLENDERS ?= 4.2.23-python3.11 4.5.15-python3.11 5.3.0-python3.13

@@ -30,9 +30,18 @@ settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
 
 
-NUMERIC = {"crosscheck", "fabrication", "groups", "paths", "pictures", "raster", "solid", "tiling", "vector"} | {
-    f"test_{name}.py" for name in ("dxf", "gallery", "paper", "readers")
-}
+NUMERIC = {
+    "blender",
+    "crosscheck",
+    "fabrication",
+    "groups",
+    "paths",
+    "pictures",
+    "raster",
+    "solid",
+    "tiling",
+    "vector",
+} | {f"test_{name}.py" for name in ("dxf", "gallery", "paper", "readers")}
 """Folders and files whose tests are of what numpy, shapely and the kernels compute, the same on every Python."""
 
 _LEFT_OUT = pytest.StashKey[Counter[str]]()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import subprocess
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from helpers.blender import Extension, blender_python
+from helpers.blender import Extension, blender_python, make_extension
 
 import voronoi_tiles as vt
 from voronoi_tiles.base import kernels
@@ -19,6 +20,14 @@ pytestmark = pytest.mark.slow
 
 ULP = 2.0**-23
 """The spacing of single precision at 1."""
+
+
+@pytest.fixture(scope="session")
+def extension(tmp_path_factory: pytest.TempPathFactory) -> Extension:
+    """The extension's file, made once of the checkout; its tests are left out where Blender is not installed."""
+    base = tmp_path_factory.getbasetemp()
+    shared = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+    return make_extension(shared, tmp_path_factory.mktemp("blender"))
 
 
 def test_blender_accepts_the_file(extension: Extension) -> None:

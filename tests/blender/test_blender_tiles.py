@@ -150,7 +150,7 @@ def test_copies_are_the_engines(group: str) -> None:
     assert np.count_nonzero(copies.shown) == 6 * sum(tile.copies_per_cell for tile in tiling)
     middles = [
         np.round(placed(*base(tiles, pivots, copies, k), copies.matrices()[k]).mean(), 6)
-        for k in np.flatnonzero(copies.shown)
+        for k in np.flatnonzero(copies.shown).tolist()
     ]
     assert len(set(middles)) == len(middles)
     assert np.abs(np.abs(copies.unit) - 1).max() < 1e-15

@@ -1,6 +1,6 @@
 """The pictures of docs/blender.md, as Blender renders them by the processor: some minutes.
 
-python docs/generate/blender.py             writes docs/pictures/blender-*.png; Blender by `make blender-programs`
+python docs/generate/blender_pictures.py    writes docs/pictures/blender-*.png; Blender by `make blender-programs`
 """
 
 from __future__ import annotations

@@ -3,8 +3,8 @@
 A site of 24 segments in the group p4, a field of 3 x 3 cells. Processor time, medians, of the handler and the timer's
 function, which no window has to call; then of the evaluation that Blender does for its views.
 
-    python bench/blender.py             Blender by `make blender-programs`, or VORONOI_TILES_BLENDER
-    python bench/blender.py --write     the table into bench/README.md as well
+    python bench/dragging.py             Blender by `make blender-programs`, or VORONOI_TILES_BLENDER
+    python bench/dragging.py --write     the table into bench/README.md as well
 """
 
 from __future__ import annotations
