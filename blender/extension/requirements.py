@@ -8,7 +8,7 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 
-BLENDER = "Install the extension's file for this platform from the project's releases, for this Blender."
+REMEDY = "Install the extension's file for this platform from the project's releases, for this Blender."
 
 
 @cache
@@ -24,7 +24,7 @@ def engine_missing() -> tuple[str, ...]:
         found = import_module("voronoi_tiles").__version__
         import_module("voronoi_tiles.blender.drawn_tiling")
     except ImportError as error:
-        return (f"The engine voronoi_tiles is missing: {error}.", BLENDER)
+        return (f"The engine voronoi_tiles is missing: {error}.", REMEDY)
     wanted = _own_version()
     if found != wanted:
         return (f"voronoi_tiles {found} is loaded, and this extension brings {wanted}: restart Blender.",)
@@ -40,7 +40,7 @@ def missing() -> tuple[str, ...]:
             import_module(name)
         except ImportError as error:
             found.append(f"No {what}: {name} is missing ({error}).")
-    return (*found, BLENDER) if found else ()
+    return (*found, REMEDY) if found else ()
 
 
 def usable() -> bool:

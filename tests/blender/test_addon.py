@@ -58,6 +58,17 @@ def test_it_is_installed_used_saved_opened_and_removed(extension: Extension) -> 
     assert found["collections"] == 0
 
 
+def test_without_its_engine_the_panel_says_so(extension: Extension) -> None:
+    """It is enabled, with that sentence and what to do, and offers nothing that it cannot do."""
+    found, _ = extension.run("lacking")
+    said = " ".join(found["lines"])
+    assert said.startswith("The engine voronoi_tiles is missing: ")
+    assert "Install the extension's file for this platform" in said
+    assert found["shown"] == ["VORONOI_TILES_PT_tiles"]
+    assert found["listening"] == 0
+    assert found["left"] is False
+
+
 def places(matrices: Any, vertices: Any) -> Complexes:
     """Where matrices of Blender take the vertices of a mesh, in double precision."""
     points = np.column_stack((vertices.astype(np.float64), np.ones(len(vertices))))
