@@ -14,9 +14,9 @@ from mathutils import Vector
 
 from voronoi_tiles.base.errors import TouchingCopiesError, VoronoiTilesError
 from voronoi_tiles.blender.cubic_splines import coordinates
+from voronoi_tiles.blender.design_splines import OpenedDesign, opened, proposed_cell
 from voronoi_tiles.blender.drawn_splines import DrawnSpline
 from voronoi_tiles.blender.drawn_tiling import decimal
-from voronoi_tiles.blender.opened_design import OpenedDesign, opened, proposed_cell
 from voronoi_tiles.blender.polygon_mesh import PolygonMesh
 from voronoi_tiles.blender.solid_meshes import placed_solids
 from voronoi_tiles.blender.written_files import SUFFIXES, FileJob, write_file

@@ -9,9 +9,9 @@ import pytest
 
 import voronoi_tiles as vt
 from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.blender.design_splines import opened, proposed_cell
 from voronoi_tiles.blender.drawn_splines import DrawnSpline, strokes_of
 from voronoi_tiles.blender.drawn_tiling import DrawnTiling, decimal
-from voronoi_tiles.blender.opened_design import opened, proposed_cell
 from voronoi_tiles.blender.solid_meshes import placed_solids
 from voronoi_tiles.blender.written_files import SUFFIXES, FileJob, write_file
 

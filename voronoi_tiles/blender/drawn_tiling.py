@@ -10,7 +10,7 @@ import numpy as np
 
 from voronoi_tiles.base.errors import DesignError, TouchingCopiesError, VoronoiTilesError
 from voronoi_tiles.blender.drawn_splines import DrawnSpline, strokes_of
-from voronoi_tiles.blender.single_precision import symmetric_splines
+from voronoi_tiles.blender.mended_symmetry import symmetric_splines
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.designs.drawn_site import Site
 from voronoi_tiles.designs.drawn_solid import Solid
