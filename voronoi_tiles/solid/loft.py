@@ -61,7 +61,7 @@ class Loft:
 
     @cached_property
     def deviation(self) -> Deviation:
-        """How far the walls of the meshes are, half way between levels, from where the strokes have them."""
+        """How far the walls of the meshes are, between levels, from where the strokes have them."""
         core = self.levels[0].core
         return deviation(self.meshes, self.motion, core.action, core.stabilizers, self.design.unit_mm)
 
@@ -93,7 +93,7 @@ def lofted(design: Design, *, accuracy: float = ACCURACY_MM, heights: Iterable[f
     """The solids of a design that has one; walls are within `accuracy` millimetres of where strokes have them.
 
     There are exact layers at those heights that the design asks for, at `heights`, in its units, and at others where
-    walls half way between two would be farther off, or would cross. Where chords cross in one they are finer. Raises
+    walls between two would be farther off, or would cross. Where chords cross in one they are finer. Raises
     ArgumentError for a flat design, for heights outside of the solid, and where the accuracy takes more layers or
     triangles than there may be, LoftError with the height where copies meet, where tiles change in a way that has no
     walls, or where walls do not become right.

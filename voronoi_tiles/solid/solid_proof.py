@@ -3,25 +3,25 @@
 Tiles that are closed, whose walls are, bit for bit, those of the copies beyond, and whose volumes add up to that of the
 cell, fill the slab without a gap; where their levels and the sections between do not cross themselves, without an
 overlap. That they are the right ones is shown at the levels: vertices are as far from the own strokes as from the
-nearest copy's; and half way between levels by how far, to first order, walls are from where these distances are alike.
-And between levels no copies meet.
+nearest copy's, whatever the engine says is beside them; and between levels by how far, to first order, walls are from
+where these distances are alike. And between levels no copies meet.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from math import fsum
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Complexes, Floats, Ints
+from voronoi_tiles.base.arrays import Bools, Ints
 from voronoi_tiles.base.errors import ProofError
 from voronoi_tiles.base.tolerance import PROOF_LIMIT
 from voronoi_tiles.designs.design import Design
+from voronoi_tiles.solid.deviation import equidistance
 from voronoi_tiles.solid.loft import ACCURACY_MM, Loft, lofted
 from voronoi_tiles.solid.mesh import TriangleMesh
-from voronoi_tiles.vector.motion_codes import motion_of, operation_of
+from voronoi_tiles.vector.motion_codes import operation_of
 
 
 class SolidProof(NamedTuple):
@@ -30,7 +30,7 @@ class SolidProof(NamedTuple):
     `volume` is the relative error of the tiles' volumes, which must add up to the cell's. `distance` is how far
     vertices at exact layers are from being as far from the own strokes as from the nearest copy's, and `approach` how
     near copies come to each other at least, as is proved: both relative to the cell's longer side. `deviation` is how
-    far walls are, half way between levels, from where the strokes have them: millimetres, `accuracy` at most.
+    far walls are, between levels, from where the strokes have them: millimetres, `accuracy` at most.
 
     The others are counts: of meshes that are not closed (`open_meshes`), of meshes that have not as many handles as
     their bottoms have holes (`handles`), of triangles of walls that no copy beyond has, bit for bit and turned round
@@ -87,10 +87,13 @@ def prove_loft(loft: Loft) -> SolidProof:
     design, core = loft.design, loft.levels[0].core
     copies = [design.group.order // len(own) for own in core.stabilizers]
     whole = design.lattice.det * loft.motion.height * design.unit_mm**3
+    # But for events that were not hit, and are known by how long edges are that were made points.
+    exact = [level.core.z for level in loft.levels if not level.points.any()]
     total = fsum(mesh.volume * count for mesh, count in zip(loft.meshes, copies, strict=True))
     return SolidProof(
         volume=abs(total - whole) / whole,
-        distance=max(_distances(loft)) / core.action.size,
+        distance=equidistance(loft.meshes, loft.motion, core.action, core.stabilizers, design.unit_mm, exact)
+        / core.action.size,
         deviation=loft.deviation.worst,
         accuracy=loft.accuracy,
         approach=loft.approach.proved / core.action.size,
@@ -122,34 +125,6 @@ def _expected(loft: Loft, tile: int) -> int:
     """What that is for solids over the tile at the bottom: 2 for each part, and 2 less for each hole."""
     areas = loft.levels[0].core.records[tile].outline.ring_areas
     return 2 * sum(1 if area > 0 else -1 for area in areas)
-
-
-def _distances(loft: Loft) -> Iterator[float]:
-    """For each level and tile how far a vertex is from being as far from its own strokes as from the nearest copy's."""
-    unit = loft.design.unit_mm
-    for level in loft.levels:
-        core = level.core
-        if level.points.any():  # an event that was not hit, and is known by how long edges are that were made points
-            continue
-        for tile, mesh in enumerate(loft.meshes):
-            at = mesh.vertices[mesh.vertices[:, 2] == core.z * unit]
-            points = (at[:, 0] + 1j * at[:, 1]) / unit
-            names = {name for ring in core.rings[tile] for name in ring}
-            own = _nearest(points, core.sites[tile].ends)
-            beyond = [
-                _nearest(points, core.action.isometry(motion_of(code))(core.sites[site].ends)) for site, code in names
-            ]
-            yield float(np.abs(own - np.min(beyond, axis=0)).max(initial=0.0))
-
-
-def _nearest(points: Complexes, ends: Complexes) -> Floats:
-    """How far points are from the nearest of some elements with these ends, complex128 (n, 2); float64 (m,)."""
-    start, along = ends[:, 0], ends[:, 1] - ends[:, 0]
-    square = (along.real * along.real + along.imag * along.imag)[:, None]
-    away = points - start[:, None]
-    share = away.real * along.real[:, None] + away.imag * along.imag[:, None]
-    share = np.clip(share / np.where(square > 0.0, square, 1.0), 0.0, 1.0)
-    return np.asarray(np.abs(away - share * along[:, None]).min(axis=0))
 
 
 # --- walls ----------------------------------------------------------------------------------------------------
