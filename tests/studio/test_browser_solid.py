@@ -291,6 +291,11 @@ def test_straight_walls_and_clearance(window: Window, tmp_path: Path) -> None:
     page.locator("solid-panel").get_by_role("button", name="Reset").click()
     page.get_by_role("button", name="Let the strokes move").click()
     page.wait_for_function("() => window.studio.design().solid?.turn === 30")
+    layers = page.locator("#panel-solid").get_by_label("Layers", exact=True)
+    assert layers.input_value() == str(vt.Solid(20).layers)
+    layers.fill("41")
+    layers.press("Enter")
+    page.wait_for_function("() => window.studio.design().solid?.layers === 41")
 
 
 def test_the_key_shows_and_hides_it(window: Window) -> None:

@@ -146,23 +146,26 @@ def test_no_more_is_sent_than_can_be_shown(monkeypatch: pytest.MonkeyPatch) -> N
         assert (some["count"], len(fewer)) == (whole["count"], count)
 
 
-def test_a_slow_loft_has_a_coarse_one_first() -> None:
-    """Then the exact one, after which it is known how long layers take here; one that is quick comes alone."""
-    design = {**LOFT, "solid": {"height": 30.0, "layers": 31}}
-    modeller = Modeller(layer_s=1.0)
+@pytest.mark.parametrize("layers", [None, 31])
+def test_a_slow_loft_has_a_coarse_one_first(layers: int | None, monkeypatch: pytest.MonkeyPatch) -> None:
+    """However few layers it asks for; then the exact one, by which it is known how long they take: the next is alone."""
+    design = {**LOFT, "solid": {"height": 30.0, **({} if layers is None else {"layers": layers})}}
+    modeller = Modeller()
     first, second = (read_frame(one.frame)[0] for one in modeller.solids(1, design, {}, "bird"))
     assert (first["coarse"], second["coarse"]) == (True, False)
     assert first["tiles"][0]["triangles"] < second["tiles"][0]["triangles"]
     assert first["tiles"][0]["volume"] == pytest.approx(second["tiles"][0]["volume"], rel=1e-12)
-    assert 0.0 < modeller.layer_s < 1.0
-    assert [one.more for one in Modeller(layer_s=1e-4).solids(1, design, {}, "bird")] == [False]
-    assert [one.more for one in Modeller(layer_s=1.0).solids(1, FLAT, {}, "bird")] == [False]
+    monkeypatch.setattr(modelling, "SLOW_S", modeller.seconds + 1e-3)
+    assert [one.more for one in modeller.solids(2, design, {}, "bird")] == [False]
+    monkeypatch.setattr(modelling, "SLOW_S", 0.0)
+    assert [one.more for one in modeller.solids(3, design, {}, "bird")] == [True, False]
+    assert [one.more for one in Modeller().solids(1, FLAT, {}, "bird")] == [False]
 
 
 def test_what_is_refused_is_said_as_the_command_line_says_it(tmp_path: Path, voronoi_tiles: CommandLine) -> None:
     """Copies that meet above, with the height; nothing coarse comes before."""
     with pytest.raises(LoftError) as caught:
-        list(Modeller(layer_s=1.0).solids(1, MEETING, {}, "bird"))
+        list(Modeller().solids(1, MEETING, {}, "bird"))
     assert 0.0 < caught.value.z < 20.0
     said = error_document(caught.value)
     path = tmp_path / "bird.json"

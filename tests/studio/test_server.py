@@ -147,7 +147,7 @@ def test_outlines_do_not_wait_for_solids(studio: RunningStudio) -> None:
     """Of a slow loft a coarse one comes first; a design that is drawn meanwhile is answered before it."""
     with studio.page() as page:
         design = told(page)["design"]
-        loft = {**design, "solid": {"height": 30, "turn": 5, "layers": 150, "about": [15, 10]}}
+        loft = {**design, "solid": {"height": 30, "turn": 5, "layers": 100, "about": [15, 10]}}
         tell(page, "solid", rev=1, design=loft, job={})
         heard: list[str] = []
         while heard[-1:] not in (["exact"], ["refused"]):

@@ -11,6 +11,7 @@ import pytest
 import shapely
 
 from voronoi_tiles.designs.design import Design
+from voronoi_tiles.designs.drawn_solid import Solid
 from voronoi_tiles.designs.drawn_strokes import StrokeKind
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.formats.presets import FORMATS, load_preset
@@ -104,6 +105,7 @@ def test_a_job_can_be_made_of_its_defaults() -> None:
     assert set(SolidJob.options()) == set(solid)
     assert SolidJob(**{name: option["default"] for name, option in solid.items()}) == SolidJob()
     assert TABLES["solids"] == ["3mf", "stl", "png"]
+    assert TABLES["layers"] == Solid(20).layers
 
 
 def test_presets_kinds_and_formats_are_all_there() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from math import inf
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
@@ -32,14 +33,8 @@ SHOWN_MAX: Final = 1_500_000
 SLOW_S: Final = 0.7
 """A loft that takes longer has a coarse one before it; seconds."""
 
-_LAYER_S: Final = 0.015
-"""What a layer takes where it is not known yet; seconds."""
-
-_COARSE_LAYERS: Final = 15
-"""Layers of a coarse loft; a count."""
-
 _COARSE: Final = 0.005
-"""How far the chords of a coarse loft are from its arcs; a share of the square root of the cell's area."""
+"""How far the walls of a coarse loft are from the true ones; a share of the square root of the cell's area."""
 
 
 class ShownSolid(NamedTuple):
@@ -51,9 +46,9 @@ class ShownSolid(NamedTuple):
 
 @dataclass
 class Modeller:
-    """Solids of one design after the other; `layer_s` is what a layer of the last loft took, in seconds."""
+    """Solids of one design after the other; `seconds` is what the last loft took, and the next is taken to take."""
 
-    layer_s: float = _LAYER_S
+    seconds: float = inf
 
     def solids(self, rev: int, design: Mapping[str, Any], job: Mapping[str, Any], name: str) -> Iterator[ShownSolid]:
         """The message "solid" of a design; before that of a slow loft there is one of a coarse one.
@@ -68,14 +63,13 @@ class Modeller:
                 _frame(rev, _prisms(design, name, asked, apart=False), begun, sheet=asked.sheet is not None)
             )
             return
-        layers = read.standing.layers
-        if self.layer_s * layers > SLOW_S and layers > _COARSE_LAYERS:
-            # It may have no walls with so few layers; then there is none.
+        if self.seconds > SLOW_S:
+            # Where it has no walls there is none.
             with suppress(VoronoiTilesError):
                 yield ShownSolid(_frame(rev, _coarse(design, name, asked), begun, coarse=True), more=True)
         start = perf_counter()
         made = stand(read, asked, around=True, apart=False)
-        self.layer_s = (perf_counter() - start) / layers
+        self.seconds = perf_counter() - start
         yield ShownSolid(_frame(rev, made, begun))
 
 
@@ -120,7 +114,9 @@ def _prisms(design: Mapping[str, Any], name: str, job: SolidJob, *, apart: bool)
 
 def _coarse(design: Mapping[str, Any], name: str, job: SolidJob) -> SolidModel:
     """A loft of few layers and long chords, that fills the slab."""
-    few = Design.from_dict({**design, "solid": {**design["solid"], "layers": _COARSE_LAYERS}}, name=name)
+    few = Design.from_dict(
+        {**design, "solid": {key: value for key, value in design["solid"].items() if key != "layers"}}, name=name
+    )
     accuracy = _COARSE * few.lattice.det**0.5 * few.unit_mm
     accuracy = min(max(accuracy, job.accuracy or 0.0), 1.0)
     return stand(few, replace(job, accuracy=accuracy, clearance=0.0, chamfer=0.0), around=True, apart=False)

@@ -9,6 +9,7 @@ from typing import Any, Final, Literal, get_args
 from voronoi_tiles.base.units import UNIT_MM
 from voronoi_tiles.base.version import __version__
 from voronoi_tiles.designs.drawn_strokes import StrokeKind
+from voronoi_tiles.designs.solid_checking import LAYERS
 from voronoi_tiles.designs.starters import GROUP_NAMES, starter, symmetry_of
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.fabrication.job_options import OptionTable
@@ -66,6 +67,7 @@ def page_tables() -> dict[str, Any]:
         "presets": [{"name": name, "title": load_preset(name).title} for name in preset_names()],
         "formats": list(FORMS),
         "solids": list(SOLID_FORMATS),
+        "layers": LAYERS,
         "coupon": list(DRAWINGS),
         "units": dict(UNIT_MM),
         "limits": {**LIMITS, "picture": DEFAULT_SIZE},

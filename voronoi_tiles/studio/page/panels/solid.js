@@ -230,7 +230,12 @@ export class SolidPanel extends HTMLElement {
             number("scale", "Scale at the top", 1),
             point("shift", "Shift at the top"),
             point("about", "Turn and scale about"),
-            number("layers", "Layers", 41, "So many heights have exact tiles."),
+            number(
+                "layers",
+                "Layers",
+                state.tables.layers,
+                "At so many heights tiles are exact, at least: there are more where walls take more.",
+            ),
         ];
         for (const { name, input } of rows) {
             if (bad?.key === `solid.${name}`) {
