@@ -46,6 +46,7 @@ def test_slices_are_the_tiles_of_the_strokes_there(loft: Loft) -> None:
     heights = between_levels(loft, 5)
     assert len(heights) == 5
     assert np.abs(heights[:, None] - loft.meshes[0].vertices[:, 2]).min() > 0.1
+    assert len(between_levels(loft, 200)) > 2 * len(loft.levels)
     labels, areas = check_slices(loft, renderer="cpu", slices=5, samples=128)
     assert labels.passed
     assert labels.checked > 5 * 100 * 100

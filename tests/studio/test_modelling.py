@@ -148,7 +148,7 @@ def test_no_more_is_sent_than_can_be_shown(monkeypatch: pytest.MonkeyPatch) -> N
 
 @pytest.mark.parametrize("layers", [None, 31])
 def test_a_slow_loft_has_a_coarse_one_first(layers: int | None, monkeypatch: pytest.MonkeyPatch) -> None:
-    """However few layers it asks for; then the exact one, by which it is known how long they take: the next is alone."""
+    """However few layers it asks for; then the exact one: by what that took it is known whether the next is alone."""
     design = {**LOFT, "solid": {"height": 30.0, **({} if layers is None else {"layers": layers})}}
     modeller = Modeller()
     first, second = (read_frame(one.frame)[0] for one in modeller.solids(1, design, {}, "bird"))

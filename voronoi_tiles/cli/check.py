@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     "--slices",
     type=click.IntRange(1, 1000),
     metavar="N",
-    help="Of a design with a [solid], at how many heights it is checked, at most one between two layers [default: 8].",
+    help="Of a design with a [solid], at how many heights between layers it is checked [default: 8].",
 )
 @with_scale
 @with_method

@@ -19,7 +19,7 @@ LAYERS: Final = 5
 """At how many heights tiles are exact at least, where nobody says; a count. Others are added as accuracy needs them."""
 
 LAYERS_MAX: Final = 2_000
-"""Most of them, with those that are added; a count. They take about ten seconds, and a millimetre of a print has 20."""
+"""Most of them, with those that are added; a count. They take half a minute, and a millimetre of a print has 20."""
 
 TRAVEL_MAX: Final = 100.0
 """The longest way of a point from the bottom to the top; relative to the square root of the cell's area. Each part of

@@ -22,9 +22,9 @@ from voronoi_tiles.solid.walls import Walls, walls
 from voronoi_tiles.vector.complex.representatives import Points
 
 TRIANGLES_MAX: Final = 250_000
-"""Of how many triangles solids are, at most; a count. They take about ten seconds, and slicers are slow with more."""
+"""Of how many triangles solids are, at most; a count. They take half a minute, and slicers are slow with more."""
 
-_OTHERS: Final = "Write another number of `layers`."
+_OTHERS: Final = "Write more `layers`, or draw keys that differ less."
 
 
 class _View(NamedTuple):

@@ -8,7 +8,7 @@ from typing import Final
 import numpy as np
 
 from voronoi_tiles.base.arrays import Bools, Floats
-from voronoi_tiles.solid.mesh import TriangleMesh
+from voronoi_tiles.solid.mesh import TriangleMesh, point_numbers
 
 SLIDING: Final = 1e-8
 """A direction that leaves a wall by a smaller angle, or enters it by one, slides along it; radians. It is what the
@@ -28,14 +28,11 @@ _ROUNDS: Final = 200
 
 
 def contacts(mesh: TriangleMesh, others: Sequence[TriangleMesh]) -> list[Bools]:
-    """For each of the others which triangles of a mesh are also its own, bit for bit and turned round: bool (m,)."""
+    """For each of the others which triangles of a mesh are its own, too, bit for bit, either way round: bool (m,)."""
     meshes = (mesh, *others)
-    rows = np.ascontiguousarray(np.concatenate([one.vertices for one in meshes]) + 0.0)
-    _, number = np.unique(rows.view(np.dtype((np.void, rows.itemsize * 3))).ravel(), return_inverse=True)
+    number = point_numbers(np.concatenate([one.vertices for one in meshes]))
     first = np.cumsum([0, *(len(one.vertices) for one in meshes)])
-    corners = [
-        np.sort(number.ravel()[start + one.triangles], axis=1) for start, one in zip(first[:-1], meshes, strict=True)
-    ]
+    corners = [np.sort(number[start + one.triangles], axis=1) for start, one in zip(first[:-1], meshes, strict=True)]
     keys = [np.ascontiguousarray(three).view(np.dtype((np.void, three.itemsize * 3))).ravel() for three in corners]
     return [np.isin(keys[0], other) for other in keys[1:]]
 

@@ -10,6 +10,15 @@ import numpy as np
 from voronoi_tiles.base.arrays import Floats, Ints
 
 
+def point_numbers(points: Floats) -> Ints:
+    """A number for each point, float64 (n, 3), the same for points with the same coordinates: intp (n,)."""
+    order = np.lexsort(points.T)
+    new = np.append(False, (points[order[1:]] != points[order[:-1]]).any(axis=1))
+    number = np.empty(len(points), np.intp)
+    number[order] = np.cumsum(new)
+    return number
+
+
 class TriangleMesh(NamedTuple):
     """A solid bounded by triangles: `vertices` float64 (n, 3) in millimetres, `triangles` intp (m, 3), indices of them.
 

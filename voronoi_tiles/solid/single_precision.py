@@ -7,8 +7,8 @@ from typing import Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Bools, Floats, Ints
-from voronoi_tiles.solid.mesh import TriangleMesh
+from voronoi_tiles.base.arrays import Bools, Ints
+from voronoi_tiles.solid.mesh import TriangleMesh, point_numbers
 
 VOLUME: Final = 1e-4
 """By how much the volume may change, relative to it: a layer of a printer, or a part of one, on a solid as large as its
@@ -27,14 +27,14 @@ def kept_triangles(mesh: TriangleMesh) -> Bools:
     another.
     """
     rounded = mesh.vertices.astype(np.float32).astype(np.float64)
-    corners = _numbers(rounded)[mesh.triangles]
+    corners = point_numbers(rounded)[mesh.triangles]
     a, b, c = corners.T
     kept: Bools = (a != b) & (b != c) & (c != a)
     kept[kept] = ~_folded(corners[kept])
     there, back = _sides(corners[kept])
     if (there != back).any():
         raise RoundedAwayError("it is not closed")
-    if _repeated(there) > _repeated(_sides(_numbers(mesh.vertices)[mesh.triangles])[0]):
+    if _repeated(there) > _repeated(_sides(point_numbers(mesh.vertices)[mesh.triangles])[0]):
         raise RoundedAwayError("it touches itself where it did not")
     volume = TriangleMesh(rounded, mesh.triangles[kept]).volume
     # Along each axis points move by half a unit in the last place of the largest number at most.
@@ -42,15 +42,6 @@ def kept_triangles(mesh: TriangleMesh) -> Bools:
     if abs(volume - mesh.volume) > min(2.0 * moved * float(mesh.areas.sum()), VOLUME * mesh.volume):
         raise RoundedAwayError(f"it has {volume:.6g} cubic millimetres, and not {mesh.volume:.6g}")
     return kept
-
-
-def _numbers(points: Floats) -> Ints:
-    """A number for each point, equal for equal ones."""
-    order = np.lexsort(points.T)
-    new = np.append(False, (points[order[1:]] != points[order[:-1]]).any(axis=1))
-    number = np.empty(len(points), np.intp)
-    number[order] = np.cumsum(new)
-    return number
 
 
 def _folded(corners: Ints) -> Bools:

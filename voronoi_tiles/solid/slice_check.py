@@ -28,6 +28,9 @@ SLICES: Final = 8
 SAMPLES: Final = 256
 """Samples of each along the side of the cell; a count."""
 
+_NEAR: Final = 0.25
+"""So near to a level no slice is; a share of the way to the next one."""
+
 _AREA: Final = 1e-9
 """By how much the areas of slices may differ from the cell's; relative. It is rounding, of points and of sections."""
 
@@ -56,7 +59,7 @@ def check_slices(
     method: Method = "exact",
     notice: Callable[[str], None] | None = None,
 ) -> tuple[Figure, Figure]:
-    """The figures "slices" and "slice areas" of a loft, half way between levels at heights all the way up.
+    """The figures "slices" and "slice areas" of a loft, between levels at heights all the way up.
 
     A sample may be outside the solid that it belongs to by the accuracy within which the loft was made.
     `renderer`, `device`, `method` and `notice` are those of Renderer. Raises RenderError, and ProofError where a solid
@@ -98,14 +101,16 @@ def check_slices(
 
 
 def between_levels(loft: Loft, count: int) -> Floats:
-    """Heights half way between levels of a loft's meshes, ascending, all the way up; millimetres, float64 (n,).
+    """Heights between levels of a loft's meshes, ascending, all the way up; millimetres, float64 (n,).
 
-    There are `count` or, where there are fewer levels, one between each two.
+    There are `count`, equally spaced but for those near a level, which are moved away from it; what falls together is
+    one.
     """
     levels = np.unique(np.concatenate([mesh.vertices[:, 2] for mesh in loft.meshes]))
     aimed = levels[0] + (np.arange(count) + 0.5) / count * (levels[-1] - levels[0])
-    below = np.unique(np.searchsorted(levels, aimed, side="right") - 1)
-    return np.asarray((levels[below] + levels[below + 1]) / 2)
+    below = np.searchsorted(levels, aimed, side="right") - 1
+    near = _NEAR * np.diff(levels)[below]
+    return np.unique(np.clip(aimed, levels[below] + near, levels[below + 1] - near))
 
 
 def _slice(loft: Loft, z: float, render: Renderer, samples: int) -> _Slice:

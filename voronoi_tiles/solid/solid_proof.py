@@ -20,7 +20,7 @@ from voronoi_tiles.base.tolerance import PROOF_LIMIT
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.solid.deviation import equidistance
 from voronoi_tiles.solid.loft import ACCURACY_MM, Loft, lofted
-from voronoi_tiles.solid.mesh import TriangleMesh
+from voronoi_tiles.solid.mesh import TriangleMesh, point_numbers
 from voronoi_tiles.vector.motion_codes import operation_of
 
 
@@ -136,8 +136,7 @@ def _unshared(loft: Loft, tile: int) -> int:
     names = sorted({name for layer in layers for ring in layer.rings[tile] for name in ring})
     own = loft.meshes[tile]
     others = [loft.image(site, operation_of(code)) for site, code in names]
-    rows = np.ascontiguousarray(np.concatenate([mesh.vertices for mesh in (own, *others)]) + 0.0)
-    _, number = np.unique(rows.view(np.dtype((np.void, rows.itemsize * 3))).ravel(), return_inverse=True)
+    number = point_numbers(np.concatenate([mesh.vertices for mesh in (own, *others)]))
     top = own.vertices[:, 2].max()
     mine = _named(number[own.triangles[~_flat(own, top)]])
     first, theirs = len(own.vertices), []

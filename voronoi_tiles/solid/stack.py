@@ -221,13 +221,13 @@ class Stack:
         """
         density = number("density", density, "Give grams per cubic centimetre, such as 0.7.", least=1e-6)
         names = [site.name for site in self.design.noded]
-        bored = 0.0 if self.job.dowel is None else 2 * pi * self.job.dowel**2 / 4
+        bores = 0.0 if self.job.dowel is None else 2 * pi * self.job.dowel**2 / 4
         rows: list[dict[str, Any]] = [
             {
                 "sheet": sheet.number,
                 "middle": sheet.middle,
                 "site": name,
-                "area": float(ring_areas(rings).sum()) - bored,
+                "area": float(ring_areas(rings).sum()) - bores,
             }
             for sheet in self.sheets
             for name, rings in zip(names, sheet.outlines, strict=True)
