@@ -115,17 +115,17 @@ def lofted(design: Design, *, accuracy: float = ACCURACY_MM, heights: Iterable[f
             if not any(map(len, chain(*loft.crossed))):
                 return loft
             more = [float(z) / design.unit_mm for crossed in loft.crossed for z in crossed.between]
-            if any(len(crossed.levels) for crossed in loft.crossed):
-                chords /= 4
+            finer = any(len(crossed.levels) for crossed in loft.crossed)
         else:
-            more = _wanted(loft, accuracy)
+            more, finer = _wanted(loft, accuracy), False
         if layering.count + len(more) > LAYERS_MAX:
             raise ArgumentError(
                 f"walls within {accuracy:g} mm would take more than {LAYERS_MAX:,} layers",
                 remedy="Give a coarser accuracy, or draw keys that differ less.",
             )
-        if not layering.add(more) and chords == accuracy:
+        if not layering.add(more) and not finer:
             break
+        chords /= 4 if finer else 1
     raise _refused(loft)
 
 
