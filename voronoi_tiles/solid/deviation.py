@@ -209,4 +209,6 @@ def _sides(mesh: TriangleMesh, heights: Floats, unit: float) -> _SectionSides:
     order = np.argsort(rising)
     place = np.searchsorted(rising[order], falling).clip(max=len(order) - 1)
     number = np.arange(len(_SHARES))[:, None]
-    return _SectionSides(start, end, (len(_SHARES) * slab + number).ravel(), (order[place] + len(triangles) * number).ravel())
+    return _SectionSides(
+        start, end, (len(_SHARES) * slab + number).ravel(), (order[place] + len(triangles) * number).ravel()
+    )
