@@ -23,6 +23,17 @@ site = [{ name = "bird", strokes = [{ segment = [[8, 10], [22, 17]] }] }]
 solid = { height = 20, turn = 90, about = [15, 14] }
 """
 
+NEARLY = """
+schema = 1
+group = "p31m"
+cell = { a = 60 }
+site = [
+  { name = "claw", strokes = [{ segment = [[12, 7], [26, 5]] }] },
+  { name = "peg", strokes = [{ point = [30, %s] }] },
+]
+solid = { height = 30, shift = [0, %s] }
+"""
+
 
 def exact(loft: Loft, z: float, site: int) -> shapely.Geometry:
     """The tile of the strokes at a height, from a design that is flat."""
@@ -61,6 +72,17 @@ def test_it_is_how_far_sections_are_from_exact_tiles(seed: int, kind: int) -> No
         assert off <= loft.accuracy + 0.002
         shares.append(off / found.off[k])
     assert np.median(shares) == pytest.approx(1.0, abs=0.05)
+
+
+@pytest.mark.parametrize(("y", "shift"), [(17.1, 0.0), (17.3, 0.0), (17.32, 0.0), (17.1, 0.1)])
+def test_copies_that_nearly_meet_are_no_farther_off(y: float, shift: float) -> None:
+    """Three points about a centre of rotation, beside which hardly anything moves, make no more layers than asked."""
+    loft = lofted(vt.Design.loads(NEARLY % (y, shift)))
+    assert len(loft.deviation.heights) == 5
+    for low, high in zip(loft.deviation.heights[:-1], loft.deviation.heights[1:], strict=True):
+        z = float(low + high) / 2
+        off = max(apart(exact(loft, z, site), filled_section(mesh, z)) for site, mesh in enumerate(loft.meshes))
+        assert off <= loft.accuracy + 0.002
 
 
 def test_damage_is_seen() -> None:

@@ -22,6 +22,10 @@ where an edge begins or ends, they are so nearer to these."""
 _BESIDE: Final = 2.5
 """How far copies are looked for that may be beyond a wall: this times the farthest that a wall is from its strokes."""
 
+_ALIKE: Final = 1.0
+"""Where own strokes and a copy are seen in directions that differ by less, they are about as far off all around; a
+difference of vectors of length 1. Else the wall is no farther off than twice the nearest one."""
+
 
 class Deviation(NamedTuple):
     """How far walls are from the true ones between the levels `heights`, float64 (n + 1,), ascending.
@@ -155,6 +159,13 @@ def _off(sides: _SectionSides, own: _Strokes, beside: _Strokes) -> Floats:
     place, section = np.concatenate((sides.start, (sides.start + sides.end) / 2)), np.tile(sides.section, 2)
     away, (other, copy) = own.away(place, section)[0], beside.away(place, section)
     walls = np.abs(_gap(away, other)) / np.abs(_slope(away, other))
+    # Within the tile the nearest copy need not have the nearest wall.
+    unsure = np.flatnonzero((_gap(away, other) > 0.0) & (np.abs(_slope(away, other)) < _ALIKE))
+    for number in range(len(beside.copies)):
+        third = beside.away_from(place[unsure], section[unsure], np.full(len(unsure), number))
+        off = _gap(away[unsure], third) / np.abs(_slope(away[unsure], third))
+        nearer = unsure[off < walls[unsure]]
+        walls[nearer], copy[nearer] = off[off < walls[unsure]], number
     middle = copy[len(sides.start) :]
     before = middle[sides.before]
     at = np.flatnonzero(before != middle)
