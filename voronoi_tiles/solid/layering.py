@@ -6,6 +6,8 @@ from collections.abc import Iterable, Iterator
 from itertools import pairwise
 from typing import Final
 
+import numpy as np
+
 from voronoi_tiles.base.errors import TouchingCopiesError
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.solid.events import Event, LoftError, events_between
@@ -52,8 +54,8 @@ class Layering:
         Raises LoftError.
         """
         thin = _THIN * self._motion.height
-        there = [z for item in self._line for z in (_below(item).z, _above(item).z)]
-        fresh = [self.layer_at(z) for z in sorted(set(heights)) if all(abs(z - at) > thin for at in there)]
+        there = np.array([z for item in self._line for z in (_below(item).z, _above(item).z)])
+        fresh = [self.layer_at(z) for z in sorted(set(heights)) if (np.abs(there - z) > thin).all()]
         self._line = sorted([*self._line, *fresh], key=lambda item: _below(item).z)
         self._line = list(self._completed(set(fresh)))
         return bool(fresh)

@@ -96,7 +96,7 @@ class Sweep:
             at, along = at[:, ::-1], along[:, ::-1]
         one, two = at[:, 1] - at[:, 0], at[:, 2] - at[:, 0]
         twice = _cross(one, two)
-        # What a triangle keeps that is drawn in by the contact on all sides.
+        # Those with an inscribed circle of four contacts or less are seen edge-on, but for rounding.
         wide = twice > 4.0 * self._contact * (np.abs(one) + np.abs(two) + np.abs(two - one))
         at, along, one, two, twice = at[wide], along[wide], one[wide], two[wide], twice[wide]
         rise, climb = along[:, 1] - along[:, 0], along[:, 2] - along[:, 0]
