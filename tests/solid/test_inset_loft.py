@@ -14,6 +14,7 @@ from helpers.random_solids import KINDS, random_solid
 from shapely.affinity import affine_transform
 
 import voronoi_tiles as vt
+from voronoi_tiles.solid import assembly
 from voronoi_tiles.solid.events import LoftError
 from voronoi_tiles.solid.inset_depth import InsetDepth
 from voronoi_tiles.solid.inset_loft import InsetLoft
@@ -234,6 +235,18 @@ def broken(inset: InsetLoft, vertices: Any = None, triangles: Any = None) -> Ins
         ),
     )
     return copy
+
+
+def test_what_takes_too_many_triangles_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where only what is drawn in has more than there may be, it is refused as it is made, with what to do."""
+    inset = made(design_of())
+    plain, drawn = (sum(len(mesh.triangles) for mesh in of.meshes) for of in (inset.loft, inset))
+    assert plain < drawn
+    monkeypatch.setattr(assembly, "TRIANGLES_MAX", drawn + 4)  # four more: two for each corner of a ring
+    assert made(design_of()).loft is not None
+    monkeypatch.setattr(assembly, "TRIANGLES_MAX", (plain + drawn) // 2)
+    with pytest.raises(vt.ArgumentError, match=r"more than [\d,]+ triangles. Give a coarser accuracy"):
+        made(design_of())
 
 
 def test_the_proof_sees_what_is_wrong() -> None:

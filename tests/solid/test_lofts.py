@@ -333,9 +333,20 @@ def test_strokes_that_come_round_are_seen_on_their_way() -> None:
     assert len(loft.levels) > 30
 
 
+def test_keys_that_make_a_step_take_few_layers() -> None:
+    """Two keys next to each other: strokes are fast between them, and there alone layers are put for that."""
+    low, high = (vt.Key(z, vt.segment(5 + 3j, end)) for z, end in ((10, 14 + 8j), (10.01, 4 + 22j)))
+    loft, proof = proved_loft(design_of("p1", height=20, layers=2, keys=[low, high]))
+    assert proof.passed
+    assert len(loft.motion.layers) < 10
+    fast = (loft.motion.layers > 10) & (loft.motion.layers < 10.01)
+    assert fast.any()
+
+
 def test_what_cannot_be_reached_is_refused() -> None:
-    """With what to do: an accuracy that takes too many triangles."""
-    with pytest.raises(vt.ArgumentError, match=r"more than 250,000 triangles. Give a coarser accuracy") as caught:
+    """With what to do: an accuracy that takes too many triangles. Layers are a key of the design, and no option."""
+    text = r"more than 250,000 triangles. Give a coarser accuracy, fewer layers in \[solid\]"
+    with pytest.raises(vt.ArgumentError, match=text) as caught:
         lofted(design_of(), accuracy=1e-5)
     assert caught.value.exit_code == 2
 

@@ -24,7 +24,7 @@ from voronoi_tiles.vector.complex.representatives import Points
 TRIANGLES_MAX: Final = 250_000
 """Of how many triangles solids are, at most; a count. They take half a minute, and slicers are slow with more."""
 
-_OTHERS: Final = "Write more `layers`, or draw keys that differ less."
+_OTHERS: Final = "Write more layers in [solid], or draw keys that differ less."
 
 
 class _View(NamedTuple):
@@ -81,6 +81,15 @@ class LoftTile:
     triangles: Ints
 
 
+def refuse_many(triangles: int) -> None:
+    """Raise ArgumentError where solids would have too many triangles."""
+    if triangles > TRIANGLES_MAX:
+        raise ArgumentError(
+            f"the solids would have more than {TRIANGLES_MAX:,} triangles",
+            remedy="Give a coarser accuracy, fewer layers in [solid], or strokes of fewer elements.",
+        )
+
+
 def solids_of(
     names: Sequence[str], levels: Sequence[LoftLevel], accuracy: float
 ) -> tuple[Vertices, tuple[LoftTile, ...]]:
@@ -97,11 +106,7 @@ def solids_of(
         slabs.append(same)
     chains, labels = _chains(table, levels, views, slabs, accuracy), _labels(levels, views, slabs)
     count = sum(int(chains[k][1].counts[view.layer.edge].sum()) for k, (_, view) in enumerate(views))
-    if 2 * count > TRIANGLES_MAX:  # each side of a chain is that of one below and of one above
-        raise ArgumentError(
-            f"the solids would have more than {TRIANGLES_MAX:,} triangles",
-            remedy="Give a coarser accuracy, fewer `layers`, or strokes of fewer elements.",
-        )
+    refuse_many(2 * count)  # each side of a chain is that of one below and of one above
     vertices = table.snapshot()
     between = [
         (walls(vertices, below.layer, above.layer, (chains[k][1], chains[k + 1][0]), slabs[k]), labels[k][1])

@@ -11,7 +11,7 @@ import numpy as np
 from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.fabrication.job import JobError
 from voronoi_tiles.paths.offset import OffsetError
-from voronoi_tiles.solid.assembly import LoftLevel, levels_of
+from voronoi_tiles.solid.assembly import LoftLevel, levels_of, refuse_many
 from voronoi_tiles.solid.correspondence import corresponding
 from voronoi_tiles.solid.events import Event, LoftError, events_between
 from voronoi_tiles.solid.inset_depth import InsetDepth
@@ -48,7 +48,8 @@ _SHARES: Final = (0.5, 0.25, 0.75)
 def inset_loft(loft: Loft, depth: InsetDepth) -> InsetLoft:
     """Draw the tiles of a loft in: exactly at its levels, and at others that are put between until all is within slack.
 
-    Raises JobError, with the site and the height, where that is too much for a tile, or walls do not come within slack.
+    Raises JobError, with the site and the height, where that is too much for a tile, or walls do not come within slack,
+    ArgumentError where that takes too many triangles.
     """
     work = _Work(loft, depth)
     levels = [work.drawn(level) for level in work.levels()]
@@ -64,6 +65,7 @@ class _Work:
         self.loft, self.depth, self.unit = loft, depth, loft.design.unit_mm
         self.notes: list[str] = []
         self.lost: set[str] = set()
+        self.triangles = 0
         # Without a clearance the loft stays what it is between its rims.
         plain = [z for level in loft.levels if depth.at(z := level.core.z * self.unit) <= _ROUNDING * depth.height]
         self.ends = (plain[0], plain[-1]) if plain else (np.inf, -np.inf)
@@ -90,6 +92,9 @@ class _Work:
             if sorted(own) != list(range(*core.tile_offsets[tile : tile + 2].tolist())):
                 raise self._refusal("is too much: a ring is lost", tile, z, core.sites[tile].ends[0, 0] * self.unit)
             found.append(tuple(rings[k] for k in np.argsort(own).tolist()))
+            # Each side of a ring is that of a triangle below and of one above.
+            self.triangles += 2 * sum(len(ring.points) for ring in rings if ring.number is None)
+        refuse_many(self.triangles)
         return InsetLevel(level, z, tuple(found))
 
     def _kept(self, outlines: LayerOutlines, tile: int, z: float) -> list[InsetRing]:
@@ -141,7 +146,7 @@ class _Work:
         same = corresponding(below.layer, above.layer)
         if same is None:
             raise LoftError(
-                "tiles exchange neighbours twice", above.layer.z, remedy="Write another number of `layers`."
+                "tiles exchange neighbours twice", above.layer.z, remedy="Write another number of layers in [solid]."
             )
         places = UsePlaces.of(below.layer)
         under = places.carried(below.same.reversed, low.level.core)

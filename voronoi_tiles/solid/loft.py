@@ -152,4 +152,4 @@ def _refused(loft: Loft) -> LoftError:
             remedy=f"Give a coarser accuracy than {loft.accuracy:g} mm, or draw keys that differ less.",
         )
     at = float(next(chain(*chain(*loft.crossed))))
-    return LoftError("walls cross", at / unit, remedy="Write more `layers`, or draw keys that differ less.")
+    return LoftError("walls cross", at / unit, remedy="Write more layers in [solid], or draw keys that differ less.")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from math import ceil, radians
 from typing import Final
 
@@ -87,12 +88,16 @@ class Motion:
         Between two of them no point moves farther than a share of the cell: strokes that come round to where they have
         been are seen on their way.
         """
-        travel = self.speed(0.0, self.height) * self.height / abs(self.lattice.reduced_basis[0])
-        equal = np.linspace(0.0, self.height, max(self.solid.layers, ceil(travel / _FARTHEST) + 1))
+        equal = np.linspace(0.0, self.height, self.solid.layers)
         keys = np.concatenate([site.heights for site in self.moving])
         near = np.abs(equal[:, None] - keys).min(axis=1) < 1e-6 * self.height
-        kept = equal[~near | (equal == 0.0) | (equal == self.height)]
-        return np.unique(np.concatenate((kept, keys)))
+        kept = np.unique(np.concatenate((equal[~near | (equal == 0.0) | (equal == self.height)], keys)))
+        far = _FARTHEST * abs(self.lattice.reduced_basis[0])
+        parts = [
+            np.linspace(low, high, max(ceil(self.speed(low, high) * (high - low) / far), 1) + 1)
+            for low, high in pairwise(kept.tolist())
+        ]
+        return np.unique(np.concatenate(parts))
 
     def heights_with(self, asked: Iterable[float]) -> list[float]:
         """The heights of `layers` and others that are asked for, ascending; those close by give way to these.
