@@ -70,6 +70,7 @@ def written(product: Product) -> bytes:
         ({"accuracy": 0.0}, "`accuracy` 0 mm cannot be"),
         ({"accuracy": 1e-7}, "`accuracy` 1e-07 mm cannot be"),
         ({"rotate": float("nan")}, "`rotate` nan cannot be"),
+        ({"rotate": 10**400}, r"`rotate` 1000.* cannot be. Give a finite number of degrees"),
         ({"offset": complex(float("inf"), 0)}, "not a number"),
         ({"label_height": 0.0}, "`label_height` 0 mm cannot be"),
         ({"fit": "clip"}, "`fit` is about a sheet"),

@@ -161,8 +161,8 @@ def test_the_smallest_picture_is_a_pixel() -> None:
     assert picture([SolidPiece("box", "box", 0, flat)], ["#000000"], 1).shape == (1, 1, 3)
 
 
-@pytest.mark.parametrize("size", [0, 5000, 3.5, True])
-def test_a_size_that_cannot_be_is_refused(size: int) -> None:
+@pytest.mark.parametrize("size", [0, 5000, 3.5, True, float("nan"), float("inf")])
+def test_a_size_that_cannot_be_is_refused(size: Any) -> None:
     """With what to give."""
     with pytest.raises(ArgumentError, match="Give a number of pixels"):
         picture([SolidPiece("box", "box", 0, BOX)], ["#000000"], size)

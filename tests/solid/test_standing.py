@@ -113,6 +113,13 @@ def test_a_design_is_made_flat() -> None:
     assert flat == Design.loads(TWIST.split("solid =", maxsplit=1)[0])
 
 
+@pytest.mark.parametrize("design", [None, "design.toml", 3])
+def test_what_is_no_design_does_not_stand(design: Any) -> None:
+    """The argument is named."""
+    with pytest.raises(ArgumentError, match=r"`design` .* cannot be. Give a Design"):
+        stand(design)
+
+
 def test_a_flat_design_does_not_stand() -> None:
     """The message says what to write."""
     with pytest.raises(ArgumentError, match=r"\[solid\]"):

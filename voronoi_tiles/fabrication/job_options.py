@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import os
+import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import KW_ONLY, dataclass, fields
@@ -191,7 +192,7 @@ def read_text(name: str, value: object) -> str:
 
 def read_angle(name: str, value: Any) -> float:
     """Read an angle; degrees. Raises JobError."""
-    if not (is_number(value) and math.isfinite(value)):
+    if not (is_number(value) and abs(value) <= sys.float_info.max):  # which math.isfinite refuses to say of 10**400
         raise JobError(f"`{name}` {shown(value)} cannot be", remedy="Give a finite number of degrees.")
     return float(value)
 

@@ -98,7 +98,7 @@ def picture(pieces: Sequence[SolidPiece], colours: Sequence[str], size: int = SI
 
     Raises ArgumentError for a size that cannot be.
     """
-    if not is_number(size) or size != int(size) or not 1 <= size <= SIZE_MAX:
+    if not is_number(size) or not 1 <= size <= SIZE_MAX or size != int(size):
         raise ArgumentError(f"`size` {size!r} cannot be", remedy=f"Give a number of pixels from 1 to {SIZE_MAX}.")
     corners = np.concatenate([piece.mesh.corners for piece in pieces])
     owner = np.repeat(np.arange(len(pieces)), [len(piece.mesh.triangles) for piece in pieces])

@@ -52,6 +52,7 @@ def stand(design: Design, job: SolidJob | None = None, *, around: bool = False, 
     Raises ArgumentError for a design that is flat, JobError where a job asks for what only prisms have, or a clearance
     or chamfer eats a tile, LoftError where copies meet at some height, ProofError where the result fails its proof.
     """
+    design = instance("design", design, Design)
     job = SolidJob() if job is None else instance("job", job, SolidJob)
     _refuse_prisms(job)
     names = [site.name for site in design.noded]
