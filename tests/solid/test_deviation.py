@@ -23,6 +23,16 @@ site = [{ name = "bird", strokes = [{ segment = [[8, 10], [22, 17]] }] }]
 solid = { height = 20, turn = 90, about = [15, 14] }
 """
 
+ALONG = """
+schema = 1
+group = "cmm"
+units = "mm"
+cell = { a = 44, b = 36 }
+site = [ { name = "s", strokes = [{ segment = [[17.04, 11.88], [4.54, 6.11]] }] } ]
+solid = { height = 30, shift = [2.74, 1.175] }
+"""
+"""A stroke that comes to lie along the copy beyond a centre of rotation, a hundredth of a millimetre from it."""
+
 NEARLY = """
 schema = 1
 group = "p31m"
@@ -83,6 +93,15 @@ def test_copies_that_nearly_meet_are_no_farther_off(y: float, shift: float) -> N
         z = float(low + high) / 2
         off = max(apart(exact(loft, z, site), filled_section(mesh, z)) for site, mesh in enumerate(loft.meshes))
         assert off <= loft.accuracy + 0.002
+
+
+def test_walls_between_strokes_that_nearly_touch_are_no_farther_off_than_these() -> None:
+    """A chord that crosses a copy's stroke, which lies along its own, is off by less than they are apart."""
+    loft = lofted(vt.Design.loads(ALONG), heights=[29.6])
+    assert len(loft.deviation.heights) < 100
+    for low, high in zip(loft.deviation.heights[:-1], loft.deviation.heights[1:], strict=True):
+        z = float(low + high) / 2
+        assert apart(exact(loft, z, 0), filled_section(loft.meshes[0], z)) <= loft.accuracy + 0.002
 
 
 def test_damage_is_seen() -> None:

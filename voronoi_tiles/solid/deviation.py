@@ -166,6 +166,8 @@ def _off(sides: _SectionSides, own: _Strokes, beside: _Strokes) -> Floats:
         off = _gap(away[unsure], third) / np.abs(_slope(away[unsure], third))
         nearer = unsure[off < walls[unsure]]
         walls[nearer], copy[nearer] = off[off < walls[unsure]], number
+    # Of both feet one is in the tile: a wall lies on the way to that one, or to the other.
+    walls = np.fmin(walls, np.maximum(np.abs(away), np.abs(other)))
     middle = copy[len(sides.start) :]
     before = middle[sides.before]
     at = np.flatnonzero(before != middle)
