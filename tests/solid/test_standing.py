@@ -104,6 +104,23 @@ def test_the_examples_are_solids(path: Path, job: SolidJob) -> None:
     assert model.notes == ()
 
 
+def test_neighbours_stay_in_sight() -> None:
+    """Small pieces beside a large one do not drive all others out of the picture."""
+    pieces = """
+schema = 1
+group = "p31m"
+cell = { a = 60 }
+site = [
+  { name = "claw", strokes = [{ segment = [[13, 8], [25, 6]] }] },
+  { name = "peg", strokes = [{ point = [30, 15] }] },
+]
+solid = { height = 30, scale = 1.3, shift = [1, 1], about = [19, 7] }
+"""
+    near, far = (stand(Design.loads(pieces), around=True, apart=apart) for apart in (False, True))
+    widths = [(model.bounds[1] - model.bounds[0])[:2] for model in (near, far)]
+    assert (widths[1] <= 2 * widths[0]).all()
+
+
 def test_a_design_is_made_flat() -> None:
     """By False; None leaves its solid as it is."""
     design = Design.loads(TWIST)

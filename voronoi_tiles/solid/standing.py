@@ -34,8 +34,8 @@ _SHARES: Final = (0.013, 0.257, 0.493, 0.751, 0.987)
 _APART: Final = 0.16
 """How far pieces are pulled apart at least; a share of the longer side of one."""
 
-_PULLS: Final = tuple(0.1 * k for k in range(2, 31))
-"""By these shares of the distance between them it is tried, in turn."""
+_PULLS: Final = tuple(0.1 * k for k in range(2, 11))
+"""By these shares of the distance between them it is tried, in turn. Small ones beside a large one may stay nearer."""
 
 _TOUCHING: Final = 1e-6
 """Pieces that are nearer touch; a share of the longer side of one."""
