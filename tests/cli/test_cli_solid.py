@@ -200,7 +200,7 @@ def test_stacks_fill_boards(here: Path, voronoi_tiles: CommandLine) -> None:
     [
         (("-o", "a.svg", "--sheets", "3", "--frame", "5mm"), "Error: --frame is about a sheet, and there is none."),
         (("-o", "a.svg", "--sheets", "0"), "Error: --sheets 0 cannot be."),
-        (("-o", "a.svg", "--sheets", "3", "--clearance", "1mm"), "Error: --clearance is for prisms, and --sheets for"),
+        (("-o", "a.svg", "--sheets", "3", "--clearance", "1mm"), "Error: --clearance is for printing, and --sheets"),
         (("-o", "a.3mf", "--dowel", "1mm"), "Error: --dowel is for sheets that are cut, and there are none."),
         (("-o", "a.svg", "--sheets", "3"), "Error: bird.toml: the design is flat. Write [solid] and, below it,"),
         (("-o", "a.svg"), "Error: a.svg is no name of such a file"),

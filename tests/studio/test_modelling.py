@@ -99,6 +99,14 @@ def test_neighbours_fill_the_slab(design: dict[str, Any]) -> None:
     assert [beyond.count(one) for one in walls(tile, back=True)] == [0] * len(own)
 
 
+def test_the_first_site_is_said_first() -> None:
+    """Figures are of the drawn tile, with which the model begins, and then of the others."""
+    sites = [{"name": f"s{k}", "strokes": [{"point": [8.0 + 9.0 * k, 9.0 + 5.0 * k]}]} for k in range(2)]
+    flat = {"schema": 1, "group": "p2", "cell": {"a": 40, "b": 40, "angle": 90}, "site": sites}
+    message, _ = shown({**flat, "solid": {"height": 10}})
+    assert [tile["site"] for tile in message["tiles"]] == ["s0", "s1"]
+
+
 @pytest.mark.parametrize("design", [FLAT, LOFT], ids=["prism", "loft"])
 def test_colours_and_normals(design: dict[str, Any]) -> None:
     """Neighbours of the tile have other colours than it; normals point outward, and level faces up or down."""

@@ -174,7 +174,7 @@ def with_solid_job(command: Command) -> Command:
         kind, known = (StackJob, stacks) if "sheets" in given else (SolidJob, solids)
         for name in (name for name in given if name not in known):
             if kind is StackJob:
-                raise JobError(f"`{name}` is for prisms, and `sheets` for stacks", remedy="Leave one of them out.")
+                raise JobError(f"`{name}` is for printing, and `sheets` for stacks", remedy="Leave one of them out.")
             raise JobError(f"`{name}` is for sheets that are cut, and there are none", remedy="Add `sheets=7`.")
         return command(job=kind(**given), **arguments)
 

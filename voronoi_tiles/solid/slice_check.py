@@ -69,7 +69,6 @@ def check_slices(
     found = [_slice(loft, z, render, samples) for z in between_levels(loft, slices)]
     worst = max(found, key=lambda one: float(one.outside.max(initial=0.0)))
     wrong = [one.outside > accuracy for one in found]
-    unit = loft.design.unit_mm
     left_out = sum(one.open for one in found)
     figure = Figure(
         "slices",
@@ -79,7 +78,7 @@ def check_slices(
         float(worst.outside.max(initial=0.0)),
         accuracy,
         "mm",
-        f"the accuracy of walls; worst of {len(found)} heights is z = {worst.z / unit:.6g}; {left_out:,} samples are "
+        f"the accuracy of walls; worst of {len(found)} heights is z = {worst.z:.6g} mm; {left_out:,} samples are "
         "as near to another copy and left out",
         Marks(
             np.concatenate([one.place[bad] for one, bad in zip(found, wrong, strict=True)]),

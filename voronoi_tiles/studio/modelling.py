@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from math import inf
+from operator import itemgetter
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import perf_counter
@@ -157,7 +158,7 @@ def _frame(rev: int, model: SolidModel, begun: float, *, coarse: bool = False, s
                 "volume": model.pieces[k].mesh.volume,
                 "triangles": len(model.pieces[k].mesh.triangles),
             }
-            for site, k in first.items()
+            for site, k in sorted(first.items(), key=itemgetter(1))
         ],
         "count": len(model.pieces),
         "proved": model.proved,
