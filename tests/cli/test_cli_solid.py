@@ -156,6 +156,8 @@ def test_a_stack_is_cut(here: Path, voronoi_tiles: CommandLine) -> None:
     figures = json.loads(done.stdout)
     assert [row["middle"] for row in figures["sheets"]] == [2.0, 6.0, 10.0]
     assert figures["mass"] == pytest.approx((900 - 2 * 3.14159265) * 12 / 1000 * 0.5)
+    again = voronoi_tiles(*call, "--json", cwd=here)
+    assert json.loads(again.stdout)["density"] == 0.68
     recipe = recipe_of((here / "a-2.svg").read_bytes())
     assert json.loads(recipe["stack"]) == {"sheets": 3, "dowel": 2.0, "kerf": 0.1, "number": 2}
 
@@ -203,7 +205,7 @@ def test_stacks_fill_boards(here: Path, voronoi_tiles: CommandLine) -> None:
         (("-o", "a.svg", "--sheets", "3", "--clearance", "1mm"), "Error: --clearance is for printing, and --sheets"),
         (("-o", "a.3mf", "--dowel", "1mm"), "Error: --dowel is for sheets that are cut, and there are none."),
         (("-o", "a.svg", "--sheets", "3"), "Error: bird.toml: the design is flat. Write [solid] and, below it,"),
-        (("-o", "a.svg"), "Error: a.svg is no name of such a file"),
+        (("-o", "a.svg"), "Error: Files to cut are of sheets: add --sheets 7"),
     ],
 )
 def test_a_stack_that_cannot_be_is_refused(

@@ -58,7 +58,10 @@ _CUT_SUFFIXES = (".svg", ".dxf", ".pdf", ".lbrn2", ".gcode", ".nc")
 )
 @click.option("--json", "as_json", is_flag=True, help="Print these as JSON, with the proof's figures.")
 @click.option(
-    "--density", type=click.FloatRange(0.001, 100.0), metavar="G/CM3", help="For the mass [default: 1.24, PLA]."
+    "--density",
+    type=click.FloatRange(0.001, 100.0),
+    metavar="G/CM3",
+    help="For the mass [default: 1.24, PLA; 0.68, plywood, for what is cut].",
 )
 @click.option("-q", "--quiet", is_flag=True, help="Report only what fails.")
 def solid(
@@ -80,7 +83,7 @@ def solid(
     --sheets cut in sheets that are stacked.
     """
     from voronoi_tiles.cli.tables import solid_text, stack_text
-    from voronoi_tiles.solid.solid_report import DENSITY, solid_report
+    from voronoi_tiles.solid.solid_report import DENSITY, PLYWOOD, solid_report
     from voronoi_tiles.solid.stack_job import StackJob
 
     if output == "-" and file_format is None:
@@ -93,21 +96,24 @@ def solid(
     if reports and output == "-":
         raise click.UsageError("The report goes to standard output: give the solids a file.")
     stacked = isinstance(job, StackJob)
+    if not stacked and file_format is None and output.lower().endswith(_CUT_SUFFIXES):
+        raise click.UsageError(
+            "Files to cut are of sheets: add --sheets 7, for a design with a [solid]; flat tiles are cut by export."
+        )
     suffixes = (*_SUFFIXES, *_CUT_SUFFIXES) if stacked else _SUFFIXES
     refuse_output(design, output, (f".{file_format}",) if file_format else suffixes)
-    mass = DENSITY if density is None else density
     with reporting(design):
         loaded = load(design, quiet=quiet)
         if isinstance(job, StackJob):
             cut, form = _stack(loaded, job, output, file_format, size, quiet=quiet)
-            figures = cut.report(mass, form) if reports else {}
+            figures = cut.report(density or (DENSITY if form is None else PLYWOOD), form) if reports else {}
         else:
             around = picture and job.sheet is None
             with waiting("solids", quiet=quiet):
                 made = _model(loaded, job, around=around)
                 # What is there for the picture alone is not counted.
                 reported = _model(loaded, job, around=False) if around and reports else made
-                figures = solid_report(reported, mass) if reports else {}
+                figures = solid_report(reported, density or DENSITY) if reports else {}
             _save(made, output, file_format, size, quiet=quiet)
     if reports:
         print_figures(figures, stack_text if stacked else solid_text, as_json=as_json)

@@ -102,7 +102,7 @@ class SolidJob(OptionTable):
         if 2 * self.chamfer >= height:
             raise JobError(
                 f"two rims with `chamfer='{self.chamfer:g}mm'` leave nothing of a `height` of {height:g} mm",
-                remedy="Use a smaller `chamfer`, or more `height`.",
+                remedy="Use a smaller `chamfer`, or make it higher.",
             )
 
     @property

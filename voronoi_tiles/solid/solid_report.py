@@ -18,6 +18,9 @@ from voronoi_tiles.solid.solid_model import SolidModel
 DENSITY: Final = 1.24
 """Of polylactic acid, the usual filament; grams per cubic centimetre."""
 
+PLYWOOD: Final = 0.68
+"""Of birch plywood, which is what is cut most; grams per cubic centimetre."""
+
 OVERHANG: Final = 45.0
 """From which angle on a wall that leans out needs supports; degrees from the vertical."""
 

@@ -38,7 +38,7 @@ from voronoi_tiles.solid.pieces import SolidPiece
 from voronoi_tiles.solid.slab import Slab
 from voronoi_tiles.solid.solid_job import HEIGHT_MIN, SolidJob
 from voronoi_tiles.solid.solid_model import SolidModel
-from voronoi_tiles.solid.solid_report import DENSITY
+from voronoi_tiles.solid.solid_report import PLYWOOD
 from voronoi_tiles.solid.stack_job import StackJob
 from voronoi_tiles.solid.stack_layout import StackLayout, hole_centres
 from voronoi_tiles.vector.proof import proved_tiles
@@ -211,7 +211,7 @@ class Stack:
             files=tuple(self.design.files),
         )
 
-    def report(self, density: float = DENSITY, file_format: Format | None = None) -> dict[str, Any]:
+    def report(self, density: float = PLYWOOD, file_format: Format | None = None) -> dict[str, Any]:
         """What the sheets come to, in the types of JSON; millimetres, square and cubic ones, grams.
 
         "sheets" has the area of one tile of each site in each sheet, "stacks" how many stacks there are of each; volume
