@@ -25,6 +25,10 @@ Ints = NDArray[np.intp]
 KINK = 0.01
 """By how much derivatives forth and back may differ where there is one: far more than what curvature does to them."""
 
+UNSTEADY = 3e-7
+"""Differences over a step and over twice of it that differ by more say nothing to six digits, nor what has such a corner;
+relative."""
+
 Step = Sequence[tuple[str, float]]
 """Places of numbers in a design file, and by how much each changes."""
 
@@ -70,18 +74,24 @@ def tilings_about(table: dict[str, Any], step: Step, share: float) -> tuple[Tili
 def derivative(table: dict[str, Any], step: Step, measured: Callable[[Tiling], Floats], share: float) -> Floats | None:
     """The derivatives of some measures by a step, to the fourth order; None as in `tilings_about`.
 
-    NaN for a measure that has none: what it does forth is another thing than what it does back.
+    NaN for a measure that has none: what it does forth is another thing than what it does back, in the first order or,
+    as for areas where an edge vanishes, in the second.
     """
     here = measured(Design.from_dict(table).tessellate())
-    slopes = []
+    slopes, bends = [], []
     for part in (share, 2.0 * share):
         pair = tilings_about(table, step, part)
         if pair is None:
             return None
         forth, back = (measured(tiling) for tiling in pair)
         slopes.append((forth - back) / (2.0 * part))
-        bent = np.abs(forth - 2.0 * here + back) / part
-    return np.asarray(np.where(bent < KINK, (4.0 * slopes[0] - slopes[1]) / 3.0, np.nan))
+        bends.append((forth - 2.0 * here + back) / part)
+    near, far = slopes
+    # What is bent is so twice as much over twice the step; where it has a corner, as much.
+    corner = 2.0 * bends[0] - bends[1]
+    unsteady = np.maximum(np.abs(near - far), np.abs(corner))
+    exists = (np.abs(bends[1]) < KINK) & (unsteady <= UNSTEADY * (1.0 + np.abs(near)))
+    return np.asarray(np.where(exists, (4.0 * near - far) / 3.0, np.nan))
 
 
 def points_of(outline: Outline, arc: Ints, t: Floats) -> tuple[Complexes, Complexes]:
