@@ -26,7 +26,7 @@ KINK = 0.01
 """By how much derivatives forth and back may differ where there is one: far more than what curvature does to them."""
 
 UNSTEADY = 3e-7
-"""Differences over a step and over twice of it that differ by more say nothing to six digits, nor what has such a corner;
+"""Differences over a step and over twice of it that differ by more say nothing to six digits, nor do such corners;
 relative."""
 
 Step = Sequence[tuple[str, float]]

@@ -514,7 +514,7 @@ def test_the_drawings_are_made_anew(part: str, tmp_path: Path) -> None:
     )
     subprocess.run([sys.executable, "-c", script], cwd=ROOT, check=True, timeout=300, stdout=subprocess.DEVNULL)
     drawn = sorted(tmp_path.glob("*.svg"))
-    assert len(drawn) > 3
+    assert drawn
     for path in drawn:
         made, kept = (
             [part for path in PATHS.findall(file.read_text(encoding="utf-8")) for part in path.split()]

@@ -78,6 +78,8 @@ def merged(nodes: Complexes, origin: complex, near: float) -> tuple[Complexes, I
     different = same == np.arange(len(nodes))
     nodes = nodes[different]
     again = (np.cumsum(different) - 1)[same]
+    if near == 0.0:  # a site that is one point
+        return nodes, again
 
     count = len(nodes)
     label = np.arange(count, dtype=np.intp)

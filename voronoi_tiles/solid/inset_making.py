@@ -32,6 +32,9 @@ _OUTLINE: Final = 0.1
 _CHORDS: Final = 0.3
 """Parts of the slack that a level's outlines and its chords take; the rest is for what lies between levels."""
 
+_FINER: Final = (1.0, 0.25)
+"""Parts of these, tried in turn: where sides of two levels lie across each other, walls are four times as far off."""
+
 _SURE: Final = 0.6
 """Half way between levels that are within this part of the slack nothing else is looked at; the levels take 0.4."""
 
@@ -51,18 +54,24 @@ def inset_loft(loft: Loft, depth: InsetDepth) -> InsetLoft:
     Raises JobError, with the site and the height, where that is too much for a tile, or walls do not come within slack,
     ArgumentError where that takes too many triangles.
     """
-    work = _Work(loft, depth)
-    levels = [work.drawn(level) for level in work.levels()]
-    found = [pair for low, high in pairwise(levels) for pair in work.up(low, high, _ROUNDS)]
-    slabs, above = zip(*found, strict=True)
-    return InsetLoft(loft, depth, work.kept, (levels[0], *above), slabs, tuple(work.notes))
+    for part in _FINER:
+        work = _Work(loft, depth, part)
+        try:
+            return work.whole()
+        except _WallsOffError as error:
+            off = error
+    raise JobError(str(off), remedy="Give a coarser `accuracy`, or draw strokes that move less there.")
+
+
+class _WallsOffError(Exception):
+    """Walls are not within slack, however near to each other levels are; the text says where."""
 
 
 class _Work:
     """Draws levels in, and puts walls between."""
 
-    def __init__(self, loft: Loft, depth: InsetDepth) -> None:
-        self.loft, self.depth, self.unit = loft, depth, loft.design.unit_mm
+    def __init__(self, loft: Loft, depth: InsetDepth, part: float) -> None:
+        self.loft, self.depth, self.unit, self.part = loft, depth, loft.design.unit_mm, part
         self.notes: list[str] = []
         self.lost: set[str] = set()
         self.triangles = 0
@@ -70,6 +79,13 @@ class _Work:
         plain = [z for level in loft.levels if depth.at(z := level.core.z * self.unit) <= _ROUNDING * depth.height]
         self.ends = (plain[0], plain[-1]) if plain else (np.inf, -np.inf)
         self.kept = tuple(LoftMiddle.of(mesh, *self.ends) for mesh in loft.meshes) if plain else ()
+
+    def whole(self) -> InsetLoft:
+        """All levels, and the walls between."""
+        levels = [self.drawn(level) for level in self.levels()]
+        found = [pair for low, high in pairwise(levels) for pair in self.up(low, high, _ROUNDS)]
+        slabs, above = zip(*found, strict=True)
+        return InsetLoft(self.loft, self.depth, self.kept, (levels[0], *above), slabs, tuple(self.notes))
 
     def levels(self) -> list[LoftLevel]:
         """The levels of the loft that are drawn in, or where a chamfer ends."""
@@ -84,7 +100,7 @@ class _Work:
     def drawn(self, level: LoftLevel) -> InsetLevel:
         """A level, drawn in."""
         core, z = level.core, level.core.z * self.unit
-        outlines = LayerOutlines.of(core, self.unit, _OUTLINE * self.depth.slack)
+        outlines = LayerOutlines.of(core, self.unit, self.part * _OUTLINE * self.depth.slack)
         found = []
         for tile in range(len(core.records)):
             rings = self._kept(outlines, tile, z) if z in self.ends else self._inset(outlines, tile, z)
@@ -105,7 +121,7 @@ class _Work:
     def _inset(self, outlines: LayerOutlines, tile: int, z: float) -> list[InsetRing]:
         """The rings of a tile, drawn in. Raises JobError where it falls apart."""
         try:
-            rings, lost = outlines.inset(tile, self.depth.at(z), _CHORDS * self.depth.slack)
+            rings, lost = outlines.inset(tile, self.depth.at(z), self.part * _CHORDS * self.depth.slack)
         except OffsetError as error:
             remedy = "Change it a little, and please report the design."
             raise self._refusal("cannot be applied", tile, z, error.place, remedy) from None
@@ -127,10 +143,9 @@ class _Work:
             yield slab, high
             return
         if not rounds:
-            raise JobError(
+            raise _WallsOffError(
                 f"between the heights {low.z:.6g} and {high.z:.6g} mm walls do not come within the `accuracy` of "
-                f"{self.depth.accuracy:g} mm of where they are drawn in to",
-                remedy="Give a coarser `accuracy`, or draw strokes that move less there.",
+                f"{self.depth.accuracy:g} mm of where they are drawn in to"
             )
         layers = [low.level.views[1].layer, middle, high.level.views[0].layer]
         line: list[ExactLayer | Event] = [layers[0]]
