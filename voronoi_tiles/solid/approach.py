@@ -47,7 +47,7 @@ def approach(
 ) -> Approach:
     """How near different copies come to each other from the first height to the last.
 
-    No point of a stroke is faster than a known bound: where the distance of two copies is more than they can lose on
+    No point of a stroke goes farther than a known bound: where the distance of two copies is more than they can lose on
     the way to the middle of an interval, they do not meet in it; else it is halved. Raises LoftError, with the height,
     where copies come so near that they are taken to meet.
     """
@@ -80,8 +80,8 @@ def approach(
         waiting.append((low, high, np.arange(len(every.code)), below, above))
     while waiting:
         low, high, which, below, above = waiting.pop()
-        # Both copies move: towards each other at twice the speed.
-        bound = (below + above) / 2 - motion.speed(low, high) * (high - low)
+        # Both copies move: towards each other by twice as much.
+        bound = (below + above) / 2 - motion.travel(low, high)
         good = bound > np.minimum(below, above) / 4
         if good.any():
             proved = min(proved, float(bound[good].min()))
@@ -99,7 +99,7 @@ def copy_pairs(
 ) -> CopyPairs:
     """All pairs whose boxes, swept over the heights, are no more than `apart` from each other."""
     drawn = [motion.points(z) for z in heights]
-    steps = [motion.speed(low, high) * (high - low) / 2 for low, high in pairwise(heights)]
+    steps = [motion.travel(low, high) / 2 for low, high in pairwise(heights)]
     boxes = []
     for k in range(len(motion.moving)):
         points = np.concatenate([sites[k] for sites in drawn])

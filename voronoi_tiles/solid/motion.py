@@ -94,7 +94,7 @@ class Motion:
         kept = np.unique(np.concatenate((equal[~near | (equal == 0.0) | (equal == self.height)], keys)))
         far = _FARTHEST * abs(self.lattice.reduced_basis[0])
         parts = [
-            np.linspace(low, high, max(ceil(self.speed(low, high) * (high - low) / far), 1) + 1)
+            np.linspace(low, high, max(ceil(self.travel(low, high) / far), 1) + 1)
             for low, high in pairwise(kept.tolist())
         ]
         return np.unique(np.concatenate(parts))
@@ -132,22 +132,22 @@ class Motion:
         turned = Isometry(unit_at(degrees), solid.about + solid.shift * t, conj=False)
         return turned((points - solid.about) * factor)
 
-    def speed(self, low: float, high: float) -> float:
-        """No point moves faster anywhere between two heights: a length per unit of height."""
-        solid, fastest = self.solid, 0.0
-        inner = [z for site in self.moving for z in site.heights.tolist() if low < z < high]
-        stops = [low, *sorted(set(inner)), high]
+    def travel(self, low: float, high: float) -> float:
+        """No point goes a longer way from one height to another, which is above it; a length."""
+        inner = {z for site in self.moving for z in site.heights.tolist() if low < z < high}
+        return sum(self._way(below, above) for below, above in pairwise([low, *sorted(inner), high]))
+
+    def _way(self, low: float, high: float) -> float:
+        """The same between two heights that have no key between them."""
+        solid, longest, share = self.solid, 0.0, (high - low) / self.height
         grown = max(abs(1.0 + (solid.scale - 1.0) * z / self.height) for z in (low, high))
-        turning, growing = radians(abs(solid.turn)) / self.height, abs(solid.scale - 1.0) / self.height
+        turning, growing = radians(abs(solid.turn)) * share, abs(solid.scale - 1.0) * share
         for site in self.moving:
-            drawn = [np.concatenate(site.drawn(z)) for z in stops]
-            away = max(float(np.abs(points - solid.about).max()) for points in drawn)
-            along = max(
-                float(np.abs(after - before).max()) / (above - below)
-                for before, after, below, above in zip(drawn, drawn[1:], stops, stops[1:], strict=False)
-            )
-            fastest = max(fastest, grown * along + away * (growing + grown * turning))
-        return fastest + abs(solid.shift) / self.height
+            before, after = (np.concatenate(site.drawn(z)) for z in (low, high))
+            away = max(float(np.abs(points - solid.about).max()) for points in (before, after))
+            along = float(np.abs(after - before).max())
+            longest = max(longest, grown * along + away * (growing + grown * turning))
+        return longest + abs(solid.shift) * share
 
 
 def _lines(drawn: DrawnInHeight, grown: float) -> tuple[Complexes, ...]:
