@@ -333,14 +333,4 @@ CLASSES = (
     VORONOI_TILES_OT_export,
 )
 
-
-def register() -> None:
-    """Make them known."""
-    for one in CLASSES:
-        bpy.utils.register_class(one)
-
-
-def unregister() -> None:
-    """Forget them."""
-    for one in reversed(CLASSES):
-        bpy.utils.unregister_class(one)
+register, unregister = bpy.utils.register_classes_factory(CLASSES)

@@ -157,14 +157,4 @@ def say(layout: Any, sentences: Iterable[str], icon: str) -> None:
 
 CLASSES = (VORONOI_TILES_PT_tiles, VORONOI_TILES_PT_field, VORONOI_TILES_PT_solids, VORONOI_TILES_PT_files)
 
-
-def register() -> None:
-    """Show it."""
-    for one in CLASSES:
-        bpy.utils.register_class(one)
-
-
-def unregister() -> None:
-    """Show it no more."""
-    for one in reversed(CLASSES):
-        bpy.utils.unregister_class(one)
+register, unregister = bpy.utils.register_classes_factory(CLASSES)

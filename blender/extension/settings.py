@@ -143,19 +143,19 @@ class VORONOI_TILES_Settings(bpy.types.PropertyGroup):
 
 CLASSES = (VORONOI_TILES_Site, VORONOI_TILES_Source, VORONOI_TILES_Settings)
 
+_register, _unregister = bpy.utils.register_classes_factory(CLASSES)
+
 
 def register() -> None:
     """Give every object its settings."""
-    for one in CLASSES:
-        bpy.utils.register_class(one)
+    _register()
     bpy.types.Object.voronoi_tiles = PointerProperty(type=VORONOI_TILES_Settings)
 
 
 def unregister() -> None:
     """Take them away; what they hold stays in the file."""
     del bpy.types.Object.voronoi_tiles
-    for one in reversed(CLASSES):
-        bpy.utils.unregister_class(one)
+    _unregister()
 
 
 def tiling_of(item: Any) -> Any:
