@@ -31,6 +31,18 @@ export function make(tag, attributes = {}, ...children) {
     return element;
 }
 
+/**
+ * A list of figures: a name and a value each; greyed where they are not of what is drawn now.
+ * @param {string[][]} rows
+ * @param {unknown} isOld
+ */
+export const figures = (rows, isOld) =>
+    make(
+        "dl",
+        { class: isOld ? "figures old" : "figures" },
+        ...rows.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]),
+    );
+
 /** An element of the page. @param {string} id */
 export const byId = (id) => /** @type {HTMLElement} */ (document.getElementById(id));
 

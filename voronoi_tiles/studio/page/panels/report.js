@@ -3,7 +3,7 @@
 
 import { shown } from "../model/lengths.js";
 import { Kept } from "../model/kept.js";
-import { button, inLabels, make, refill } from "./elements.js";
+import { button, figures, inLabels, make, refill } from "./elements.js";
 
 /** @import { Context } from "./panels.js" */
 /** @import { State } from "../store.js" */
@@ -78,11 +78,7 @@ export class ReportPanel extends HTMLElement {
         ];
         refill(this, [
             make("h2", {}, "Report"),
-            make(
-                "dl",
-                { class: isOld ? "figures old" : "figures" },
-                ...rows.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]),
-            ),
+            figures(rows, isOld),
             make(
                 "p",
                 { class: "note" },

@@ -5,7 +5,7 @@ import { flat, setSolid, standing } from "../model/design.js";
 import { tidyProduct } from "../model/plane.js";
 import { boxOf } from "../scene.js";
 import { shownFactor } from "../store.js";
-import { above, button, deferred, field, inLabels, lengthField, make, mark, refill } from "./elements.js";
+import { above, button, deferred, field, figures, inLabels, lengthField, make, mark, refill } from "./elements.js";
 import { optionField, withOption } from "./options.js";
 
 /** @import { Context } from "./panels.js" */
@@ -82,11 +82,7 @@ export class SolidPanel extends HTMLElement {
             ...[
                 make("h2", {}, design.solid ? "Loft" : "Prism"),
                 bad && make("p", { class: "error", role: "alert" }, inLabels(`${bad.message} ${bad.remedy}`)),
-                make(
-                    "dl",
-                    { class: isOld ? "figures old" : "figures" },
-                    ...rows.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]),
-                ),
+                figures(rows, isOld),
                 make(
                     "p",
                     { class: "note proof", role: "status", "data-state": isOld ? "old" : solid ? "proved" : "" },
