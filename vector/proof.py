@@ -9,7 +9,7 @@ search of the proof's own, over all copies of all sites.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -44,6 +44,11 @@ def proved_tiles(
     if not proof.passed:
         raise ProofError("the result failed its proof: " + "; ".join(proof.failures), proof)
     return tiles, proof
+
+
+def figures_document(rows: Iterable[tuple[str, float, float, bool]]) -> list[dict[str, Any]]:
+    """Figures, each a name, a value, a limit and whether it holds, in the types of JSON."""
+    return [{"name": name, "value": value, "limit": limit, "passed": passed} for name, value, limit, passed in rows]
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,10 +89,7 @@ class ProofReport:
 
     def document(self) -> list[dict[str, Any]]:
         """The figures in the types of JSON: each with "name", "value", "limit" and "passed"."""
-        return [
-            {"name": name, "value": value, "limit": limit, "passed": passed}
-            for name, value, limit, passed in self.rows()
-        ]
+        return figures_document(self.rows())
 
     @property
     def passed(self) -> bool:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, Literal, Unpack, get_args, overload
 
 import numpy as np
 
-from voronoi_tiles.base.arguments import instance, path_name
-from voronoi_tiles.base.errors import ArgumentError, UnknownNameError
+from voronoi_tiles.base.arguments import instance, of_site, path_name
+from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.files import refuse_overwriting, write_whole
 from voronoi_tiles.base.maps import Placement
 from voronoi_tiles.base.text import counted
@@ -76,11 +76,7 @@ class Tiling:
         """The tile of a number, or of the name of its site. Raises UnknownNameError, IndexError."""
         if not isinstance(key, str):
             return self.tiles[key]
-        for tile in self.tiles:
-            if tile.name == key:
-                return tile
-        names = ", ".join(tile.name for tile in self.tiles)
-        raise UnknownNameError(f'there is no site "{key}"', remedy=f"Sites are {names}.")
+        return of_site(self.tiles, key)
 
     @property
     def tessellation(self) -> Tessellation:

@@ -4,13 +4,23 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
-from voronoi_tiles.base.errors import ArgumentError
+from voronoi_tiles.base.errors import ArgumentError, UnknownNameError
 from voronoi_tiles.base.tolerance import COORDINATE_MAX
 from voronoi_tiles.base.values import is_number, shown
 
 Kind = TypeVar("Kind")
+
+
+class _Named(Protocol):
+    """What belongs to a site, and has its name."""
+
+    @property
+    def name(self) -> str: ...
+
+
+Named = TypeVar("Named", bound=_Named)
 
 
 def instance(name: str, value: Any, kind: type[Kind]) -> Kind:
@@ -55,3 +65,11 @@ def path_name(name: str, value: Any) -> str:
     if not isinstance(path, str):
         raise ArgumentError(f"`{name}` {shown(value)} is no path", remedy="Give a str or a Path.")
     return path
+
+
+def of_site(items: Iterable[Named], name: str) -> Named:
+    """The one of some items, one for each site, that has a site's name. Raises UnknownNameError."""
+    found = {item.name: item for item in items}
+    if name not in found:
+        raise UnknownNameError(f'there is no site "{name}"', remedy=f"Sites are {', '.join(found)}.")
+    return found[name]

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
+from voronoi_tiles.base.arguments import of_site
 from voronoi_tiles.base.arrays import Floats
-from voronoi_tiles.base.errors import ArgumentError, UnknownNameError
+from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.base.text import counted
 from voronoi_tiles.designs.design import Design
@@ -68,11 +69,7 @@ class ShapeGradient:
         """The derivatives of the tile of a number, or of a site's name. Raises UnknownNameError, IndexError."""
         if not isinstance(key, str):
             return self.tiles[key]
-        for tile in self.tiles:
-            if tile.name == key:
-                return tile
-        names = ", ".join(tile.name for tile in self.tiles)
-        raise UnknownNameError(f'there is no site "{key}"', remedy=f"Sites are {names}.")
+        return of_site(self.tiles, key)
 
     def stepped(self, step: Sequence[float] | Floats | Mapping[str, float]) -> Design:
         """The design with its parameters changed by a step, as many numbers or those of some names, checked again.

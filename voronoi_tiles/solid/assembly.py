@@ -72,6 +72,14 @@ class LoftLevel:
         return _View(other, short, same)
 
 
+def matching(below: ExactLayer, above: ExactLayer) -> Correspondence:
+    """How the uses of two layers correspond that have no event between them. Raises LoftError where they do not."""
+    same = corresponding(below, above)
+    if same is None:
+        raise LoftError("tiles exchange neighbours twice", above.z, remedy=_OTHERS)
+    return same
+
+
 @dataclass(frozen=True, eq=False)
 class LoftTile:
     """The solid of one site: triangles between `points`, intp (m, 3), counter-clockwise as seen from outside."""
@@ -100,10 +108,7 @@ def solids_of(
     table, views = VertexTable(levels[0].core.action), [level.views for level in levels]
     slabs = []
     for (_, below), (above, _) in pairwise(views):
-        same = corresponding(below.layer, above.layer)
-        if same is None:
-            raise LoftError("tiles exchange neighbours twice", above.layer.z, remedy=_OTHERS)
-        slabs.append(same)
+        slabs.append(matching(below.layer, above.layer))
     chains, labels = _chains(table, levels, views, slabs, accuracy), _labels(levels, views, slabs)
     count = sum(int(chains[k][1].counts[view.layer.edge].sum()) for k, (_, view) in enumerate(views))
     refuse_many(2 * count)  # each side of a chain is that of one below and of one above

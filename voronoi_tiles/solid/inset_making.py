@@ -11,13 +11,13 @@ import numpy as np
 from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.fabrication.job import JobError
 from voronoi_tiles.paths.offset import OffsetError
-from voronoi_tiles.solid.assembly import LoftLevel, levels_of, refuse_many
-from voronoi_tiles.solid.correspondence import corresponding
-from voronoi_tiles.solid.events import Event, LoftError, events_between
+from voronoi_tiles.solid.assembly import LoftLevel, levels_of, matching, refuse_many
+from voronoi_tiles.solid.events import Event, events_between
 from voronoi_tiles.solid.inset_depth import InsetDepth
 from voronoi_tiles.solid.inset_loft import InsetLevel, InsetLoft, InsetSlab
 from voronoi_tiles.solid.inset_rings import InsetRing, LayerOutlines, faces_one
 from voronoi_tiles.solid.inset_walls import InsetWall, UsePlaces
+from voronoi_tiles.solid.layering import Layering
 from voronoi_tiles.solid.layers import ExactLayer
 from voronoi_tiles.solid.loft import Loft
 from voronoi_tiles.solid.loft_middle import LoftMiddle
@@ -75,6 +75,7 @@ class _Work:
         self.notes: list[str] = []
         self.lost: set[str] = set()
         self.triangles = 0
+        self.layer_at = Layering(loft.design, loft.motion).layer_at
         # Without a clearance the loft stays what it is between its rims.
         plain = [z for level in loft.levels if depth.at(z := level.core.z * self.unit) <= _ROUNDING * depth.height]
         self.ends = (plain[0], plain[-1]) if plain else (np.inf, -np.inf)
@@ -91,11 +92,6 @@ class _Work:
         """The levels of the loft that are drawn in, or where a chamfer ends."""
         low, high = self.ends
         return [level for level in self.loft.levels if not low < level.core.z * self.unit < high]
-
-    def layer_at(self, z: float) -> ExactLayer:
-        """The layer at a height, in the design's units."""
-        design, core = self.loft.design, self.loft.levels[0].core
-        return ExactLayer.of(z, self.loft.motion.at(z), design.group, design.lattice, core.stabilizers)
 
     def drawn(self, level: LoftLevel) -> InsetLevel:
         """A level, drawn in."""
@@ -158,11 +154,7 @@ class _Work:
     def _slab(self, low: InsetLevel, high: InsetLevel, middle: ExactLayer) -> InsetSlab:
         """The walls between two levels."""
         below, above = low.level.views[1], high.level.views[0]
-        same = corresponding(below.layer, above.layer)
-        if same is None:
-            raise LoftError(
-                "tiles exchange neighbours twice", above.layer.z, remedy="Write another number of layers in [solid]."
-            )
+        same = matching(below.layer, above.layer)
         places = UsePlaces.of(below.layer)
         under = places.carried(below.same.reversed, low.level.core)
         over = places.carried(same, above.layer).carried(above.same.reversed, high.level.core)
@@ -187,14 +179,15 @@ class _Work:
     def _is_good(self, slab: InsetSlab, middle: ExactLayer, low: InsetLevel, high: InsetLevel) -> bool:
         """Whether walls are within slack where it is seen."""
         bottom, top = low.level.core.z, high.level.core.z
-        for share in _SHARES:
-            layer = middle if share == 0.5 else self.layer_at(bottom + (top - bottom) * share)
+        # The quarters are, to the bit, the middles of what is looked at next where this is not good.
+        for share, z in zip(_SHARES, (middle.z, (bottom + middle.z) / 2, (middle.z + top) / 2), strict=True):
+            layer = self.layer_at(z)
             # The exact tiles are chords here, too.
-            z, slack = layer.z * self.unit, self.depth.slack * (1 - _FINE)
+            slack = self.depth.slack * (1 - _FINE)
             off = 0.0
             for record, walls in zip(layer.records, slab.walls, strict=True):
                 away = distances([wall.at(share) for wall in walls], record.outline, self.unit, _FINE * slack)
-                off = max(off, float(np.abs(away - self.depth.at(z)).max()))
+                off = max(off, float(np.abs(away - self.depth.at(z * self.unit)).max()))
             if not off <= slack:
                 return False
             if share == 0.5 and off <= _SURE * slack:

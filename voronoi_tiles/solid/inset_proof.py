@@ -22,6 +22,7 @@ from voronoi_tiles.solid.mesh import TriangleMesh
 from voronoi_tiles.solid.sections import crossed_sections
 from voronoi_tiles.solid.solid_proof import SolidProof, prove_loft
 from voronoi_tiles.vector.motion_codes import motion_of
+from voronoi_tiles.vector.proof import figures_document
 
 _ROUNDING: Final = 1e-9
 """By how much less than the clearance neighbours may be apart; relative."""
@@ -94,10 +95,7 @@ class InsetProof(NamedTuple):
 
     def document(self) -> list[dict[str, Any]]:
         """The figures in the types of JSON, as those of a loft's proof."""
-        return [
-            {"name": name, "value": value, "limit": limit, "passed": passed}
-            for name, value, limit, passed in self.rows()
-        ]
+        return figures_document(self.rows())
 
     def __str__(self) -> str:
         if self.clearance == 0.0:
@@ -130,7 +128,10 @@ def prove_inset(inset: InsetLoft) -> InsetProof:
         approach=loft.approach.proved * loft.design.unit_mm,
         outside=sum(outside for _, outside in depths),
         open_meshes=sum(not mesh.is_closed for mesh in meshes),
-        handles=sum(_euler(one) != _euler(other) for one, other in zip(meshes, loft.meshes, strict=True)),
+        handles=sum(
+            one.euler_characteristic != other.euler_characteristic
+            for one, other in zip(meshes, loft.meshes, strict=True)
+        ),
         crossings=sum(sum(map(len, sections)) for sections in crossed),
         wanted=tuple(sorted(wanted)),
         kept=prove_loft(loft) if inset.kept else None,
@@ -156,11 +157,6 @@ def proved_inset(design: Design, depth: InsetDepth) -> tuple[InsetLoft, InsetPro
     if proof.failures:
         raise ProofError("the solid failed its proof: " + "; ".join(proof.failures), proof)
     return inset, proof
-
-
-def _euler(mesh: TriangleMesh) -> int:
-    """Vertices less sides and more triangles, where each side is that of two triangles."""
-    return len(mesh.vertices) - len(mesh.triangles) // 2
 
 
 def _by_slab(mesh: TriangleMesh, heights: Floats) -> list[TriangleMesh]:

@@ -64,6 +64,11 @@ class TriangleMesh(NamedTuple):
         return np.asarray(np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2)
 
     @property
+    def euler_characteristic(self) -> int:
+        """Vertices less sides and more triangles, of a mesh that is closed: each side is that of two triangles."""
+        return len(self.vertices) - len(self.triangles) // 2
+
+    @property
     def is_closed(self) -> bool:
         """Whether every side of a triangle is there once in each direction: the triangles enclose a solid."""
         sides = np.concatenate([self.triangles[:, pair] for pair in ([0, 1], [1, 2], [2, 0])])

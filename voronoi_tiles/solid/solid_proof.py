@@ -22,6 +22,7 @@ from voronoi_tiles.solid.deviation import equidistance
 from voronoi_tiles.solid.loft import ACCURACY_MM, Loft, lofted
 from voronoi_tiles.solid.mesh import TriangleMesh, point_numbers
 from voronoi_tiles.vector.motion_codes import operation_of
+from voronoi_tiles.vector.proof import figures_document
 
 
 class SolidProof(NamedTuple):
@@ -64,10 +65,7 @@ class SolidProof(NamedTuple):
 
     def document(self) -> list[dict[str, Any]]:
         """The figures in the types of JSON: each with "name", "value", "limit" and "passed"."""
-        return [
-            {"name": name, "value": value, "limit": limit, "passed": passed}
-            for name, value, limit, passed in self.rows()
-        ]
+        return figures_document(self.rows())
 
     @property
     def failures(self) -> tuple[str, ...]:
@@ -98,7 +96,7 @@ def prove_loft(loft: Loft) -> SolidProof:
         accuracy=loft.accuracy,
         approach=loft.approach.proved / core.action.size,
         open_meshes=sum(not mesh.is_closed for mesh in loft.meshes),
-        handles=sum(_euler(mesh) != _expected(loft, k) for k, mesh in enumerate(loft.meshes)),
+        handles=sum(mesh.euler_characteristic != _expected(loft, k) for k, mesh in enumerate(loft.meshes)),
         unshared=sum(_unshared(loft, k) for k in range(len(loft.meshes))),
         crossings=sum(sum(map(len, crossed)) for crossed in loft.crossed),
     )
@@ -114,11 +112,6 @@ def proved_loft(design: Design, *, accuracy: float = ACCURACY_MM) -> tuple[Loft,
     if not proof.passed:
         raise ProofError("the solid failed its proof: " + "; ".join(proof.failures), proof)
     return loft, proof
-
-
-def _euler(mesh: TriangleMesh) -> int:
-    """Vertices less sides and more triangles, where each side is that of two triangles."""
-    return len(mesh.vertices) - len(mesh.triangles) // 2
 
 
 def _expected(loft: Loft, tile: int) -> int:
