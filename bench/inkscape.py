@@ -68,7 +68,7 @@ def main() -> None:
         rows = {
             "Tiles from Selection": [PYTHON, "run_tiles.py", "--id=p", *numbers, "p.svg"],
             "with a cell that is fitted, p4": [PYTHON, "run_tiles.py", "--id=p", "p.svg"],
-            "with a cell that is fitted, p1": [PYTHON, "run_tiles.py", "--id=p", "--group=p1", "p.svg"],
+            "with a cell that is fitted, p2": [PYTHON, "run_tiles.py", "--id=p", "--group=p2", "p.svg"],
             "Sheet from Selection": [PYTHON, "run_sheet.py", "--id=p", *numbers, "p.svg"],
             "Open a design": [PYTHON, "run_open.py", "p.json"],
             "voronoi-tiles export p.json": [sys.executable, "-m", "voronoi_tiles", "export", "p.json", "-o", "o.svg"],

@@ -11,29 +11,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Final, NamedTuple
 
 import numpy as np
-import shapely
-from scipy import ndimage, sparse, spatial
 
-from voronoi_tiles.base.arrays import Complexes, Floats, counting, plane
+from voronoi_tiles.base.arrays import Complexes, Floats
 from voronoi_tiles.base.errors import DesignError
 from voronoi_tiles.base.maps import Isometry, move
 from voronoi_tiles.base.tolerance import CELL_MIN
+from voronoi_tiles.designs.silhouette import REACH, Silhouette
 from voronoi_tiles.designs.site import NodedSite
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 
 CLEARANCE: Final = 0.12
 """How far apart copies are to be; relative to the drawing's diameter. Less leaves thin necks, more makes tiles rounder
 than the drawing."""
-
-_PIXELS: Final = 96
-"""Along the drawing's diameter; a count. Distances are right to one or two of them."""
-
-_REACH: Final = 0.3
-"""Distances are known up to this; relative to the diameter."""
 
 _PLACES: Final = 48
 """Places that are tried along each side of the cell; a count."""
@@ -48,6 +40,9 @@ _GAIN: Final = 0.97
 _STEP: Final = 1.02
 """How exactly the size of the cell is found; a factor."""
 
+_BATCH: Final = 1 << 13
+"""Places times translations that are looked up at once; a count. With more, many are of places given up already."""
+
 
 class Place(NamedTuple):
     """A cell, as a design has it, and the vector by which the strokes are moved into it."""
@@ -61,12 +56,12 @@ def find_place(sites: Sequence[NodedSite], group: WallpaperGroup) -> Place:
 
     Raises DesignError for what is smaller than the smallest cell.
     """
-    drawing = _Silhouette.of(sites)
+    drawing = Silhouette.of(sites)
     if drawing.diameter < CELL_MIN:
         raise DesignError(f"the strokes are smaller than {CELL_MIN:g} together", remedy="Draw them larger.")
     upright = group.lattice(1.0, 1.0, 90.0)
     parts = {(unit, conj) for unit, _, conj in map(upright.isometry, group.operations)}
-    search = _CellSearch(drawing, group, {part: drawing.distances(*part) for part in parts})
+    search = _CellSearch(drawing, group, drawing.distances(parts))
     cell = search.smallest_cell()
     step = 10.0 ** (math.floor(math.log10(drawing.diameter / 2.0)) - 2)
     rounded = {
@@ -81,122 +76,10 @@ def _short(value: float, step: float) -> float:
     return round(round(value / step) * step, 12) + 0.0
 
 
-@dataclass(frozen=True, eq=False)
-class _Silhouette:
-    """Strokes as points of a square grid.
-
-    `points` (complex128, n) are their lines and what these enclose, about the middle of the bounding box, `middle`, in
-    steps of `pixel`; `diameter` is the longer side of the box. `bridged` are these and the discs over the shortest
-    bridges between the parts of the drawing: a tile is in one part where no copy comes into these.
-    """
-
-    points: Complexes
-    bridged: Complexes
-    middle: complex
-    pixel: float
-    diameter: float
-
-    @classmethod
-    def of(cls, sites: Sequence[NodedSite]) -> _Silhouette:
-        """The drawing of some sites."""
-        ends = np.concatenate([site.ends for site in sites])
-        x, y = ends.real, ends.imag
-        middle = complex(x.min() + x.max(), y.min() + y.max()) / 2.0
-        diameter = float(max(np.ptp(x), np.ptp(y))) or 1.0  # a single point is as good anywhere
-        pixel = diameter / _PIXELS
-        lines = _snapped(_samples(ends - middle, pixel), pixel)
-        faces = [shapely.polygonize(shapely.linestrings(plane(site.nodes[site.segments] - middle))) for site in sites]
-        points = np.unique(np.concatenate([lines, *(_inside(face, pixel) for face in faces)]))
-        # A bridge is nearer to its own ends than to anything outside the disc over it.
-        bridges = _bridges(points, 1.5 * pixel)
-        middles, radii = bridges.mean(axis=1), np.abs(bridges[:, 1] - bridges[:, 0]) / 2.0
-        discs = shapely.buffer(shapely.points(plane(middles)), radii)
-        bridged = np.unique(np.concatenate([points, *(_inside(disc, pixel) for disc in discs)]))
-        return cls(points, bridged, middle, pixel, diameter)
-
-    def distances(self, factor: complex, conj: bool) -> Floats:
-        """The distances of the drawing from its image moved by v, which is (column, row) pixels from the middle.
-
-        float64 (m, m), m odd; what is farther than _REACH is cut off there.
-        """
-        own, bridged = self._picture(self.points), self._picture(self.bridged)
-        image, image_bridged = (
-            self._picture(_snapped(-move(points, factor, 0j, conj), self.pixel))
-            for points in (self.points, self.bridged)
-        )
-        pairs = _convolved(bridged, image) + _convolved(own, image_bridged)
-        field = np.pad(pairs < 0.5, math.ceil(_REACH * _PIXELS) + 1, constant_values=True)  # whole, but for rounding
-        distance: Floats = ndimage.distance_transform_edt(field) * self.pixel
-        return np.minimum(distance, _REACH * self.diameter)
-
-    def _picture(self, points: Complexes) -> Floats:
-        """Points as a picture whose middle is the origin."""
-        half = _PIXELS
-        picture = np.zeros((2 * half + 1, 2 * half + 1))
-        cells = np.rint(plane(points / self.pixel)).astype(np.intp) + half
-        picture[cells[:, 1], cells[:, 0]] = 1.0
-        return picture
-
-
-def _convolved(one: Floats, other: Floats) -> Floats:
-    """The convolution of two pictures, as large as both together.
-
-    That of scipy.signal is the same; its import takes longer than all else that is done here.
-    """
-    shape = [a + b - 1 for a, b in zip(one.shape, other.shape, strict=True)]
-    fast = [2 ** math.ceil(math.log2(side)) for side in shape]
-    product = np.fft.irfft2(np.fft.rfft2(one, fast) * np.fft.rfft2(other, fast), fast)
-    return product[: shape[0], : shape[1]]
-
-
-def _samples(ends: Complexes, step: float) -> Complexes:
-    """Points along segments (n, 2), no farther apart than a step."""
-    counts = np.ceil(np.abs(ends[:, 1] - ends[:, 0]) / step).astype(np.intp) + 1
-    number, row = counting(counts)
-    along = number / np.maximum(counts - 1, 1)[row]
-    points: Complexes = ends[row, 0] + along * (ends[row, 1] - ends[row, 0])
-    return points
-
-
-def _snapped(points: Complexes, step: float) -> Complexes:
-    """The points of the grid that are nearest to some points."""
-    grid: Complexes = np.unique(np.rint(points.real / step) + 1j * np.rint(points.imag / step)) * step
-    return grid
-
-
-def _bridges(points: Complexes, least: float) -> Complexes:
-    """The sides (n, 2) of the shortest tree that joins points, those longer than a length."""
-    spread = plane(points - points[0])
-    if len(points) < 3 or np.linalg.matrix_rank(spread, tol=1e-9 * float(np.abs(spread).max())) < 2:
-        joined = np.stack((points[:-1], points[1:]), axis=1)  # on a line, in their order
-    else:
-        corners = spatial.Delaunay(spread).simplices
-        sides = np.unique(np.sort(np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])), axis=0)
-        lengths = np.abs(points[sides[:, 0]] - points[sides[:, 1]])
-        graph = sparse.coo_array((lengths, sides.T), shape=(len(points), len(points)))
-        tree = sparse.csgraph.minimum_spanning_tree(graph.tocsr()).tocoo()
-        joined = np.stack((points[tree.row], points[tree.col]), axis=1)
-    long: Complexes = joined[np.abs(joined[:, 1] - joined[:, 0]) > least]
-    return long
-
-
-def _inside(area: shapely.Geometry, step: float) -> Complexes:
-    """The points of the grid in areas, single ones or a collection of them."""
-    if area.is_empty:
-        return np.empty(0, np.complex128)
-    whole = shapely.union_all(shapely.get_parts(area))
-    shapely.prepare(whole)
-    left, bottom, right, top = (round(bound / step) for bound in whole.bounds)
-    x, y = np.meshgrid(np.arange(left, right + 1) * step, np.arange(bottom, top + 1) * step)
-    inside = shapely.contains_xy(whole, x.ravel(), y.ravel())
-    found: Complexes = x.ravel()[inside] + 1j * y.ravel()[inside]
-    return found
-
-
 class _CellSearch(NamedTuple):
     """The search for a cell and a place; `fields` are the pictures of distances by linear parts."""
 
-    drawing: _Silhouette
+    drawing: Silhouette
     group: WallpaperGroup
     fields: dict[tuple[complex, bool], Floats]
 
@@ -266,8 +149,8 @@ class _CellSearch(NamedTuple):
         A place is given up, its distance being too large, as soon as it is nearer than the goal.
         """
         basis = lattice.reduced
-        steps = self._steps(basis, math.hypot(*(2.0 + _REACH,) * 2) * self.drawing.diameter)
-        least = np.full(len(places), np.inf)
+        steps = self._steps(basis)
+        least = np.full(len(places), REACH * self.drawing.diameter)
         left = np.arange(len(places))
         for number, operation in enumerate(self.group.operations):
             factor, shift, conj = lattice.isometry(operation)
@@ -275,30 +158,38 @@ class _CellSearch(NamedTuple):
             x, y = basis.fractional(apart)
             apart = apart - (np.rint(x) * basis.a + np.rint(y) * basis.b)
             # The identity moves nothing, and is no copy.
-            for step in steps[1:] if number == 0 else steps:
-                least[left] = np.minimum(least[left], self._looked_up((factor, conj), apart + step))
-                near = least[left] < goal
-                if near.any():
-                    left, apart = left[~near], apart[~near]
-            if not len(left):
-                break
+            first = 1 if number == 0 else 0
+            while first < len(steps) and len(left):
+                last = first + max(_BATCH // len(left), 1)
+                distances = self._looked_up((factor, conj), apart + steps[first:last, None]).min(axis=0)
+                least[left] = np.minimum(least[left], distances)
+                kept = least[left] >= goal
+                left, apart, first = left[kept], apart[kept], last
         return least
 
-    def _steps(self, basis: Lattice, reach: float) -> list[complex]:
-        """The translations that bring copies near, the zero first."""
+    def _steps(self, basis: Lattice) -> Complexes:
+        """The translations that bring copies within the pictures of distances, the zero first."""
+        reach = max(len(field) for field in self.fields.values()) * self.drawing.pixel / math.sqrt(2.0)
         far = reach + (abs(basis.a) + abs(basis.b)) / 2.0
         height = basis.det / abs(basis.b)
         rows, columns = math.ceil(far / height), math.ceil(far / (basis.det / abs(basis.a)))
-        steps = [i * basis.a + j * basis.b for i in range(-rows, rows + 1) for j in range(-columns, columns + 1)]
-        return sorted((step for step in steps if abs(step) <= far), key=abs)
+        i, j = np.meshgrid(np.arange(-rows, rows + 1), np.arange(-columns, columns + 1))
+        steps = (i * basis.a + j * basis.b).ravel()
+        length = np.abs(steps)
+        order = np.argsort(length, kind="stable")
+        found: Complexes = steps[order[: np.count_nonzero(length <= far)]]
+        return found
 
     def _looked_up(self, part: tuple[complex, bool], vectors: Complexes) -> Floats:
         """The distances of the drawing from its images moved by vectors."""
         field = self.fields[part]
         half = len(field) // 2
-        cells = np.rint(plane(vectors) * (1.0 / self.drawing.pixel)).astype(np.intp) + half
-        np.clip(cells, 0, 2 * half, out=cells)
-        return field[cells[:, 1], cells[:, 0]]
+        column, row = (
+            np.minimum(np.maximum(np.rint(side * (1.0 / self.drawing.pixel)), -half), half).astype(np.intp)
+            for side in (vectors.real, vectors.imag)
+        )
+        found: Floats = field.ravel()[(row + half) * len(field) + column + half]
+        return found
 
     def best_place(self, cell: dict[str, float]) -> complex:
         """By what the strokes are moved to keep farthest apart from their copies."""
