@@ -340,7 +340,7 @@ def test_sheets_and_art_read_as_the_preflight_does(tmp_path: Path) -> None:
 
 
 def test_several_elements_of_a_tree_are_read() -> None:
-    """Each shape says in which of them it stands, the outermost; clones of them are none of them."""
+    """Each shape says in which of them it stands, the innermost; clones of them are none of them."""
     body = (
         '<g id="a"><path d="M 1 1 H 9"/><g id="b"><path d="M 2 2 V 9"/>'
         '<path id="dot" d="M 3 3 L 3 3" stroke="red"/></g></g>'
@@ -350,8 +350,8 @@ def test_several_elements_of_a_tree_are_read() -> None:
         f'<svg xmlns="http://www.w3.org/2000/svg" width="9in" viewBox="0 0 9 9">{body}</svg>'.encode(), "t"
     )
     drawing, to_page = drawing_of_tree(root, "t", {"a", "b", "c"})
-    assert [shape.within for shape in drawing.shapes] == ["a", "a", "c"]
-    assert [dots.within for dots in drawing.dots] == ["a"]
+    assert [shape.within for shape in drawing.shapes] == ["a", "b", "c"]
+    assert [dots.within for dots in drawing.dots] == ["b"]
     assert [shape.within for shape in drawing_of_tree(root, "t", {"b"}).read.shapes] == ["b"]
     assert (dict(drawing.ignored), drawing.clones) == ({}, 0)
     assert [shape.within for shape in drawing_of_tree(root, "t", None).read.shapes] == [""] * 5

@@ -120,16 +120,18 @@ def test_the_rectangle_is_no_stroke(tmp_path: Path) -> None:
 
 
 def test_one_of_several_rectangles_is_selected(tmp_path: Path) -> None:
-    """The one that is selected is meant; without a selection they are named. What is hidden does not count."""
+    """The one that is selected is meant; without a selection they are named. One that is hidden is not meant."""
     one = rectangle('x="40" y="40" width="70" height="70"', "Cell ")
     other = rectangle('x="40" y="40" width="80" height="80"', name="s")
     alone = tile(MM.svg(CURVE + one), MM, folder=tmp_path)
     assert difference(tile(MM.svg(CURVE + one + other), MM, "--id=r", folder=tmp_path), alone) == 0.0
-    hidden = one + f'<g style="display:none">{rectangle(SMALL, name="s")}</g>'
-    with pytest.raises(
-        VoronoiTilesError, match=r'2 rectangles have the label "cell": r, s. Select the one that is meant'
-    ):
-        run(MM.svg(CURVE + hidden), "--id=p", folder=tmp_path)
+    hidden = f'<g style="display:none">{rectangle(SMALL, name="s")}</g>'
+    assert difference(tile(MM.svg(CURVE + one + hidden), MM, folder=tmp_path), alone) == 0.0
+    for body in (one + other, hidden + hidden.replace('"s"', '"r"')):
+        with pytest.raises(
+            VoronoiTilesError, match=r'2 rectangles have the label "cell": r, s. Select the one that is meant'
+        ):
+            run(MM.svg(CURVE + body), "--id=p", folder=tmp_path)
 
 
 @pytest.mark.parametrize(
@@ -139,6 +141,9 @@ def test_one_of_several_rectangles_is_selected(tmp_path: Path) -> None:
         ("pm", 'width="60" height="50" transform="skewX(9)"', "with 99 degrees, and pm needs a right angle"),
         ("p6", 'width="60" height="50" transform="skewX(9)"', "and p6 needs 120 degrees between equal sides"),
         ("p1", 'width="60" height="50" rx="3"', 'the rectangle "cell" has rounded corners. Make them sharp'),
+        ("p1", 'width="60" height="0"', 'the rectangle "cell" has no size'),
+        ("p1", 'width="60" height="50" transform="matrix(1 1 1 1 0 0)"', 'the rectangle "cell" has no size'),
+        ("p1", 'width="1e-9" height="1e-9"', 'the rectangle "cell" has no size'),
     ],
 )
 def test_a_rectangle_that_is_no_cell_of_the_group_is_refused(
@@ -149,11 +154,22 @@ def test_a_rectangle_that_is_no_cell_of_the_group_is_refused(
         run(MM.svg(CURVE + rectangle(where)), "--id=p", f"--group={group}", folder=tmp_path)
 
 
-def test_a_cell_that_is_hidden_is_none(tmp_path: Path) -> None:
-    """The dialog's numbers count then."""
-    drawing = MM.svg(CURVE + f'<g display="none">{rectangle(SMALL)}</g>')
-    words = ("--cell=numbers", "--side_a=70", "--origin_x=20", "--origin_y=20")
-    assert difference(tile(drawing, MM, *words, folder=tmp_path), tile(MM.svg(CURVE), MM, *words, folder=tmp_path)) == 0
+@pytest.mark.parametrize(
+    ("around", "style"),
+    [
+        ('style="display:none"', ""),
+        ('display="none"', "stroke:none;"),
+        ("", "opacity:0;"),
+        ('visibility="hidden" transform="translate(3 4)"', ""),
+    ],
+)
+def test_a_cell_that_is_hidden_counts_all_the_same(around: str, style: str, tmp_path: Path) -> None:
+    """As its layer is once it is in the way: the tile does not change with what is seen."""
+    cell = rectangle('x="40" y="40" width="70" height="70"')
+    hidden = f"<g {around}>{cell.replace('fill:none', f'{style}fill:none')}</g>"
+    shown = f"<g {around[around.find('transform') :] if 'transform' in around else ''}>{cell}</g>"
+    one, other = (tile(MM.svg(CURVE + body), MM, folder=tmp_path) for body in (hidden, shown))
+    assert difference(one, other) == 0.0
 
 
 def test_lines_have_their_width(tmp_path: Path) -> None:

@@ -201,6 +201,19 @@ def test_what_is_in_a_selected_layer_of_strokes_is_one_site(tmp_path: Path) -> N
     assert list(paths_of(run(MM.svg(body), "--id=layer1", *CELL, folder=tmp_path))) == ["layer1"]
 
 
+def test_each_group_in_a_selected_layer_is_a_site(tmp_path: Path) -> None:
+    """As where the groups were selected; in layers within it too, and what is in no group is one site of its layer."""
+    stroke = f'<path id="%s" d="M %d %d l 15 9" {LINE}/>'
+    group = '<g id="%s"><g><path d="M %d 20 l 5 9" style="stroke:#000"/></g></g>'
+    inner = f'<g id="inner" inkscape:groupmode="layer">{group % ("g2", 50)}{stroke % ("p2", 80, 30)}</g>'
+    mode = 'id="layer1" inkscape:groupmode="layer"'
+    drawing = MM.svg(group % ("g1", 20) + stroke % ("p1", 30, 60) + inner).replace(b'id="layer1"', mode.encode())
+    found = paths_of(run(drawing, "--id=layer1", *CELL, folder=tmp_path))
+    assert list(found) == ["layer1", "g1", "inner", "g2"]
+    single = paths_of(run(drawing, *[f"--id={name}" for name in ("g1", "g2", "p1", "p2")], *CELL, folder=tmp_path))
+    assert list(single) == ["site1", "g1", "g2"]
+
+
 def test_only_what_is_selected_counts(tmp_path: Path) -> None:
     """A clone of what is selected is not, nor is what lies beside it."""
     single = run(alone("line", MM), "--id=line", *CELL, folder=tmp_path)
@@ -261,6 +274,7 @@ def test_what_is_not_followed_is_said_in_the_layer(tmp_path: Path) -> None:
             "nothing of the selection is drawn. Give it a stroke",
         ),
         ('<path id="p" d="M 0 0 L 9 9 X 3"/>', ["p"], "the drawing, line 4, d: "),
+        ('<rect id="r" inkscape:label="cell" width="9" height="9"/>', ["r"], "only the cell is selected. Select the"),
     ],
 )
 def test_what_makes_no_tile_is_refused(body: str, ids: list[str], message: str, tmp_path: Path) -> None:

@@ -59,7 +59,7 @@ class Shape:
     `paths` are in millimetres, y up; of a file with a page its lower left corner is the origin. `layer` is the name of
     its layer, "" where it has none. `stroke` and `fill` are "#rrggbb", None where there is none; `stroke_width` is in
     millimetres, None where the file does not say. `source` names the object in the file, and `within` is the id of the
-    element that was asked for, the outermost of several, that it is or stands in; "" where none was.
+    element that was asked for, the innermost of several, that it is or stands in; "" where none was.
     """
 
     paths: Paths

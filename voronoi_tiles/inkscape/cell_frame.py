@@ -51,7 +51,10 @@ def frame_of_rectangle(corners: Sequence[complex], group: WallpaperGroup) -> Cel
     a, b, corner = abs(across), abs(up), cmath.phase(up / across)
     square = abs(corner - math.pi / 2) <= _DRAWN_ALIKE
     angle = 90.0 if square else math.degrees(corner)
-    what, remedy = f'the rectangle "{CELL_LABEL}" is {a:.6g} x {b:.6g} mm', "Change it, or remove its label."
+    what, remedy = (
+        f'the rectangle "{CELL_LABEL}" is {a:.6g} x {b:.6g} mm',
+        "Change it, or delete it to have one fitted.",
+    )
     alike = abs(a - b) <= _DRAWN_ALIKE * a
     fixed = group.fixed_angle
     if fixed == 90.0:

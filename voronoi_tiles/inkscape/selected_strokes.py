@@ -6,7 +6,7 @@ matrices are read by it alone.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Final, NamedTuple
 
@@ -17,7 +17,7 @@ from voronoi_tiles.base.maps import Affine
 from voronoi_tiles.base.text import counted
 from voronoi_tiles.designs.drawn_files import outlines_of, remarks
 from voronoi_tiles.formats.shapes import Dots, ReadDrawing, Shape
-from voronoi_tiles.formats.svg.elements import INKSCAPE, SILENT, source_of, tag_of
+from voronoi_tiles.formats.svg.elements import GROUPS, INKSCAPE, SILENT, tag_of
 from voronoi_tiles.formats.svg.reader import drawing_of_tree
 from voronoi_tiles.formats.svg.xml_tree import Node
 from voronoi_tiles.inkscape.dialog_fields import CELL_LABEL
@@ -25,6 +25,14 @@ from voronoi_tiles.inkscape.own_layers import ROLE
 from voronoi_tiles.paths.paths import LINE, Paths
 
 _LABEL: Final = f"{INKSCAPE}label"
+
+_MODE: Final = f"{INKSCAPE}groupmode"
+
+_SHOWN: Final = "".join(
+    f";{said}!important"
+    for said in ("display:inline", "visibility:visible", "opacity:1", "stroke:#000", "stroke-opacity:1")
+)
+"""The style of what is to be seen."""
 
 _LOST: Final = {
     **dict.fromkeys(("text", "flowRoot"), "Convert it by Path > Object to Path, or leave it out of the selection."),
@@ -69,8 +77,8 @@ class Selection:
 def selected(root: Node, file: str, ids: Sequence[str]) -> Selection:
     """What is selected of a drawing. Raises DesignError where that is nothing, or what makes no strokes."""
     own, known = known_elements(root)
-    chosen = [name for name in known if name in set(ids) and name not in own]
-    if not chosen:
+    homes = _homes(root, {*ids} - own)
+    if not homes:
         what, remedy = "nothing is selected", "Select the strokes of a tile: paths, shapes, or groups."
         if own.intersection(ids):
             what = "what is selected are tiles that were made before"
@@ -79,24 +87,32 @@ def selected(root: Node, file: str, ids: Sequence[str]) -> Selection:
             what = f"what is selected is not drawn: {', '.join(ids[:8])}"
             remedy = "Select paths, shapes, or groups of them."
         raise DesignError(what, remedy=remedy)
-    _refuse_lost(known[name] for name in chosen)
-    cell = _cell(known.values(), {*chosen}, own)
-    wanted = {*chosen} if cell is None else {*chosen, cell.attributes["id"]}
-    drawing, to_page = drawing_of_tree(root, file, wanted)
+    _refuse_lost(known[name] for name in homes)
+    cells = _cells(known) - own
+    if homes.keys() <= cells:
+        raise DesignError("only the cell is selected", remedy="Select the strokes as well.")
+    cells = cells & homes.keys() or cells
+    drawing, to_page = drawing_of_tree(root, file, {*homes, *cells})
     for what in _CLONED:
         if what in drawing.ignored:
             raise DesignError(
                 f"a clone in the selection shows a {what}" if what in _LOST else f"the selection has a {what}",
                 remedy=_LOST.get(what, "Unlink the clone, or leave it out of the selection."),
             )
+    shown = {shape.within: shape for shape in drawing.shapes if shape.within in cells}
+    names = sorted(shown or cells)
+    if len(names) > 1:
+        raise DesignError(
+            f'{counted(len(names), "rectangle")} have the label "{CELL_LABEL}": {", ".join(names[:8])}',
+            remedy="Select the one that is meant as well.",
+        )
     corners = None
-    if cell is not None:
-        source = source_of(cell, "rect")
-        corners = _corners(drawing, source)
-        drawing = _without(drawing, source)
+    for name in names:
+        corners = _corners(shown[name] if shown else _revealed(root, file, name))
+    drawing = replace(drawing, shapes=tuple(shape for shape in drawing.shapes if shape.within not in cells))
     size = None if drawing.width is None or drawing.height is None else (drawing.width, drawing.height)
-    names = frozenset(known).difference(own)
-    return Selection(tuple(_sites(drawing, known, chosen)), corners, tuple(_notes(drawing)), size, to_page, names)
+    sites, notes = tuple(_sites(drawing, known, homes)), tuple(_notes(drawing))
+    return Selection(sites, corners, notes, size, to_page, frozenset(known).difference(own))
 
 
 def known_elements(root: Node) -> tuple[set[str], dict[str, Node]]:
@@ -118,6 +134,29 @@ def known_elements(root: Node) -> tuple[set[str], dict[str, Node]]:
     return own, known
 
 
+def _homes(root: Node, ids: Collection[str]) -> dict[str, str]:
+    """The elements that ids select, in the file's order, each with the id of the group that is its site, "" for none.
+
+    In a layer each of its groups is a site, and what is in none is one that is called as the layer.
+    """
+    homes: dict[str, str] = {}
+    todo = [(root, "")]
+    while todo:
+        node, layer = todo.pop()
+        name, tag = node.attributes.get("id", ""), tag_of(node)
+        inside = layer
+        if tag in GROUPS and name and (layer or name in ids):
+            homes[name] = inside = name
+            if node.attributes.get(_MODE) != "layer":
+                continue
+        elif name in ids:
+            homes[name] = layer
+            continue
+        if node is root or tag not in SILENT:
+            todo.extend((child, inside) for child in reversed(node.children))
+    return homes
+
+
 def _refuse_lost(nodes: Iterable[Node]) -> None:
     """Refuse texts and images by their names."""
     todo = list(nodes)
@@ -127,55 +166,59 @@ def _refuse_lost(nodes: Iterable[Node]) -> None:
         if tag in _LOST:
             name = node.attributes.get(_LABEL, node.attributes.get("id", ""))
             raise DesignError(f'the {tag} "{name}" is no path', remedy=_LOST[tag])
+        if tag not in SILENT:
+            todo.extend(node.children)
+
+
+def _cells(known: Mapping[str, Node]) -> set[str]:
+    """The ids of the rectangles with the label of the cell."""
+    return {
+        name
+        for name, node in known.items()
+        if tag_of(node) == "rect" and node.attributes.get(_LABEL, "").strip().casefold() == CELL_LABEL
+    }
+
+
+def _corners(shape: Shape) -> tuple[complex, ...]:
+    """The corners of the cell's rectangle."""
+    if (shape.paths.kind != LINE).any():
+        raise DesignError(f'the rectangle "{CELL_LABEL}" has rounded corners', remedy="Make them sharp: Rx and Ry 0.")
+    if len(shape.paths.start) != 4:
+        raise _no_size()
+    return tuple(shape.paths.start.tolist())
+
+
+def _revealed(root: Node, file: str, name: str) -> Shape:
+    """What an element draws that is hidden, as the layer of a cell is once it is in the way; all of the tree is shown.
+
+    Raises DesignError where it draws nothing then.
+    """
+    todo = [root]
+    while todo:
+        node = todo.pop()
+        node.attributes["style"] = f"{node.attributes.get('style', '')}{_SHOWN}"
         todo.extend(node.children)
+    for shape in drawing_of_tree(root, file, {name}).read.shapes:
+        return shape
+    raise _no_size()
 
 
-def _cell(nodes: Iterable[Node], chosen: set[str], own: set[str]) -> Node | None:
-    """The rectangle that is the cell: a selected one, or the only one that there is."""
-    found = [
-        node
-        for node in nodes
-        if tag_of(node) == "rect"
-        and node.attributes.get(_LABEL, "").strip().casefold() == CELL_LABEL
-        and node.attributes["id"] not in own
-    ]
-    found = [node for node in found if node.attributes["id"] in chosen] or found
-    if len(found) > 1:
-        names = ", ".join(node.attributes["id"] for node in found[:8])
-        raise DesignError(
-            f'{counted(len(found), "rectangle")} have the label "{CELL_LABEL}": {names}',
-            remedy="Select the one that is meant as well.",
-        )
-    return found[0] if found else None
+def _no_size() -> DesignError:
+    """The error for a cell of no area."""
+    return DesignError(
+        f'the rectangle "{CELL_LABEL}" has no size', remedy="Change it, or delete it to have one fitted."
+    )
 
 
-def _corners(drawing: ReadDrawing, source: str) -> tuple[complex, ...] | None:
-    """The corners of the cell's rectangle, None where it is hidden."""
-    for shape in drawing.shapes:
-        if shape.source == source:
-            if len(shape.paths.start) != 4 or (shape.paths.kind != LINE).any():
-                raise DesignError(
-                    f'the rectangle "{CELL_LABEL}" has rounded corners', remedy="Make them sharp: Rx and Ry 0."
-                )
-            return tuple(shape.paths.start.tolist())
-    return None
-
-
-def _without(drawing: ReadDrawing, source: str) -> ReadDrawing:
-    """The drawing without one object."""
-    return replace(drawing, shapes=tuple(shape for shape in drawing.shapes if shape.source != source))
-
-
-def _sites(drawing: ReadDrawing, known: Mapping[str, Node], chosen: Sequence[str]) -> Iterator[SelectedSite]:
+def _sites(drawing: ReadDrawing, known: Mapping[str, Node], homes: Mapping[str, str]) -> Iterator[SelectedSite]:
     """One site for each group, and one for all that is in none."""
-    groups = [name for name in chosen if tag_of(known[name]) in {"g", "a", "switch"}]
-    homes: dict[str, list[SelectedObject]] = {name: [] for name in ("", *groups)}
+    sites: dict[str, list[SelectedObject]] = {name: [] for name in ("", *homes)}
     for shape in drawing.shapes:
-        homes.get(shape.within, homes[""]).append(_lines(shape))
+        sites[homes[shape.within]].append(_lines(shape))
     for dots in drawing.dots:
-        homes.get(dots.within, homes[""]).append(_points(dots))
+        sites[homes[dots.within]].append(_points(dots))
     taken: set[str] = set()
-    for home, objects in homes.items():
+    for home, objects in sites.items():
         if objects:
             name = _site_name(known[home] if home else None, taken, len(taken) + 1)
             taken.add(name)

@@ -282,7 +282,7 @@ class _SvgWalk:
     def _asked(self, visit: _SvgVisit) -> _SvgVisit:
         """An element, chosen where it is asked for."""
         name = visit.node.attributes.get("id", "")
-        if visit.chosen or name not in (self._elements or ()) or (visit.users and not self._cloned):
+        if name not in (self._elements or ()) or (visit.users and not self._cloned):
             return visit
         return visit._replace(chosen=True, within=name)
 
