@@ -70,6 +70,13 @@ def test_choices_are_those_of_the_command_line() -> None:
                 assert JobFields.options()[name].read(name, job.get(name, JobFields.options()[name].default)) is not ...
 
 
+def test_names_say_what_may_be_written_where_there_is_no_choice() -> None:
+    """The unit of a length, the forms of a text; behind a choice or a tick nothing."""
+    for name, widget in widgets(SHEET).items():
+        text = widget.get("gui-text", "")
+        assert ("(" in text) == (widget.get("type") in {"float", "string"}), name
+
+
 def test_numbers_keep_within_the_limits_of_their_options() -> None:
     """The least and the greatest value of a spin button are read, and no others."""
     for entry in (TILES, SHEET):

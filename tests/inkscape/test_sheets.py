@@ -89,6 +89,17 @@ def test_the_next_run_replaces_the_sheet_and_leaves_the_tiles(tmp_path: Path) ->
     assert run(other, "--id=p", *cell, "--sheet=190x150mm", entry="sheet", folder=tmp_path) == sheet
 
 
+def test_what_a_sheet_comes_to_is_said_in_the_dialogs_words(tmp_path: Path) -> None:
+    """In the layer's description: hints name what the dialog calls them, as messages do."""
+    words = ("--sheet=190x150mm", "--colours=layers", "--group=p1", "--cell=numbers", "--side_a=40")
+    made = run(PAGES[0].svg(CURVE), "--id=p", *words, entry="sheet", folder=tmp_path)
+    note = ET.fromstring(made).find(f".//{SVG}desc")
+    assert note is not None
+    assert note.text is not None
+    assert '"gap: ' in note.text
+    assert "`" not in note.text
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [

@@ -55,8 +55,8 @@ class DesignFields(OptionTable):
     cell: Choice[CellFrom] = choice(
         "fitted",
         CellFrom,
-        "Where no rectangle has the label cell: fitted to the strokes and drawn as such a rectangle, or by the numbers "
-        "that follow.",
+        "The rectangle with this label in its Object Properties; where there is none, one is fitted to the strokes and "
+        "drawn, or the numbers below are taken.",
     )
     side_a: Length = length(60.0, "The side of the cell along x.", least=CELL_MIN)
     side_b: Length = length(60.0, "The other side, where the group leaves it free.", least=CELL_MIN)

@@ -63,6 +63,7 @@ def sheet(data: bytes, ids: Sequence[str], fields: DesignFields, job: Mapping[st
     `job` are the arguments of a Job; without a size the sheet is the page. Raises VoronoiTilesError.
     """
     from voronoi_tiles.fabrication.job import Job
+    from voronoi_tiles.inkscape.inx import in_dialog
 
     run = _Run.of(data, ids, fields)
     if "sheet" not in job and run.selection.size is None:
@@ -74,7 +75,7 @@ def sheet(data: bytes, ids: Sequence[str], fields: DesignFields, job: Mapping[st
         run.free_id("voronoi-sheet"),
         _works(product, run.selection.to_page),
         recipe=product.drawing.recipe,
-        notes=(product.summary(), *run.notes, *product.notes),
+        notes=[in_dialog(note) for note in (product.summary(), *run.notes, *product.notes)],
     )
     return with_layers(data, "sheet", layer + run.cell())
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import Any, Final
 from xml.etree import ElementTree as ET
 
 from voronoi_tiles.designs.starters import GROUP_NAMES, symmetry_of
 from voronoi_tiles.fabrication.job_options import Option
 from voronoi_tiles.formats.presets import preset_names
+from voronoi_tiles.inkscape.dialog_fields import CELL_LABEL
 from voronoi_tiles.inkscape.entries import MENU, Entry
 
 _NAMESPACE: Final = "http://www.inkscape.org/namespace/inkscape/extension"
@@ -75,9 +77,10 @@ def _child(parent: ET.Element, tag: str, text: str = "", **attributes: str) -> E
 
 def _add_parameter(page: ET.Element, name: str, option: Option[Any, Any]) -> None:
     """Add the widget of an option. What is left empty is not said."""
+    words = _words(name, option)
     common = {
         "name": name,
-        "gui-text": f"{_label(name).capitalize()}{_taken(option)}",
+        "gui-text": f"{_label(name).capitalize()}{_taken(option, words)}",
         "gui-description": in_dialog(option.help),
     }
     if option.limits is not None and option.default is not None:
@@ -88,7 +91,6 @@ def _add_parameter(page: ET.Element, name: str, option: Option[Any, Any]) -> Non
     if option.kind == "flag":
         _child(page, "param", "false", **common, type="bool")
         return
-    words = _words(name, option)
     if not words:
         text = "" if option.default is None else f"{option.default:g}" if option.kind != "text" else str(option.default)
         _child(page, "param", text, **common, type="string")
@@ -98,9 +100,9 @@ def _add_parameter(page: ET.Element, name: str, option: Option[Any, Any]) -> Non
         _child(box, "option", shown, value=word)
 
 
-def _taken(option: Option[Any, Any]) -> str:
-    """What is behind the name of an option: what its numbers are, or what may be written."""
-    if option.kind in {"flag", "word"}:
+def _taken(option: Option[Any, Any], words: Mapping[str, str]) -> str:
+    """What is behind the name of an option: what its numbers are, or what may be written; `words` are its choices."""
+    if option.kind == "flag" or words:
         return "" if option.kind == "flag" else ":"
     units = {"length": "mm", "angle": "degrees"}
     return f" ({units.get(option.kind, option.shown.replace('|', ', '))}):"
@@ -111,7 +113,8 @@ def _words(name: str, option: Option[Any, Any]) -> dict[str, str]:
     if name == "group":
         words = {word: f"{word}: {symmetry_of(word)}" for word in GROUP_NAMES}
     elif name == "cell":
-        words = {"fitted": "fitted to the strokes", "numbers": "by the numbers that follow"}
+        rectangle = f'the rectangle "{CELL_LABEL}"'
+        words = {"fitted": f"{rectangle}, or fitted to the strokes", "numbers": f"{rectangle}, or the numbers below"}
     else:
         words = {word: word for word in (preset_names() if name == "preset" else option.words)}
     if not words:
