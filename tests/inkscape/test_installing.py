@@ -159,6 +159,22 @@ def test_sandboxes_are_explained(kind: str, message: str, home: Path, voronoi_ti
         assert "--into DIR" in done.stderr
 
 
+@pytest.mark.parametrize(
+    ("folder", "name"),
+    [(".var/app/org.inkscape.Inkscape/config/inkscape", "Flatpak"), ("snap/inkscape/10/.config/inkscape", "Snap")],
+)
+def test_a_script_that_starts_one_in_a_sandbox_is_seen_through(
+    folder: str, name: str, home: Path, voronoi_tiles: CommandLine
+) -> None:
+    """By the folder that it says; where that is named all the same it is written to, and what will be is said."""
+    script(home.parent / "bin" / "inkscape", f"echo {home}/{folder}")
+    with pytest.raises(ValueError, match=rf"^the Inkscape of {name} runs in a sandbox"):
+        found_inkscape.found_inkscape()
+    done = voronoi_tiles("inkscape", "install", "--into", home / folder / "extensions")
+    assert done.returncode == 0
+    assert f"is that of the Inkscape of {name}, which cannot use this" in done.stderr.splitlines()[0]
+
+
 def started(
     folder: Path, kind: str, *words: str, variables: Mapping[str, str] | None = None
 ) -> subprocess.CompletedProcess[bytes]:
@@ -215,6 +231,9 @@ def test_a_broken_installation_says_what_to_run(kind: str, tmp_path: Path) -> No
     assert "Traceback" not in message
     assert message.count("\n") == 1
     assert 'Run "voronoi-tiles inkscape install" once more' in message
+    if kind == "no python":
+        done = started(tmp_path, "tiles", *WORDS, "a.svg", variables={"FLATPAK_ID": "org.inkscape.Inkscape"})
+        assert "This Inkscape runs in a sandbox" in done.stderr.decode()
 
 
 def test_errors_are_sentences(tmp_path: Path) -> None:

@@ -31,9 +31,12 @@ def _with_folder(command: Callable[..., Any]) -> Callable[..., Any]:
 
 def _found(into: Path | None) -> FoundInkscape:
     """The folder of extensions, as it is given or found; notes what is there and cannot be used."""
-    from voronoi_tiles.inkscape.found_inkscape import FoundInkscape, found_inkscape, sandboxed
+    from voronoi_tiles.inkscape.found_inkscape import FoundInkscape, found_inkscape, sandbox_of, sandboxed
 
     if into is not None:
+        name = sandbox_of(into)
+        if name is not None:
+            say(f"{into} is that of {name}, which cannot use this: it runs in a sandbox")
         return FoundInkscape(None, into)
     found = found_inkscape()
     for name in sandboxed():

@@ -7,6 +7,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator
+from itertools import pairwise
 from pathlib import Path
 from typing import Final, NamedTuple
 
@@ -22,6 +23,10 @@ _ELSEWHERE: Final = (
 """Where installers put it that set no PATH."""
 
 FLATPAK: Final = "org.inkscape.Inkscape"
+
+_SNAP_NAME: Final = "the Inkscape of Snap"
+_FLATPAK_NAME: Final = "the Inkscape of Flatpak"
+"""What messages call the two that run in a sandbox."""
 
 FLATPAK_HOMES: Final = ("/var/lib/flatpak/app", "~/.local/share/flatpak/app")
 SNAP_HOMES: Final = ("/snap", "/var/lib/snapd/snap")
@@ -50,15 +55,18 @@ def found_inkscape() -> FoundInkscape:
 
     Raises ArgumentError where there is none, or one in a sandbox alone.
     """
+    boxed = []
     for program in _programs():
         if not _is_snap(program):
             folder = _said(program, "--user-data-directory").strip()
-            if folder:
+            name = sandbox_of(Path(folder))  # a script may start one
+            if folder and name is None:
                 return FoundInkscape(program, Path(folder, "extensions"))
+            boxed += [name] if name is not None else []
     usual = _usual_folder()
     if usual.is_dir():
         return FoundInkscape(None, usual / "extensions")
-    there = sandboxed()
+    there = list(dict.fromkeys((*boxed, *sandboxed())))
     if there:
         raise ArgumentError(SANDBOXED.format(" and ".join(there)), remedy=INTO)
     raise ArgumentError("no Inkscape is found", remedy=f"Install it (sudo apt install inkscape). {INTO}")
@@ -68,13 +76,21 @@ INTO: Final = "Or name its folder of extensions (Edit > Preferences > System: Us
 """What to do where Inkscape is somewhere else."""
 
 
+def sandbox_of(folder: Path) -> str | None:
+    """The Inkscape in a sandbox that keeps its things in a folder, as people call it; None of other folders."""
+    parts = folder.expanduser().absolute().parts
+    if FLATPAK in parts:
+        return _FLATPAK_NAME
+    return _SNAP_NAME if ("snap", "inkscape") in pairwise(parts) else None
+
+
 def sandboxed() -> list[str]:
     """The Inkscapes on this machine that run in a sandbox, as people call them."""
     snap = any(_is_snap(program) for program in _programs()) or any(
         Path(home, "inkscape").exists() for home in SNAP_HOMES
     )
     flatpak = any(Path(home, FLATPAK).expanduser().exists() for home in FLATPAK_HOMES)
-    return ["the Inkscape of Snap"] * snap + ["the Inkscape of Flatpak"] * flatpak
+    return [_SNAP_NAME] * snap + [_FLATPAK_NAME] * flatpak
 
 
 def _programs() -> Iterator[str]:

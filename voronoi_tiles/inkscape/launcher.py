@@ -18,6 +18,8 @@ PYTHON = ""
 LIBRARIES = {}  # type: dict[str, str]
 """Where that interpreter finds libraries: LD_LIBRARY_PATH and its like as they were when it was known to work."""
 
+SANDBOX = "This Inkscape runs in a sandbox, Flatpak's or Snap's, and can start no program outside. Install another one."
+
 AGAIN = 'Run "voronoi-tiles inkscape install" once more, in the environment where voronoi-tiles is installed now.'
 
 BEGIN = """\
@@ -49,7 +51,8 @@ def main() -> None:
             sys.exit(subprocess.call(words, env=environment(dict(os.environ))))
         os.execve(PYTHON, words, environment(dict(os.environ)))
     except OSError as error:
-        sys.exit(f"{PYTHON} cannot be started: {error.strerror}. {AGAIN}")
+        boxed = "FLATPAK_ID" in os.environ or "SNAP" in os.environ
+        sys.exit(f"{PYTHON} cannot be started: {error.strerror}. {SANDBOX if boxed else AGAIN}")
 
 
 if __name__ == "__main__":
