@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -96,6 +97,58 @@ def test_a_fitted_cell_is_drawn_and_taken_again(group: str, page: Page, tmp_path
     first, second = (page.user_mm(edges_of_path(*paths_of(one).values())) for one in (made, again))
     assert difference(first, second) < 1e-9
     assert made.count(b'inkscape:label="cell"') == again.count(b'inkscape:label="cell"') == 2  # a layer, a rectangle
+
+
+@pytest.mark.parametrize("page", [MM, PAGES[3]], ids=lambda page: page.name)
+def test_a_fitted_cell_that_nobody_has_moved_is_fitted_anew(page: Page, tmp_path: Path) -> None:
+    """For another group, and to other strokes: the drawing is as if it had been the first run, hidden layer or not."""
+    body = f'<path id="p" d="M 2 3 C 8 -4 15 14 24 6" {LINE}/>'
+    for group, other in (("p4", "p3"), ("p3", "pmm"), ("pmm", "p4")):
+        first = run(page.svg(body), "--id=p", f"--group={group}", folder=tmp_path)
+        assert run(first, "--id=p", f"--group={group}", folder=tmp_path) == first
+        fresh = run(page.svg(body), "--id=p", f"--group={other}", folder=tmp_path)
+        again = run(first, "--id=p", f"--group={other}", folder=tmp_path)
+        assert again == fresh
+        hidden = first.replace(b'id="voronoi-cell"', b'style="display:none" id="voronoi-cell"')
+        assert run(hidden, "--id=p", "--id=voronoi-cell-0", f"--group={other}", folder=tmp_path) == fresh
+    longer = page.svg(body.replace("24 6", "34 16"))
+    moved = first.replace(b"24 6", b"34 16")
+    assert run(moved, "--id=p", "--group=pmm", folder=tmp_path) == run(longer, "--id=p", "--group=pmm", folder=tmp_path)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda cell: re.sub(rb' width="([\d.]+)"', lambda found: b' width="%.9f"' % (float(found[1]) * 1.2), cell),
+        lambda cell: cell.replace(b'id="voronoi-cell"', b'transform="translate(1)" id="voronoi-cell"'),
+        lambda cell: cell.replace(b"<rect", b'<rect transform="rotate(1)"'),
+        lambda cell: cell.replace(b"</g>", b'<path id="mine" d="M 0 0 L 9 9"/></g>'),
+    ],
+    ids=["resized", "its layer moved", "turned", "drawn beside"],
+)
+def test_a_fitted_cell_that_somebody_has_changed_stays(change: Callable[[bytes], bytes], tmp_path: Path) -> None:
+    """It is theirs now, and so is what else is in its layer."""
+    first = run(MM.svg(CURVE), "--id=p", "--group=pgg", folder=tmp_path)
+    found = re.search(rb'<g [^>]*id="voronoi-cell".*?</g>', first, re.DOTALL)
+    assert found is not None
+    theirs = change(found[0])
+    assert theirs != found[0]
+    made = run(first.replace(found[0], theirs), "--id=p", "--group=pgg", folder=tmp_path)
+    assert theirs in made
+    assert made.count(b"<rect") == 1
+    before, after = (edges_of_path(*paths_of(one).values()) for one in (first, made))
+    assert (difference(before, after) < 1e-9) == (b"mine" in theirs)
+
+
+def test_what_is_drawn_in_the_layer_of_a_cell_that_is_gone_stays(tmp_path: Path) -> None:
+    """A new cell has a layer of its own then."""
+    first = run(MM.svg(CURVE), "--id=p", folder=tmp_path)
+    mine = re.sub(rb"<rect.*?/>", b'<path id="mine" d="M 0 0 L 9 9"/>', first)
+    made = run(mine, "--id=p", folder=tmp_path)
+    assert b'<path id="mine" d="M 0 0 L 9 9"/></g>' in made.replace(b"\n", b"")
+    assert made.count(b"<rect") == 1
+    ids = [found.get("id") for found in ET.fromstring(made).iter() if found.get("id")]
+    assert len(ids) == len(set(ids))
 
 
 def test_every_group_takes_what_it_leaves_free_of_the_numbers() -> None:

@@ -46,7 +46,7 @@ def tiles(data: bytes, ids: Sequence[str], fields: TilesFields) -> bytes:
         recipe=design_recipe(run.made.design),
         notes=run.notes,
     )
-    return with_layers(data, "tiles", layer + run.cell())
+    return with_layers(run.with_cell(data), "tiles", layer)
 
 
 def outlines(tiling: Tiling, frame: CellFrame, to_page: Affine, line: float) -> OwnGroup:
@@ -77,7 +77,7 @@ def sheet(data: bytes, ids: Sequence[str], fields: DesignFields, job: Mapping[st
         recipe=product.drawing.recipe,
         notes=[in_dialog(note) for note in (product.summary(), *run.notes, *product.notes)],
     )
-    return with_layers(data, "sheet", layer + run.cell())
+    return with_layers(run.with_cell(data), "sheet", layer)
 
 
 def _works(product: Product, to_page: Affine) -> Iterator[OwnGroup]:
@@ -113,7 +113,7 @@ class _Run:
     def of(cls, data: bytes, ids: Sequence[str], fields: DesignFields) -> _Run:
         """Compute the tiles of what is selected."""
         root, _ = svg_tree(data, DRAWING)
-        selection = selected(root, DRAWING, ids)
+        selection = selected(root, DRAWING, ids, refits=fields.cell == "fitted")
         made = design_of(selection, fields)
         try:
             return cls(selection, made, made.design.tessellate())
@@ -130,8 +130,8 @@ class _Run:
         """An id that nothing in the drawing begins with, but what is replaced."""
         return free_id(wanted, self.selection.names)
 
-    def cell(self) -> bytes:
-        """The layer of a cell that was fitted, nothing where the drawing has it."""
-        if not self.made.fitted:
-            return b""
-        return cell_layer(self.made.frame, self.made.design.group, self.selection.to_page, self.free_id("voronoi-cell"))
+    def with_cell(self, data: bytes) -> bytes:
+        """A drawing with the cell that was fitted, as it was or in the place of the one that was fitted before."""
+        frame, group, name = self.made.frame, self.made.design.group, self.free_id("voronoi-cell")
+        layer = cell_layer(frame, group, self.selection.to_page, name, fitted=True) if self.made.fitted else b""
+        return with_layers(data, "cell", layer, self.selection.fitted)

@@ -61,8 +61,8 @@ _SELECT: Final = """\
 Select strokes: paths, shapes, clones, or groups of them. Each group is a site, which has a tile of its own; what is \
 in no group is one site together. Texts have to be converted by Path > Object to Path.
 A rectangle with the label "cell" (Object > Object Properties) is the cell; its lower left corner is the origin of \
-the group. Without one the cell is fitted to the strokes, and drawn as such a rectangle, which can be moved and \
-resized for the next run.
+the group. Without one the cell is fitted to the strokes, and drawn as such a rectangle: by each run anew, until it is \
+moved or resized.
 """
 _TILES_HELP: Final = """\
 The exact tiles, proved, come to a layer of their own, which the next run replaces: to keep some, move them to another \

@@ -13,7 +13,7 @@ from voronoi_tiles.formats.shapes import DrawingError
 from voronoi_tiles.formats.svg.path_text import decimal_text
 from voronoi_tiles.formats.svg.writer import INKSCAPE_NAMESPACE, RECIPE_NAMESPACE
 
-Role = Literal["tiles", "sheet"]
+Role = Literal["tiles", "sheet", "cell"]
 
 ROLE: Final = f"{RECIPE_NAMESPACE} role"
 """The attribute by which layers of ours are known, as the reader of XML has it."""
@@ -92,12 +92,13 @@ def recipe_text(recipe: Mapping[str, str]) -> str:
     return f"<vt:recipe{said}>{_escaped(recipe['design'])}</vt:recipe>"
 
 
-def with_layers(data: bytes, role: Role, layers: bytes) -> bytes:
+def with_layers(data: bytes, role: Role, layers: bytes, names: Collection[str] | None = None) -> bytes:
     """A drawing with layers in the place of the one that has this role, or above all others.
 
-    Raises DrawingError for a drawing without any element, and for one whose bytes are not as in UTF-8.
+    With `names` only those of these ids are replaced. Raises DrawingError for a drawing without any element, and for
+    one whose bytes are not as in UTF-8.
     """
-    places = _Places(data, role)
+    places = _Places(data, role, names)
     new = bytearray(data)
     at = places.end
     for first, last, is_layer in reversed(places.found):
@@ -114,11 +115,12 @@ class _Places:
     `found` also says whether a layer stands in the outermost element itself; one within another is not in it.
     """
 
-    def __init__(self, data: bytes, role: Role) -> None:
+    def __init__(self, data: bytes, role: Role, names: Collection[str] | None) -> None:
         self.found: list[tuple[int, int, bool]] = []
         self.end = -1
         self._data = data
         self._role = role
+        self._names = names
         self._open: list[tuple[int, bool]] = []
         self._fresh = False
         self._parser = expat.ParserCreate(namespace_separator=" ")
@@ -133,7 +135,8 @@ class _Places:
 
     def _start(self, _tag: str, attributes: dict[str, str]) -> None:
         inside = bool(self._open) and self._open[-1][1]
-        own = inside or attributes.get(ROLE) == self._role
+        is_named = self._names is None or attributes.get("id") in self._names
+        own = inside or (is_named and attributes.get(ROLE) == self._role)
         if own and not inside:
             self.found.append((self._parser.CurrentByteIndex, -1, len(self._open) == 1))
         self._open.append((self._parser.CurrentByteIndex, own))

@@ -20,6 +20,7 @@ from voronoi_tiles.formats.shapes import Dots, ReadDrawing, Shape
 from voronoi_tiles.formats.svg.elements import GROUPS, INKSCAPE, SILENT, tag_of
 from voronoi_tiles.formats.svg.reader import drawing_of_tree
 from voronoi_tiles.formats.svg.xml_tree import Node
+from voronoi_tiles.inkscape.cell_drawing import is_as_fitted
 from voronoi_tiles.inkscape.dialog_fields import CELL_LABEL
 from voronoi_tiles.inkscape.own_layers import ROLE
 from voronoi_tiles.paths.paths import LINE, Paths
@@ -63,7 +64,8 @@ class Selection:
     """The sites that are selected, and the corners of the cell's rectangle in its order, None where there is none.
 
     `notes` are sentences on what was taken otherwise than it looks. `size` is that of the page, None where it has none,
-    and `to_page` the map from the drawing's user units, y down. `names` are the ids of all that is not of ours.
+    and `to_page` the map from the drawing's user units, y down. `names` are the ids of all that is not of ours, and
+    `fitted` those of layers with a cell that is to be fitted anew.
     """
 
     sites: tuple[SelectedSite, ...]
@@ -72,11 +74,17 @@ class Selection:
     size: tuple[float, float] | None
     to_page: Affine
     names: frozenset[str]
+    fitted: frozenset[str]
 
 
-def selected(root: Node, file: str, ids: Sequence[str]) -> Selection:
-    """What is selected of a drawing. Raises DesignError where that is nothing, or what makes no strokes."""
+def selected(root: Node, file: str, ids: Sequence[str], *, refits: bool = False) -> Selection:
+    """What is selected of a drawing; with `refits` a cell that was fitted, and that nobody has moved, is none of it.
+
+    Raises DesignError where nothing is selected, or what makes no strokes.
+    """
     own, known = known_elements(root)
+    fitted = frozenset(name for name, node in known.items() if refits and is_as_fitted(node))
+    own |= fitted | {known[name].children[0].attributes.get("id", "") for name in fitted}
     homes = _homes(root, {*ids} - own)
     if not homes:
         what, remedy = "nothing is selected", "Select the strokes of a tile: paths, shapes, or groups."
@@ -112,7 +120,7 @@ def selected(root: Node, file: str, ids: Sequence[str]) -> Selection:
     drawing = replace(drawing, shapes=tuple(shape for shape in drawing.shapes if shape.within not in cells))
     size = None if drawing.width is None or drawing.height is None else (drawing.width, drawing.height)
     sites, notes = tuple(_sites(drawing, known, homes)), tuple(_notes(drawing))
-    return Selection(sites, corners, notes, size, to_page, frozenset(known).difference(own))
+    return Selection(sites, corners, notes, size, to_page, frozenset(known).difference(own), fitted)
 
 
 def known_elements(root: Node) -> tuple[set[str], dict[str, Node]]:
@@ -124,7 +132,7 @@ def known_elements(root: Node) -> tuple[set[str], dict[str, Node]]:
         node, inside = todo.pop()
         if node is not root and tag_of(node) in SILENT:
             continue
-        inside = inside or ROLE in node.attributes
+        inside = inside or node.attributes.get(ROLE, "cell") != "cell"
         name = node.attributes.get("id")
         if name is not None:
             known.setdefault(name, node)
