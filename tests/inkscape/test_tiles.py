@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 import re
 from collections.abc import Callable
@@ -160,12 +161,14 @@ def test_tiles_that_were_moved_to_another_layer_stay(tmp_path: Path) -> None:
     assert len(paths_of(again)) == 1
 
 
-@pytest.mark.parametrize("encoding", ["utf-16", "latin-1", "utf-8-sig"])
+@pytest.mark.parametrize("encoding", ["utf-16", "latin-1", "utf-8-sig", "gzip"])
 def test_other_encodings_are_kept_or_refused(encoding: str, tmp_path: Path) -> None:
     """Nothing is put into bytes that it does not fit."""
     text = MM.svg(OBJECTS["cubics"].element.replace('id="cubics"', 'id="cubics" inkscape:label="Küche"')).decode()
-    drawing = text.replace("UTF-8", encoding.removesuffix("-sig")).encode(encoding)
-    if encoding == "utf-16":
+    drawing = gzip.compress(text.encode())
+    if encoding != "gzip":
+        drawing = text.replace("UTF-8", encoding.removesuffix("-sig")).encode(encoding)
+    if encoding in {"utf-16", "gzip"}:
         with pytest.raises(VoronoiTilesError, match="in another encoding than UTF-8"):
             run(drawing, "--id=cubics", *CELL, folder=tmp_path)
         return
@@ -219,6 +222,15 @@ def test_only_what_is_selected_counts(tmp_path: Path) -> None:
     single = run(alone("line", MM), "--id=line", *CELL, folder=tmp_path)
     body = OBJECTS["line"].element + OBJECTS["clone"].element + OBJECTS["rect"].element
     assert paths_of(run(MM.svg(body), "--id=line", *CELL, folder=tmp_path)) == paths_of(single)
+
+
+def test_texts_and_images_that_are_hidden_are_not_refused(tmp_path: Path) -> None:
+    """Nobody sees them: by their own style, by a group's, or in what clips others."""
+    hidden = '<text id="t" style="display:none">T</text><g display="none"><image id="i"/></g>'
+    hidden += '<clipPath id="k"><text id="u">T</text></clipPath>'
+    group = f'<g id="g">{OBJECTS["line"].element}%s</g>'
+    expected, made = (run(MM.svg(group % more), "--id=g", *CELL, folder=tmp_path) for more in ("", hidden))
+    assert paths_of(made) == paths_of(expected)
 
 
 def test_lines_of_no_length_are_points(tmp_path: Path, voronoi_tiles: CommandLine) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
 from html import escape
 from typing import Final, Literal, NamedTuple
 from xml.parsers import expat
@@ -127,10 +128,12 @@ class _Places:
         self._parser.StartElementHandler = self._start
         self._parser.EndElementHandler = self._finish
         self._parser.DefaultHandler = self._other
-        self._parser.Parse(data, True)
+        with suppress(expat.ExpatError):  # what is read as a drawing and is no XML is compressed
+            self._parser.Parse(data, True)
         if self.end < 0 or not data.startswith(b"</", self.end):
             raise DrawingError(
-                "the drawing is empty, or in another encoding than UTF-8", remedy="Draw something, and save it."
+                "the drawing is empty, compressed, or in another encoding than UTF-8",
+                remedy="Draw something, and save it as plain SVG.",
             )
 
     def _start(self, _tag: str, attributes: dict[str, str]) -> None:

@@ -41,8 +41,6 @@ _LOST: Final = {
 }
 """Objects that nobody would expect to be passed over, each with what to do."""
 
-_CLONED: Final = (*_LOST, "use of another file", "use of nothing")
-
 
 class SelectedObject(NamedTuple):
     """What one object draws: paths, or the places of points where it has no size; `source` names it."""
@@ -95,18 +93,14 @@ def selected(root: Node, file: str, ids: Sequence[str], *, refits: bool = False)
             what = f"what is selected is not drawn: {', '.join(ids[:8])}"
             remedy = "Select paths, shapes, or groups of them."
         raise DesignError(what, remedy=remedy)
-    _refuse_lost(known[name] for name in homes)
     cells = _cells(known) - own
     if homes.keys() <= cells:
         raise DesignError("only the cell is selected", remedy="Select the strokes as well.")
     cells = cells & homes.keys() or cells
     drawing, to_page = drawing_of_tree(root, file, {*homes, *cells})
-    for what in _CLONED:
+    for what in (*_LOST, "use of another file", "use of nothing"):
         if what in drawing.ignored:
-            raise DesignError(
-                f"a clone in the selection shows a {what}" if what in _LOST else f"the selection has a {what}",
-                remedy=_LOST.get(what, "Unlink the clone, or leave it out of the selection."),
-            )
+            raise _lost_error(what, (known[name] for name in homes))
     shown = {shape.within: shape for shape in drawing.shapes if shape.within in cells}
     names = sorted(shown or cells)
     if len(names) > 1:
@@ -165,17 +159,19 @@ def _homes(root: Node, ids: Collection[str]) -> dict[str, str]:
     return homes
 
 
-def _refuse_lost(nodes: Iterable[Node]) -> None:
-    """Refuse texts and images by their names."""
+def _lost_error(what: str, nodes: Iterable[Node]) -> DesignError:
+    """The error for objects of which there is nothing to take, in the selection or in clones in it."""
+    if what not in _LOST:
+        remedy = "Unlink the clone, or leave it out of the selection."
+        return DesignError(f"the selection has a {what}", remedy=remedy)
     todo = list(nodes)
     while todo:
         node = todo.pop()
-        tag = tag_of(node)
-        if tag in _LOST:
+        if tag_of(node) == what:
             name = node.attributes.get(_LABEL, node.attributes.get("id", ""))
-            raise DesignError(f'the {tag} "{name}" is no path', remedy=_LOST[tag])
-        if tag not in SILENT:
-            todo.extend(node.children)
+            return DesignError(f'the {what} "{name}" is no path', remedy=_LOST[what])
+        todo.extend(node.children)
+    return DesignError(f"a clone in the selection shows a {what}", remedy=_LOST[what])
 
 
 def _cells(known: Mapping[str, Node]) -> set[str]:
