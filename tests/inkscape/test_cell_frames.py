@@ -111,6 +111,8 @@ def test_a_fitted_cell_that_nobody_has_moved_is_fitted_anew(page: Page, tmp_path
         assert again == fresh
         hidden = first.replace(b'id="voronoi-cell"', b'style="display:none" id="voronoi-cell"')
         assert run(hidden, "--id=p", "--id=voronoi-cell-0", f"--group={other}", folder=tmp_path) == fresh
+    with pytest.raises(VoronoiTilesError, match="only the cell is selected"):
+        run(first, "--id=voronoi-cell-0", "--group=pmm", folder=tmp_path)
     longer = page.svg(body.replace("24 6", "34 16"))
     moved = first.replace(b"24 6", b"34 16")
     assert run(moved, "--id=p", "--group=pmm", folder=tmp_path) == run(longer, "--id=p", "--group=pmm", folder=tmp_path)

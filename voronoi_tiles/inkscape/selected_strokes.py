@@ -83,7 +83,9 @@ def selected(root: Node, file: str, ids: Sequence[str], *, refits: bool = False)
     own, known = known_elements(root)
     fitted = frozenset(name for name, node in known.items() if refits and is_as_fitted(node))
     own |= fitted | {known[name].children[0].attributes.get("id", "") for name in fitted}
-    homes = _homes(root, {*ids} - own)
+    homes, cells = _homes(root, {*ids} - own), _cells(known)
+    if homes.keys() <= cells and cells.intersection(ids):
+        raise DesignError("only the cell is selected", remedy="Select the strokes as well.")
     if not homes:
         what, remedy = "nothing is selected", "Select the strokes of a tile: paths, shapes, or groups."
         if own.intersection(ids):
@@ -93,10 +95,7 @@ def selected(root: Node, file: str, ids: Sequence[str], *, refits: bool = False)
             what = f"what is selected is not drawn: {', '.join(ids[:8])}"
             remedy = "Select paths, shapes, or groups of them."
         raise DesignError(what, remedy=remedy)
-    cells = _cells(known) - own
-    if homes.keys() <= cells:
-        raise DesignError("only the cell is selected", remedy="Select the strokes as well.")
-    cells = cells & homes.keys() or cells
+    cells = cells & homes.keys() or cells - own
     drawing, to_page = drawing_of_tree(root, file, {*homes, *cells})
     for what in (*_LOST, "use of another file", "use of nothing"):
         if what in drawing.ignored:
