@@ -68,14 +68,11 @@ def sheet_outline(paths: Paths) -> SheetOutline:
 
 def _nodes(points: Complexes) -> Ints:
     """The number of the place of each point; points within MEETING are one place, as are those linked by others."""
-    from scipy.spatial import cKDTree
-
     places, place = np.unique(points, return_inverse=True)
     count = len(places)
     # The three nearest are enough: where more are near, too many ends meet in any case.
-    _, near = cKDTree(plane(places)).query(plane(places), k=min(4, count), distance_upper_bound=MEETING)
-    near = np.reshape(near, (count, -1))
-    row, column = np.nonzero(near < count)
+    distance, near = Neighbours(places).nearest(places, min(4, count))
+    row, column = np.nonzero(distance <= MEETING)
     return components(count, row, near[row, column])[place]
 
 
