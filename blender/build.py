@@ -21,9 +21,17 @@ from voronoi_tiles.base.version import __version__
 HERE = Path(__file__).parent
 DIST = HERE.parent / "dist"
 
-LIBRARIES: Final = ("shapely==2.1.2", "svgwrite==1.4.3")
-"""What the panel needs beside the engine: solids and sheets, and SVG files. They run with the numpy that Blender has,
-which must never be brought along: other extensions would get it too."""
+LIBRARIES: Final = (
+    "shapely==2.1.2",
+    "svgwrite==1.4.3",
+    "tinycss2==1.5.1",
+    "webencodings==0.6.1",
+    "cssselect2==0.10.1",
+    "coloraide==8.13.1",
+)
+"""What the panel needs beside the engine: solids and sheets, SVG files, and with the last four sheets that are drawn in
+them. They run with the numpy that Blender has, which must never be brought along: other extensions would get it too.
+DXF would need 11 MB more for two Pythons, and as much for what ezdxf needs."""
 
 PACKAGES: Final = ("voronoi_tiles", *(library.partition("==")[0] for library in LIBRARIES))
 

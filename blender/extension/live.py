@@ -13,7 +13,7 @@ from typing import Any
 import bpy
 from bpy.app.handlers import persistent
 
-from .settings import tilings
+from .settings import is_local, tilings
 from .updating import update
 
 STEP_S = 0.02
@@ -60,13 +60,15 @@ def tick() -> float | None:
 
 def _update(name: str, *, proof: bool, anew: bool = False) -> None:
     tiling = bpy.data.objects.get(name)
-    if tiling is not None and tiling.voronoi_tiles.role == "tiling" and tiling.users_scene:
+    if tiling is not None and tiling.voronoi_tiles.role == "tiling" and is_local(tiling) and tiling.users_scene:
         update(tiling, proof=proof, anew=anew)
 
 
 @persistent
 def on_change(_scene: Any, depsgraph: Any) -> None:
-    """Mark the tilings whose sites, or whose origin, have changed."""
+    """Mark the tilings whose sites, or whose origin, have changed, by hand or from frame to frame."""
+    if bpy.app.is_job_running("RENDER"):  # in a thread of its own
+        return
     found = set()
     for change in depsgraph.updates:
         if not isinstance(change.id, bpy.types.Object):
@@ -78,7 +80,7 @@ def on_change(_scene: Any, depsgraph: Any) -> None:
             tiling = change.id.original
         else:
             continue
-        if tiling is not None and tiling.voronoi_tiles.live:
+        if tiling is not None and tiling.voronoi_tiles.live and is_local(tiling):
             found.add(tiling.name)
     _mark(found)
 
@@ -100,6 +102,7 @@ def on_other_state(*_: Any) -> None:
 
 HANDLERS = (
     ("depsgraph_update_post", on_change),
+    ("frame_change_post", on_change),
     ("undo_post", on_other_state),
     ("redo_post", on_other_state),
     ("load_post", on_other_state),

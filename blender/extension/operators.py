@@ -9,28 +9,28 @@ from typing import Any
 
 import bpy
 import numpy as np
-from bpy.props import EnumProperty, StringProperty
+from bpy.props import BoolProperty, EnumProperty, StringProperty
 from mathutils import Vector
 
-from voronoi_tiles.base.errors import TouchingCopiesError, VoronoiTilesError
+from voronoi_tiles.base.errors import DesignError, TouchingCopiesError, VoronoiTilesError
 from voronoi_tiles.blender.cubic_splines import coordinates
 from voronoi_tiles.blender.design_splines import OpenedDesign, opened, proposed_cell
 from voronoi_tiles.blender.drawn_splines import DrawnSpline
 from voronoi_tiles.blender.drawn_tiling import decimal
 from voronoi_tiles.blender.polygon_mesh import PolygonMesh
 from voronoi_tiles.blender.solid_meshes import placed_solids
-from voronoi_tiles.blender.written_files import SUFFIXES, FileJob, write_file
+from voronoi_tiles.blender.written_files import FORMATS, FileJob, write_file
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.designs.drawn_solid import Solid
 from voronoi_tiles.designs.starters import starter
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.groups.wallpaper import GROUPS
-from voronoi_tiles.solid.solid_job import SolidJob
+from voronoi_tiles.solid.solid_job import HEIGHT_MM, SolidJob
 
 from . import reading, showing
 from .requirements import missing
-from .settings import DRAWN, tiling_of
-from .updating import rebuild
+from .settings import DRAWN, is_local, owner, tiling_of
+from .updating import drawing_of, rebuild
 
 LARGER = 1.25
 """By how much a proposed cell grows where copies touch in it; a factor."""
@@ -38,7 +38,12 @@ LARGER = 1.25
 TRIES = 12
 """How often; a count."""
 
+FLAT = 20
+"""How many times wider a proposed cell is than its tiles are high; a count: a starter's."""
+
 GROUP_ITEMS = [(name, name, f"{group.system} cell, {group.order} copies") for name, group in GROUPS.items()]
+
+ELSEWHERE = "is of another file: make it local, or open that file"
 
 
 class _Operator(bpy.types.Operator):
@@ -52,6 +57,9 @@ class _Operator(bpy.types.Operator):
         except VoronoiTilesError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
+        except ImportError as error:
+            self.report({"ERROR"}, f"{error}: Blender has it not. Export a .toml, and use the command line.")
+            return {"CANCELLED"}
         return {"FINISHED"}
 
     def done(self, context: Any) -> None:
@@ -63,7 +71,10 @@ class _OnTiling(_Operator):
 
     @classmethod
     def poll(cls, context: Any) -> bool:
-        return tiling_of(context.object) is not None
+        tiling = tiling_of(context.object)
+        if tiling is not None and not is_local(tiling):
+            cls.poll_message_set(f"The tiling {ELSEWHERE}")
+        return tiling is not None and is_local(tiling)
 
 
 class VORONOI_TILES_OT_tile(_Operator):
@@ -75,13 +86,14 @@ class VORONOI_TILES_OT_tile(_Operator):
 
     @classmethod
     def poll(cls, context: Any) -> bool:
-        return any(item.type in DRAWN for item in context.selected_objects)
+        return bool(drawings(context))
 
     def done(self, context: Any) -> None:
-        chosen = [
-            item for item in context.selected_objects if item.type in DRAWN and item.voronoi_tiles.role in ("", "site")
-        ]
+        chosen = drawings(context)
         there = next((found for item in context.selected_objects if (found := tiling_of(item))), None)
+        for item in filter(None, (there, *chosen)):
+            if not is_local(item):
+                raise DesignError(f"{item.name} {ELSEWHERE}")
         if there is not None:
             add_sites(there, chosen)
             rebuild(there)
@@ -91,6 +103,15 @@ class VORONOI_TILES_OT_tile(_Operator):
         add_sites(tiling, chosen)
         _propose(context, tiling, chosen)
         rebuild(tiling)
+
+
+def drawings(context: Any) -> list[Any]:
+    """The selected objects that can be sites: no tiles, but those that are left of a tiling that has been deleted."""
+    return [
+        item
+        for item in context.selected_objects
+        if item.type in DRAWN and (item.voronoi_tiles.role in ("", "site") or tiling_of(item) is None)
+    ]
 
 
 class VORONOI_TILES_OT_starter(_Operator):
@@ -119,7 +140,11 @@ class VORONOI_TILES_OT_open(_Operator):
         return {"RUNNING_MODAL"}
 
     def done(self, context: Any) -> None:
-        draw_design(context, Path(self.filepath).stem, opened(Design.load(self.filepath)))
+        path = bpy.path.abspath(self.filepath)
+        design = Design.load(path)
+        draw_design(context, Path(path).stem, opened(design))
+        if design.solid is not None and design.solid.keys:
+            self.report({"WARNING"}, "Keys of solids are left out: the command line makes them.")
 
 
 class VORONOI_TILES_OT_update(_OnTiling):
@@ -132,14 +157,19 @@ class VORONOI_TILES_OT_update(_OnTiling):
         rebuild(tiling_of(context.object))
 
 
-class VORONOI_TILES_OT_remove(_OnTiling):
+class VORONOI_TILES_OT_remove(_Operator):
     """Remove the tiling and its tiles; what is drawn stays"""
 
     bl_idname = "voronoi_tiles.remove"
     bl_label = "Remove Tiling"
 
+    @classmethod
+    def poll(cls, context: Any) -> bool:
+        tiling = owner(context.object)
+        return tiling is not None and is_local(tiling)
+
     def done(self, context: Any) -> None:
-        showing.remove_all(tiling_of(context.object))
+        showing.remove_all(owner(context.object))
 
 
 class VORONOI_TILES_OT_solids(_OnTiling):
@@ -161,38 +191,54 @@ class VORONOI_TILES_OT_solids(_OnTiling):
             self.report({"ERROR"}, settings.message)
             return
         job, solid = solid_jobs(settings)
-        made = placed_solids(reading.drawn_tiling(tiling), settings.unit_mm, job, solid)
+        drawn = reading.drawn_tiling(tiling)
+        made = placed_solids(drawn, decimal(settings.unit_mm), job, solid)
         sites = reading.drawn_sites(tiling)
         for (number, mirrored), mesh in showing.sources(tiling).items():
             pivot = complex(*sites[number].pivot)
             showing.set_mesh(mesh, about(made.meshes[number], pivot, mirrored=mirrored))
-        settings.solids = made.proved
+        showing.mark_solids(tiling, drawing_of(tiling, drawn), made.proved)
 
 
 class VORONOI_TILES_OT_export(_OnTiling):
-    """Write the tiles as a file, proved and exact: cut sheets, solids, or the design for the command line"""
+    """Write the tiles as a file, proved and exact: drawings to cut, solids, or the design for the command line"""
 
     bl_idname = "voronoi_tiles.export"
     bl_label = "Export Tiles"
     bl_options = {"REGISTER"}
     __annotations__ = {
         "filepath": StringProperty(subtype="FILE_PATH"),
-        "filter_glob": StringProperty(default=";".join(f"*{suffix}" for suffix in SUFFIXES), options={"HIDDEN"}),
+        "filter_glob": StringProperty(default=";".join(f"*{suffix}" for suffix in FORMATS), options={"HIDDEN"}),
+        "check_existing": BoolProperty(default=True, options={"HIDDEN"}),
+        "suffix": EnumProperty(name="Format", items=[(key, *text) for key, text in FORMATS.items()]),
     }
 
     def invoke(self, context: Any, _event: Any) -> set[str]:
         name = bpy.path.clean_name(tiling_of(context.object).name)
-        self.filepath = str(Path(bpy.path.abspath("//") or Path.home()) / f"{name}.svg")
+        self.filepath = str(Path(bpy.path.abspath("//") or Path.home()) / f"{name}{self.suffix}")
+        self.filter_glob = f"*{self.suffix}"
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def done(self, context: Any) -> None:
         tiling = tiling_of(context.object)
-        settings = tiling.voronoi_tiles
+        path = bpy.path.abspath(self.filepath)
+        job = file_job(tiling.voronoi_tiles, Path(path).suffix.lower())
+        self.report({"INFO"}, write_file(reading.drawn_tiling(tiling), path, job))
+
+
+def file_job(settings: Any, suffix: str) -> FileJob:
+    """What a file is to hold: of the settings those alone that are for files of its suffix."""
+    flat = prisms = solid = None
+    if suffix in (".3mf", ".stl") or (suffix == ".toml" and settings.loft):
         prisms, solid = solid_jobs(settings)
-        flat = Job(sheet=settings.sheet or None, kerf=settings.kerf) if settings.sheet or settings.kerf else None
-        job = FileJob(settings.unit_mm, flat, prisms, solid)
-        self.report({"INFO"}, write_file(reading.drawn_tiling(tiling), bpy.path.abspath(self.filepath), job))
+    elif suffix != ".toml":
+        names = ("kerf", "feed", "power") if suffix == ".gcode" else ("kerf",)
+        cuts = {name: value for name in names if (value := decimal(getattr(settings, name)))}
+        if settings.sheet:
+            cuts["sheet"] = bpy.path.abspath(settings.sheet)
+        flat = Job(**cuts) if cuts else None
+    return FileJob(decimal(settings.unit_mm), flat, prisms, solid)
 
 
 def solid_jobs(settings: Any) -> tuple[SolidJob, Solid | None]:
@@ -237,7 +283,7 @@ def new_tiling(context: Any, group: str, name: str) -> Any:
     settings = tiling.voronoi_tiles
     settings.results, settings.field_results = results, field
     settings.group = group
-    settings.role = "tiling"
+    settings.role, settings.of = "tiling", tiling
     showing.build_marker(tiling)
     return tiling
 
@@ -245,12 +291,6 @@ def new_tiling(context: Any, group: str, name: str) -> Any:
 def add_sites(tiling: Any, items: Iterable[Any]) -> None:
     """Make objects sites of a tiling; those of others leave them."""
     for item in items:
-        old = item.voronoi_tiles.of
-        if old is not None and old != tiling:
-            sites = old.voronoi_tiles.sites
-            for k in reversed(range(len(sites))):
-                if sites[k].object == item:
-                    sites.remove(k)
         if all(site.object != item for site in tiling.voronoi_tiles.sites):
             tiling.voronoi_tiles.sites.add().object = item
         item.voronoi_tiles.role, item.voronoi_tiles.of = "site", tiling
@@ -265,6 +305,8 @@ def _propose(context: Any, tiling: Any, items: Iterable[Any]) -> None:
     if not len(points):
         return
     cell = proposed_cell(settings.group, points)
+    settings.live = False  # else each setting would build all anew
+    settings.height = cell.a / FLAT
     middle = complex(points.real.min() + points.real.max(), points.imag.min() + points.imag.max()) / 2
     for _ in range(TRIES):
         settings.a, settings.b, settings.angle = cell.a, cell.b, cell.angle
@@ -276,16 +318,25 @@ def _propose(context: Any, tiling: Any, items: Iterable[Any]) -> None:
             larger = middle + LARGER * (cell.origin - middle)
             cell = cell._replace(a=LARGER * cell.a, b=LARGER * cell.b, origin=larger)
         except VoronoiTilesError:
-            return
+            break
         else:
-            return
+            break
+    settings.live = True
 
 
 def draw_design(context: Any, name: str, design: OpenedDesign) -> Any:
     """Draw a design: a curve object for each site, and the tiling."""
+    if context.object and context.object.mode != "OBJECT":  # the first site will be the active object
+        bpy.ops.object.mode_set(mode="OBJECT")
     tiling = new_tiling(context, design.group, name)
     settings = tiling.voronoi_tiles
     settings.a, settings.b, settings.angle, settings.unit_mm = design.a, design.b, design.angle, design.unit_mm
+    settings.height = HEIGHT_MM / design.unit_mm
+    solid = design.solid
+    if solid is not None:
+        settings.loft, settings.height, settings.layers = True, solid.height, solid.layers
+        settings.turn, settings.grow = solid.turn, solid.scale
+        settings.shift, settings.about = coordinates(np.array([solid.shift, solid.about])).reshape(2, 3)[:, :2].tolist()
     items = []
     for site, splines in design.sites:
         curve = bpy.data.curves.new(site, "CURVE")

@@ -30,11 +30,14 @@ class VORONOI_TILES_PT_tiles(bpy.types.Panel):
         if not requirements.usable():
             say(layout, requirements.engine_missing(), "ERROR")
             return
-        from .settings import tiling_of
+        from .settings import is_local, owner, tiling_of
 
         say(layout, requirements.missing(), "ERROR")
         tiling = tiling_of(context.object)
         if tiling is None:
+            if owner(context.object) is not None:
+                say(layout, ["The tiling of this object has been deleted: its tiles follow nothing."], "ERROR")
+                layout.operator("voronoi_tiles.remove", text="Remove Tiles")
             say(layout, ["Select curves or grease pencils: each is the site of a tile."], "INFO")
             row = layout.row()
             row.operator("voronoi_tiles.tile")
@@ -42,12 +45,17 @@ class VORONOI_TILES_PT_tiles(bpy.types.Panel):
             row.operator_menu_enum("voronoi_tiles.starter", "group", text="Starter")
             row.operator("voronoi_tiles.open", text="Open")
             return
+        if not is_local(tiling):
+            say(layout, ["This tiling is of another file: make it local, or open that file."], "LIBRARY_DATA_DIRECT")
+            return
         draw_tiling(layout, tiling)
 
 
 def draw_tiling(layout: Any, tiling: Any) -> None:
     """The settings of a tiling, and how it is."""
     from voronoi_tiles.groups.wallpaper import GROUPS
+
+    from .reading import drawn_sites
 
     settings = tiling.voronoi_tiles
     group = GROUPS[settings.group]
@@ -58,10 +66,10 @@ def draw_tiling(layout: Any, tiling: Any) -> None:
         box.label(
             text="Proved" if settings.proved else "Not proved yet", icon="CHECKMARK" if settings.proved else "SORTTIME"
         )
-    for site in settings.sites:
-        if site.object and site.object.users_scene:
-            width, height = (settings.unit_mm * size for size in site.size)
-            box.label(text=f"{site.object.name}: {width:.4g} x {height:.4g} mm in files", icon="OUTLINER_OB_CURVE")
+    sites = drawn_sites(tiling)
+    for site in sites:
+        width, height = (settings.unit_mm * size for size in site.size)
+        box.label(text=f"{site.object.name}: {width:.4g} x {height:.4g} mm in files", icon="OUTLINER_OB_CURVE")
     row = box.row(align=True)
     row.prop(settings, "live", toggle=True)
     row.operator("voronoi_tiles.update")
@@ -73,7 +81,7 @@ def draw_tiling(layout: Any, tiling: Any) -> None:
         column.prop(settings, "b")
     if group.fixed_angle is None:
         column.prop(settings, "angle")
-    if any(site.object and site.object.type != "CURVE" for site in settings.sites):
+    if any(site.object.type != "CURVE" for site in sites):
         column.prop(settings, "smoothing")
 
 
@@ -89,9 +97,10 @@ class _Part(bpy.types.Panel):
     def poll(cls, context: Any) -> bool:
         if not requirements.usable():
             return False
-        from .settings import tiling_of
+        from .settings import is_local, tiling_of
 
-        return tiling_of(context.object) is not None
+        tiling = tiling_of(context.object)
+        return tiling is not None and is_local(tiling)
 
     def draw(self, context: Any) -> None:
         from .settings import tiling_of
@@ -129,8 +138,10 @@ class VORONOI_TILES_PT_solids(_Part):
         for name in ("turn", "grow", "shift", "about", "layers") if settings.loft else ("clearance", "chamfer"):
             column.prop(settings, name)
         layout.operator("voronoi_tiles.solids")
-        if settings.solids:
-            say(layout, [f"Proved: {settings.solids}"], "CHECKMARK")
+        from .showing import proved_solids
+
+        if proved := proved_solids(settings.id_data):
+            say(layout, [f"Proved: {proved}"], "CHECKMARK")
 
 
 class VORONOI_TILES_PT_files(_Part):
@@ -141,9 +152,9 @@ class VORONOI_TILES_PT_files(_Part):
 
     def shown(self, layout: Any, settings: Any) -> None:
         column = layout.column(align=True)
-        for name in ("unit_mm", "sheet", "kerf"):
+        for name in ("unit_mm", "sheet", "kerf", "feed", "power"):
             column.prop(settings, name)
-        layout.operator("voronoi_tiles.export")
+        layout.operator_menu_enum("voronoi_tiles.export", "suffix")
         layout.operator("voronoi_tiles.remove")
 
 

@@ -16,7 +16,7 @@ from voronoi_tiles.blender.drawn_tiling import DrawnTiling, decimal
 def drawn_tiling(tiling: Any) -> DrawnTiling:
     """What is drawn of a tiling; objects that are in no scene any more are left out."""
     settings = tiling.voronoi_tiles
-    frame = np.linalg.inv(np.array(tiling.matrix_world, np.float64))
+    frame = _inverse(tiling.matrix_world)
     return DrawnTiling(
         group=settings.group,
         a=decimal(settings.a),
@@ -28,8 +28,23 @@ def drawn_tiling(tiling: Any) -> DrawnTiling:
 
 
 def drawn_sites(tiling: Any) -> list[Any]:
-    """The sites whose objects are in a scene: those that have been deleted are kept by their tiling alone."""
-    return [site for site in tiling.voronoi_tiles.sites if site.object and site.object.users_scene]
+    """The sites whose objects are in a scene: those that have been deleted are kept by their tiling alone.
+
+    Those that have gone to another tiling are left out.
+    """
+    return [
+        site
+        for site in tiling.voronoi_tiles.sites
+        if site.object and site.object.users_scene and site.object.voronoi_tiles.of == tiling
+    ]
+
+
+def _inverse(matrix: Any) -> Any:
+    """The inverse of a matrix, float64 (4, 4); not finite where an object is scaled to nothing."""
+    try:
+        return np.linalg.inv(np.array(matrix, np.float64))
+    except np.linalg.LinAlgError:
+        return np.full((4, 4), np.nan)
 
 
 def digest(drawn: DrawnTiling) -> str:

@@ -10,6 +10,14 @@ from pathlib import Path
 
 REMEDY = "Install the extension's file for this platform from the project's releases, for this Blender."
 
+LIBRARIES = (
+    ("shapely", "solids, sheets and tiles with holes"),
+    ("svgwrite", "SVG files"),
+    ("tinycss2", "sheets drawn in SVG"),
+    ("cssselect2", "sheets drawn in SVG"),
+    ("coloraide", "sheets drawn in SVG"),
+)
+
 
 @cache
 def engine_missing() -> tuple[str, ...]:
@@ -35,7 +43,7 @@ def engine_missing() -> tuple[str, ...]:
 def missing() -> tuple[str, ...]:
     """What cannot be done for want of a library, in sentences, beside `engine_missing`."""
     found = []
-    for name, what in (("shapely", "solids, sheets and tiles with holes"), ("svgwrite", "SVG files")):
+    for name, what in LIBRARIES:
         try:
             import_module(name)
         except ImportError as error:

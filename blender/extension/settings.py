@@ -27,7 +27,7 @@ def _changed(settings: Any, _context: Any) -> None:
     """The tiles are others: at once, so that what comes and goes is in the step of undo that follows."""
     from . import live, updating
 
-    if settings.role == "tiling" and settings.live:
+    if settings.role == "tiling" and settings.live and is_local(settings.id_data):
         updating.update(settings.id_data, built=True)
         live.mark(settings.id_data)
 
@@ -37,24 +37,28 @@ def _length(name: str, description: str, default: float, least: float = 0.0, **o
 
 
 class VORONOI_TILES_Site(bpy.types.PropertyGroup):
-    """A site of a tiling: the object that it is drawn as, and what its tile's mesh is drawn about."""
+    """A site of a tiling: the object that it is drawn as, that of its tile, and what the tile's mesh is drawn about.
+
+    It is one for as long as the object says so, whose `of` is the tiling.
+    """
 
     __annotations__ = {
         "object": PointerProperty(type=bpy.types.Object, name="Site"),
+        "tile": PointerProperty(type=bpy.types.Object),
         "pivot": FloatVectorProperty(size=2),
         "size": FloatVectorProperty(size=2),
     }
 
 
 class VORONOI_TILES_Source(bpy.types.PropertyGroup):
-    """What copies are instances of: a tile, as drawn or turned over, in a colour."""
+    """What copies are instances of: a collection that holds a tile, as drawn or turned over, in a colour."""
 
     __annotations__ = {
         "site": IntProperty(),
         "mirrored": BoolProperty(),
         "colour": IntProperty(),
         "collection": PointerProperty(type=bpy.types.Collection),
-        "mesh": PointerProperty(type=bpy.types.Mesh),
+        "object": PointerProperty(type=bpy.types.Object),
     }
 
 
@@ -62,7 +66,8 @@ class VORONOI_TILES_Settings(bpy.types.PropertyGroup):
     """What the extension knows of an object.
 
     `role` is "tiling" for the empty at the origin, else what it is of the tiling `of`: "site", "tile", "copy",
-    "source", "marker"; `key` is the name of the site or copy, `number` a copy's. All others are the tiling's.
+    "source", "marker"; `key` is the name of the site or copy, `number` a copy's. All others are the tiling's, and
+    `of` is itself: in a copy that a user makes, it is not.
     """
 
     __annotations__ = {
@@ -74,13 +79,13 @@ class VORONOI_TILES_Settings(bpy.types.PropertyGroup):
         "sources": CollectionProperty(type=VORONOI_TILES_Source),
         "results": PointerProperty(type=bpy.types.Collection),
         "field_results": PointerProperty(type=bpy.types.Collection),
+        "marker": PointerProperty(type=bpy.types.Object),
         # What is shown, and of what: undo takes both back together.
         "drawn": StringProperty(),
         "built": StringProperty(),
         "placed": StringProperty(),
         "message": StringProperty(),
         "proved": BoolProperty(),
-        "solids": StringProperty(),
         "group": EnumProperty(
             name="Group",
             description="The wallpaper group that copies the sites over the plane",
@@ -135,9 +140,11 @@ class VORONOI_TILES_Settings(bpy.types.PropertyGroup):
             name="Layers", description="Heights at which tiles are exact", default=21, min=2, max=500
         ),
         "sheet": StringProperty(
-            name="Sheet", description="The size of a sheet to fill, such as 300x200mm; empty for one of each tile"
+            name="Sheet", description="What to fill, a size such as 300x200mm, or an SVG file; empty for one of each"
         ),
         "kerf": _length("Kerf", "The width of the cut, in mm", 0.0),
+        "feed": _length("Feed", "For G-code, how fast the laser moves, in mm a minute", 0.0),
+        "power": _length("Power", "For G-code, how strong it is: the value of S", 0.0),
     }
 
 
@@ -158,14 +165,26 @@ def unregister() -> None:
     _unregister()
 
 
-def tiling_of(item: Any) -> Any:
-    """The empty of the tiling that an object belongs to, None where it belongs to none, or that has been deleted."""
+def owner(item: Any) -> Any:
+    """The empty of the tiling that an object belongs to, which may have been deleted; None where it belongs to none."""
     if item is None:
         return None
-    found = item if item.voronoi_tiles.role == "tiling" else item.voronoi_tiles.of
+    return item if item.voronoi_tiles.role == "tiling" else item.voronoi_tiles.of
+
+
+def tiling_of(item: Any) -> Any:
+    """The same, None where it has been deleted."""
+    found = owner(item)
     return found if found is not None and found.users_scene else None
+
+
+def is_local(item: Any) -> bool:
+    """Whether an object is of this file: what is linked, or overridden, keeps nothing that is written to it."""
+    return item.library is None and item.override_library is None
 
 
 def tilings() -> list[Any]:
     """The empties of all tilings in the file."""
-    return [item for item in bpy.data.objects if item.voronoi_tiles.role == "tiling" and item.users_scene]
+    return [
+        item for item in bpy.data.objects if item.voronoi_tiles.role == "tiling" and is_local(item) and item.users_scene
+    ]

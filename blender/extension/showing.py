@@ -25,41 +25,72 @@ FREE = 0
 RESOLUTION = 4
 """Chords of an arc in a view; a count. Arcs are short, and files have them exactly."""
 
+SOLID = "voronoi_tiles solid"
+"""The property of a mesh that says of which drawing it is a solid, and in a second line what was proved of it.
+
+With the mesh itself, so that undo and files cannot part the two.
+"""
+
 
 def own(tiling: Any, role: str) -> list[Any]:
     """The objects of a tiling that have a role, children of its empty."""
     return [item for item in tiling.children if item.voronoi_tiles.role == role]
 
 
-def build_tiles(tiling: Any, names: Sequence[str]) -> None:
-    """A curve object for each tile, whose name is its site's, and a marker; those of other sites are removed."""
-    there = {item.voronoi_tiles.key: item for item in own(tiling, "tile")}
-    for name in names:
-        item = there.pop(name, None)
-        if item is None:
-            curve = bpy.data.curves.new(f"{name} tile", "CURVE")
+def is_copied(tiling: Any) -> bool:
+    """Whether what is shown belongs to another tiling, of which this one is a copy that a user has made."""
+    settings = tiling.voronoi_tiles
+    shown = [settings.marker, *(site.tile for site in settings.sites), *(one.object for one in settings.sources)]
+    return settings.of != tiling or any(item is not None and not _is_own(tiling, item) for item in shown)
+
+
+def _is_own(tiling: Any, item: Any) -> bool:
+    return item is not None and item.voronoi_tiles.of == tiling
+
+
+def build_tiles(tiling: Any, sites: Sequence[Any]) -> None:
+    """A curve object for the tile of each site, and a marker; those of other sites are removed."""
+    settings = tiling.voronoi_tiles
+    settings.of = tiling
+    for name in ("results", "field_results"):
+        if getattr(settings, name) is None:  # someone has deleted it
+            collection = bpy.data.collections.new(f"{tiling.name} {name.partition('_')[0]}")
+            tiling.users_scene[0].collection.children.link(collection)
+            setattr(settings, name, collection)
+    gone = own(tiling, "tile")
+    for site in sites:
+        name, item = f"{site.object.name} tile", site.tile
+        if not _is_own(tiling, item) or not item.users_scene or item.type != "CURVE":
+            curve = bpy.data.curves.new(name, "CURVE")
             curve.dimensions = "2D"
             curve.resolution_u = RESOLUTION
-            item = _added(tiling, f"{name} tile", curve, "tile", name)
+            item = site.tile = _added(tiling, name, curve, "tile")
+        elif item.voronoi_tiles.key != site.object.name:
+            item.name = name
+        item.voronoi_tiles.key = site.object.name
         # Beneath prisms a face would fight with theirs.
-        item.data.fill_mode = "NONE" if tiling.voronoi_tiles.field else "BOTH"
-    _remove(list(there.values()))
+        item.data.fill_mode = "NONE" if settings.field else "BOTH"
+    tiles = [site.tile for site in sites]
+    _remove([item for item in gone if item not in tiles])
+    build_marker(tiling)
 
 
 def build_marker(tiling: Any) -> None:
-    """The marker of a place where copies touch, hidden."""
-    item = _added(tiling, "Copies touch here", None, "marker", "")
+    """The marker of a place where copies touch, hidden, where there is none."""
+    settings = tiling.voronoi_tiles
+    if _is_own(tiling, settings.marker) and settings.marker.users_scene:
+        return
+    item = settings.marker = _added(tiling, "Copies touch here", None, "marker")
     item.empty_display_type = "SPHERE"
     item.show_in_front = item.show_name = True
     item.hide_viewport = item.hide_render = True
 
 
-def show_tiles(tiling: Any, outlines: Sequence[tuple[str, Outline]]) -> None:
+def show_tiles(sites: Sequence[Any], outlines: Sequence[Outline]) -> None:
     """Give the tiles' curves their outlines."""
-    there = {item.voronoi_tiles.key: item for item in own(tiling, "tile")}
-    for name, outline in outlines:
-        if name in there:  # else someone has deleted it
-            set_splines(there[name].data, cubic_splines(outline))
+    for site, outline in zip(sites, outlines, strict=True):
+        if site.tile and site.tile.type == "CURVE":  # else someone has deleted or converted it
+            set_splines(site.tile.data, cubic_splines(outline))
 
 
 def set_splines(curve: Any, found: Sequence[CubicSpline]) -> None:
@@ -90,6 +121,7 @@ def set_mesh(mesh: Any, found: PolygonMesh) -> None:
     mesh.loops.foreach_set("vertex_index", found.corners)
     mesh.polygons.foreach_set("loop_start", found.starts[:-1])
     mesh.update(calc_edges=True)
+    mesh.pop(SOLID, None)
 
 
 def build_field(tiling: Any, copies: FieldCopies | None, names: Sequence[str]) -> None:
@@ -107,16 +139,23 @@ def build_field(tiling: Any, copies: FieldCopies | None, names: Sequence[str]) -
     used, index = np.unique(kinds, axis=0, return_inverse=True)
     wanted = [(int(tile), bool(mirrored), int(colour)) for tile, mirrored, colour in used]
     collections = [_source(tiling, kind, names[kind[0]], copies.colours[kind[2]]) for kind in wanted]
-    _remove(there[len(kinds) :])
-    there = there[: len(kinds)]
-    for name in copies.names[len(there) :]:
-        item = _added(tiling, name, None, "copy", name, settings.field_results)
-        item.instance_type = "COLLECTION"
+    # Each stays which one it is, where it can: someone may have lifted it.
+    named = {item.voronoi_tiles.key: item for item in there}
+    kept = {name: named[name] for name in copies.names if name in named}
+    chosen = set(kept.values())
+    others = [item for item in there if item not in chosen]
+    for number, (name, kind) in enumerate(zip(copies.names, index.ravel().tolist(), strict=True)):
+        item = kept.get(name)
+        if item is None and others:
+            item = others.pop()
+            item.name = name
+        elif item is None:
+            item = _added(tiling, name, None, "copy", settings.field_results)
+            item.instance_type = "COLLECTION"
         item.empty_display_size = settings.a / 60
-        there.append(item)
-    for number, (item, name, kind) in enumerate(zip(there, copies.names, index.ravel().tolist(), strict=True)):
         item.voronoi_tiles.key, item.voronoi_tiles.number = name, number
         item.instance_collection = collections[kind]
+    _remove(others)
     _keep_sources(settings, set(wanted))
 
 
@@ -133,24 +172,39 @@ def place_copies(tiling: Any, copies: FieldCopies) -> None:
 
 def sources(tiling: Any) -> dict[tuple[int, bool], Any]:
     """The meshes that copies show, by the number of the site and whether they are turned over."""
-    return {(one.site, one.mirrored): one.mesh for one in tiling.voronoi_tiles.sources}
+    return {(one.site, one.mirrored): one.object.data for one in tiling.voronoi_tiles.sources if one.object}
+
+
+def mark_solids(tiling: Any, drawing: str, proved: str) -> None:
+    """Say of the meshes that they are solids of a drawing, and what was proved of them."""
+    for mesh in sources(tiling).values():
+        mesh[SOLID] = f"{drawing}\n{proved}"
+
+
+def proved_solids(tiling: Any, drawing: str | None = None) -> str:
+    """What was proved of the solids that are shown, of a drawing or of any; "" where none are."""
+    said = {mesh.get(SOLID, "") for mesh in sources(tiling).values()}
+    of, _, proved = said.pop().partition("\n") if len(said) == 1 else ("", "", "")
+    return proved if drawing in (None, of) else ""
 
 
 def mark_place(tiling: Any, place: complex | None) -> None:
     """Put the marker at a place in the plane, or hide it."""
-    for item in own(tiling, "marker"):
-        if item.hide_viewport != (place is None):
-            item.hide_viewport = place is None
-        if place is not None:
-            item.empty_display_size = tiling.voronoi_tiles.a / 40
-            item.location = (place.real, place.imag, 0.0)
+    item = tiling.voronoi_tiles.marker
+    if item is None:
+        return
+    if item.hide_viewport != (place is None):
+        item.hide_viewport = place is None
+    if place is not None:
+        item.empty_display_size = tiling.voronoi_tiles.a / 40
+        item.location = (place.real, place.imag, 0.0)
 
 
 def remove_all(tiling: Any) -> None:
     """Remove what is shown of a tiling, and the tiling; the sites stay."""
     settings = tiling.voronoi_tiles
     for site in settings.sites:
-        if site.object:
+        if _is_own(tiling, site.object):
             site.object.voronoi_tiles.role = ""
             site.object.voronoi_tiles.of = None
     build_field(tiling, None, ())
@@ -162,10 +216,10 @@ def remove_all(tiling: Any) -> None:
             bpy.data.collections.remove(one)
 
 
-def _added(tiling: Any, name: str, data: Any, role: str, key: str, collection: Any = None) -> Any:
+def _added(tiling: Any, name: str, data: Any, role: str, collection: Any = None) -> Any:
     """A new object of a tiling."""
     item = bpy.data.objects.new(name, data)
-    item.voronoi_tiles.role, item.voronoi_tiles.of, item.voronoi_tiles.key = role, tiling, key
+    item.voronoi_tiles.role, item.voronoi_tiles.of = role, tiling
     item.parent = tiling
     (collection or tiling.voronoi_tiles.results).objects.link(item)
     return item
@@ -175,12 +229,13 @@ def _source(tiling: Any, kind: tuple[int, bool, int], name: str, colour: str) ->
     """The collection that copies of a kind are instances of; made where it is not there."""
     settings = tiling.voronoi_tiles
     found = next((one for one in settings.sources if (one.site, one.mirrored, one.colour) == kind), None)
-    if found is not None and found.collection is not None and found.mesh is not None and found.collection.objects:
+    if found is not None and found.collection and _is_own(tiling, found.object) and found.object.users_collection:
         return found.collection
     title = f"{name} turned over" if kind[1] else name
-    mesh = sources(tiling).get(kind[:2]) or bpy.data.meshes.new(title)
+    shared = (one.object for one in settings.sources if (one.site, one.mirrored) == kind[:2])
+    mesh = next((item.data for item in shared if _is_own(tiling, item)), None) or bpy.data.meshes.new(title)
     item = bpy.data.objects.new(title, mesh)
-    item.voronoi_tiles.role, item.voronoi_tiles.of, item.voronoi_tiles.key = "source", tiling, name
+    item.voronoi_tiles.role, item.voronoi_tiles.of = "source", tiling
     if not mesh.materials:
         mesh.materials.append(None)  # a slot, whose material each object has for itself
     item.material_slots[0].link = "OBJECT"
@@ -189,7 +244,7 @@ def _source(tiling: Any, kind: tuple[int, bool, int], name: str, colour: str) ->
     collection.objects.link(item)
     if found is None:
         found = settings.sources.add()
-    found.site, found.mirrored, found.colour, found.collection, found.mesh = *kind, collection, mesh
+    found.site, found.mirrored, found.colour, found.collection, found.object = *kind, collection, item
     return collection
 
 
@@ -199,13 +254,13 @@ def _keep_sources(settings: Any, wanted: set[tuple[int, bool, int]]) -> None:
         one = settings.sources[k]
         if (one.site, one.mirrored, one.colour) in wanted:
             continue
-        collection, mesh = one.collection, one.mesh
+        collection, item = one.collection, one.object
         settings.sources.remove(k)
-        if collection:
-            _remove(list(collection.objects))
+        if not _is_own(settings.id_data, item):
+            continue
+        _remove([item])
+        if collection and not collection.objects:
             bpy.data.collections.remove(collection)
-        if mesh and not any(other.mesh == mesh for other in settings.sources):
-            bpy.data.meshes.remove(mesh)
 
 
 def _material(name: str, colour: str) -> Any:
@@ -230,6 +285,6 @@ def _linear(value: float) -> float:
 
 
 def _remove(items: Sequence[Any]) -> None:
-    """Remove objects, and the curves that nobody else has."""
-    curves = [item.data for item in items if item.type == "CURVE" and item.data.users == 1]
-    bpy.data.batch_remove([*items, *curves])
+    """Remove objects, and the curves and meshes that nobody else has."""
+    data = [item.data for item in items if item.data and item.data.users == 1]
+    bpy.data.batch_remove([*items, *data])

@@ -13,7 +13,7 @@ from voronoi_tiles.blender.design_splines import opened, proposed_cell
 from voronoi_tiles.blender.drawn_splines import DrawnSpline, strokes_of
 from voronoi_tiles.blender.drawn_tiling import DrawnTiling, decimal
 from voronoi_tiles.blender.solid_meshes import placed_solids
-from voronoi_tiles.blender.written_files import SUFFIXES, FileJob, write_file
+from voronoi_tiles.blender.written_files import FORMATS, FileJob, write_file
 
 EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.toml"))
 
@@ -152,8 +152,8 @@ def test_solids_stand_where_their_tiles_are() -> None:
 def test_all_files_are_written_in_their_size(tmp_path: Path) -> None:
     """A unit of 2 mm: what the design says, the outline document has, and solids come to."""
     tiling = drawn(("Bird", (CURVE,)))
-    job = FileJob(2.0, vt.Job(sheet="300x200mm"), vt.SolidJob(height=4))
-    for suffix in SUFFIXES:
+    job = FileJob(2.0, vt.Job(sheet="300x200mm", feed=300, power=800), vt.SolidJob(height=4))
+    for suffix in FORMATS:
         said = write_file(tiling, str(tmp_path / f"a{suffix}"), job)
         assert said.startswith(f"wrote a{suffix}")
         assert (tmp_path / f"a{suffix}").stat().st_size > 100

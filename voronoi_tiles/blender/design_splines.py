@@ -12,6 +12,7 @@ from voronoi_tiles.base.maps import Placement
 from voronoi_tiles.base.tolerance import FLATTENING_MM
 from voronoi_tiles.blender.drawn_splines import DrawnSpline
 from voronoi_tiles.designs.design import Design
+from voronoi_tiles.designs.drawn_solid import Solid
 from voronoi_tiles.designs.schema import stroke
 from voronoi_tiles.designs.starters import starter
 
@@ -20,7 +21,10 @@ ROOM = 1.1
 
 
 class OpenedDesign(NamedTuple):
-    """A design as it is drawn: the splines of each site by its name, in units of so many millimetres."""
+    """A design as it is drawn: the splines of each site by its name, in units of so many millimetres.
+
+    `solid` is None as well where it has keys, which Blender has nothing for.
+    """
 
     group: str
     a: float
@@ -28,6 +32,7 @@ class OpenedDesign(NamedTuple):
     angle: float
     unit_mm: float
     sites: tuple[tuple[str, tuple[DrawnSpline, ...]], ...]
+    solid: Solid | None = None
 
 
 def opened(design: Design) -> OpenedDesign:
@@ -41,7 +46,10 @@ def opened(design: Design) -> OpenedDesign:
         drawn = tuple(_spline(*stroke(one, accuracy, by)) for one in table["strokes"])
         sites.append((noded.name, drawn))
     angle = float(np.degrees(np.angle(lattice.b / lattice.a)))
-    return OpenedDesign(design.group.name, abs(lattice.a), abs(lattice.b), angle, design.unit_mm, tuple(sites))
+    solid = design.solid
+    if solid is not None:
+        solid = None if solid.keys else solid.placed(Placement(design.scale), (), design.scale)
+    return OpenedDesign(design.group.name, abs(lattice.a), abs(lattice.b), angle, design.unit_mm, tuple(sites), solid)
 
 
 def _spline(points: Complexes, curved: bool) -> DrawnSpline:

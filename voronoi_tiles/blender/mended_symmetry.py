@@ -27,7 +27,7 @@ def symmetric_splines(action: Action, splines: Sequence[DrawnSpline]) -> tuple[D
     """
     parts = [part for spline in splines for part in (spline.points, spline.left, spline.right)]
     points = np.concatenate([np.zeros(0, np.complex128), *parts])
-    stabilizer = _stabilizer(action, points) if len(points) else (IDENTITY,)
+    stabilizer = _stabilizer(action, points) if len(points) and np.isfinite(points).all() else (IDENTITY,)
     if len(stabilizer) == 1:
         return tuple(splines)
     moved = np.split(symmetrized(action, points, stabilizer), np.cumsum([len(part) for part in parts])[:-1])

@@ -13,8 +13,17 @@ from voronoi_tiles.designs.drawn_solid import Solid
 from voronoi_tiles.fabrication.job import Job
 from voronoi_tiles.solid.solid_job import SolidJob
 
-SUFFIXES: Final = (".svg", ".pdf", ".lbrn2", ".json", ".toml", ".3mf", ".stl")
-"""The suffixes of files: drawings, the outline document, the design, solids."""
+FORMATS: Final = {
+    ".svg": ("SVG", "A drawing to cut"),
+    ".pdf": ("PDF", "A drawing to cut or print"),
+    ".lbrn2": ("LightBurn", "A drawing to cut"),
+    ".gcode": ("G-code", "The way of a laser with GRBL: give Feed and Power"),
+    ".3mf": ("3MF", "Solids to print, in millimetres"),
+    ".stl": ("STL", "Solids to print"),
+    ".json": ("JSON", "The exact outlines"),
+    ".toml": ("Design", "For the command line, and to be opened again"),
+}
+"""The suffixes of files, and for each a name and what it is, in words."""
 
 
 @dataclass(frozen=True)
@@ -42,10 +51,12 @@ def write_file(drawn: DrawnTiling, path: str, job: FileJob) -> str:
             model = solid_model(drawn, job.unit_mm, job.prisms, job.solid)
             model.save(path)
             return f"wrote {name.name}: {model.summary()}"
-        case ".svg" | ".pdf" | ".lbrn2" | ".json" as suffix:
+        case ".svg" | ".pdf" | ".lbrn2" | ".gcode" | ".json" as suffix:
             tiling = drawn.design(job.unit_mm, name=name.stem).tessellate()
             written = tiling.export(path, job=None if suffix == ".json" else job.flat)
             product = written[0].product
             return f"wrote {name.name}" + (f": {product.summary()}" if product else "")
         case suffix:
-            raise OutputError(f"{name.name} has no suffix of ours", path, remedy=f"Use one of {', '.join(SUFFIXES)}.")
+            raise OutputError(
+                f"{name.name or 'this name'} has no suffix of ours", path, remedy=f"Use one of {', '.join(FORMATS)}."
+            )

@@ -49,7 +49,7 @@ settings.group = "p4"
 quiet()
 settings.clearance, settings.unit_mm = 0.3, 2.0
 prisms = bpy.ops.voronoi_tiles.solids()
-made = settings.solids
+made = module("showing").proved_solids(tiling())
 
 closed = []
 import bmesh
@@ -71,19 +71,40 @@ for mesh in module("showing").sources(tiling()).values():
     volumes.append(shape.calc_volume(signed=True))
     shape.free()
 files = {}
-for suffix in ("svg", "pdf", "lbrn2", "json", "toml", "3mf", "stl"):
+settings.feed, settings.power = 300.0, 800.0
+for suffix in ("svg", "pdf", "lbrn2", "gcode", "json", "toml", "3mf", "stl"):
     file = FOLDER / f"out.{suffix}"
     done = bpy.ops.voronoi_tiles.export(filepath=str(file))
     files[suffix] = file.stat().st_size
-try:
-    bpy.ops.voronoi_tiles.export(filepath=str(FOLDER / "out.dxf"))
-except RuntimeError as error:
-    refused = str(error)
+settings.unit_mm, settings.kerf = 25.4, 0.15
+bpy.ops.voronoi_tiles.export(filepath=str(FOLDER / "inch.toml"))
+bpy.ops.voronoi_tiles.export(filepath=str(FOLDER / "inch.svg"))
+settings.unit_mm, settings.kerf = 2.0, 0.0
+bpy.ops.wm.save_as_mainfile(filepath=str(FOLDER / "out.blend"))
+settings.sheet = "//sheet.svg"
+(FOLDER / "sheet.svg").write_text(
+    '<svg xmlns="http://www.w3.org/2000/svg" width="300mm" height="200mm" viewBox="0 0 300 200">'
+    '<path stroke="red" fill="none" d="M10 10H290"/><path stroke="red" fill="none" d="M290 10 200 190 10 10"/></svg>'
+)
+bpy.ops.voronoi_tiles.export(filepath="//filled.svg")
+files["sheet"] = (FOLDER / "filled.svg").stat().st_size
+settings.sheet = "//sheet.dxf"
+(FOLDER / "sheet.dxf").write_text("0\nSECTION\n0\nENDSEC\n0\nEOF\n")
+refused = []
+for name in ("out.dxf", "other.svg"):
+    try:
+        bpy.ops.voronoi_tiles.export(filepath=str(FOLDER / name))
+    except RuntimeError as error:
+        refused.append(str(error))
 bpy.ops.voronoi_tiles.remove()
 for item in list(bpy.data.objects):
     bpy.data.objects.remove(item)
-bpy.ops.voronoi_tiles.open(filepath=str(FOLDER / "out.toml"))
-opened = [tiling().voronoi_tiles.group, tiling().voronoi_tiles.a, tiling().voronoi_tiles.unit_mm, site().name]
+bpy.ops.voronoi_tiles.open(filepath="//out.toml")
+names = ("group", "a", "unit_mm", "loft", "height", "turn", "about", "layers")
+opened = [site().name]
+for name in names:
+    value = getattr(tiling().voronoi_tiles, name)
+    opened.append([*value] if name == "about" else value)
 
 # A library that is not there, an engine of another version, an old numpy on Windows.
 requirements.missing.cache_clear()

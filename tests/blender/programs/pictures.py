@@ -2,7 +2,7 @@
 
 import sys
 
-from session import FOLDER, answer, bpy, installed, quiet, tiling
+from session import FOLDER, answer, bpy, installed, module, quiet, tiling
 
 from mathutils import Vector
 
@@ -71,7 +71,7 @@ settings.columns, settings.rows, settings.height = 3, 3, 40.0
 settings.loft, settings.turn, settings.about = True, 90.0, (15.0, 14.0)
 quiet()
 bpy.ops.voronoi_tiles.solids()
-assert settings.solids
+assert module("showing").proved_solids(tiling())
 lifted(55.0)
 rendered("loft", (15, 5, 25), 440, 0.75)
 answer()
