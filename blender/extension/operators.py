@@ -10,7 +10,7 @@ from typing import Any
 import bpy
 import numpy as np
 from bpy.props import BoolProperty, EnumProperty, StringProperty
-from mathutils import Vector
+from mathutils import Matrix, Vector
 
 from voronoi_tiles.base.errors import DesignError, TouchingCopiesError, VoronoiTilesError
 from voronoi_tiles.blender.cubic_splines import coordinates
@@ -37,9 +37,6 @@ LARGER = 1.25
 
 TRIES = 12
 """How often; a count."""
-
-FLAT = 20
-"""How many times wider a proposed cell is than its tiles are high; a count: a starter's."""
 
 GROUP_ITEMS = [(name, name, f"{group.system} cell, {group.order} copies") for name, group in GROUPS.items()]
 
@@ -98,10 +95,9 @@ class VORONOI_TILES_OT_tile(_Operator):
             add_sites(there, chosen)
             rebuild(there)
             return
-        context.view_layer.update()
         tiling = new_tiling(context, self.group, chosen[0].name)
         add_sites(tiling, chosen)
-        _propose(context, tiling, chosen)
+        fit_cell(context, tiling)
         rebuild(tiling)
 
 
@@ -155,6 +151,18 @@ class VORONOI_TILES_OT_update(_OnTiling):
 
     def done(self, context: Any) -> None:
         rebuild(tiling_of(context.object))
+
+
+class VORONOI_TILES_OT_fit(_OnTiling):
+    """Choose a cell about what is drawn, in which copies keep apart, and move the group there"""
+
+    bl_idname = "voronoi_tiles.fit"
+    bl_label = "Fit Cell"
+
+    def done(self, context: Any) -> None:
+        tiling = tiling_of(context.object)
+        fit_cell(context, tiling)
+        rebuild(tiling)
 
 
 class VORONOI_TILES_OT_remove(_Operator):
@@ -296,21 +304,22 @@ def add_sites(tiling: Any, items: Iterable[Any]) -> None:
         item.voronoi_tiles.role, item.voronoi_tiles.of = "site", tiling
 
 
-def _propose(context: Any, tiling: Any, items: Iterable[Any]) -> None:
-    """A cell about what is drawn, in which its copies keep apart."""
+def fit_cell(context: Any, tiling: Any) -> None:
+    """Give a tiling a cell about what is drawn, in which its copies keep apart, where one is found."""
     settings = tiling.voronoi_tiles
-    frame = np.eye(4)
-    parts = [spline.points for item in items for spline in reading.splines(item, frame)]
+    context.view_layer.update()
+    parts = [spline.points for _, splines in reading.drawn_tiling(tiling).sites for spline in splines]
     points = np.concatenate([np.zeros(0, np.complex128), *parts])
-    if not len(points):
+    if not len(points) or not np.isfinite(points).all():
         return
     cell = proposed_cell(settings.group, points)
-    settings.live = False  # else each setting would build all anew
-    settings.height = cell.a / FLAT
     middle = complex(points.real.min() + points.real.max(), points.imag.min() + points.imag.max()) / 2
+    live, settings.live = settings.live, False  # else each setting would build all anew
+    frame = tiling.matrix_world.copy()
+    before = settings.a
     for _ in range(TRIES):
         settings.a, settings.b, settings.angle = cell.a, cell.b, cell.angle
-        tiling.location = (cell.origin.real, cell.origin.imag, 0.0)
+        tiling.matrix_world = frame @ Matrix.Translation((cell.origin.real, cell.origin.imag, 0.0))
         context.view_layer.update()
         try:
             reading.drawn_tiling(tiling).tiles()
@@ -321,7 +330,8 @@ def _propose(context: Any, tiling: Any, items: Iterable[Any]) -> None:
             break
         else:
             break
-    settings.live = True
+    settings.height *= settings.a / before
+    settings.live = live
 
 
 def draw_design(context: Any, name: str, design: OpenedDesign) -> Any:
@@ -379,6 +389,7 @@ CLASSES = (
     VORONOI_TILES_OT_starter,
     VORONOI_TILES_OT_open,
     VORONOI_TILES_OT_update,
+    VORONOI_TILES_OT_fit,
     VORONOI_TILES_OT_remove,
     VORONOI_TILES_OT_solids,
     VORONOI_TILES_OT_export,

@@ -81,6 +81,7 @@ def draw_tiling(layout: Any, tiling: Any) -> None:
         column.prop(settings, "b")
     if group.fixed_angle is None:
         column.prop(settings, "angle")
+    layout.operator("voronoi_tiles.fit")
     if any(site.object.type != "CURVE" for site in sites):
         column.prop(settings, "smoothing")
 

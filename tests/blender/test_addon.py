@@ -175,7 +175,7 @@ def test_all_kinds_of_drawings_are_read(extension: Extension) -> None:
 
 
 def test_the_panel_asks_for_what_the_group_needs(extension: Extension) -> None:
-    """Sides and angle by the group; solids and files are made, and sheets that are drawn are filled.
+    """Sides and angle by the group; a cell fits in each; solids and files are made, drawn sheets filled.
 
     A design that is opened brings its solid. What is missing is said, and not offered.
     """
@@ -183,6 +183,10 @@ def test_the_panel_asks_for_what_the_group_needs(extension: Extension) -> None:
     assert {"Tile", "Starter", "Open a Design"} <= set(found["nothing"])
     assert {"Proved", "a", "b", "Angle", "Make Solids", "Export Tiles"} <= set(found["oblique"])
     assert not {"b", "Angle"} & set(found["hexagonal"])
+    assert list(found["fitted"]) == list(vt.GROUPS)
+    for group, (message, proved, flat) in found["fitted"].items():
+        assert (message, proved) == ("", True), group
+        assert flat == pytest.approx(20.0)
     assert found["prisms"][0] == found["lofts"][0] == "FINISHED"
     assert found["prisms"][1].startswith("closed; ")
     assert all(closed and volume > 0 for closed, volume in found["closed"])

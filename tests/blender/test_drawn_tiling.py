@@ -109,16 +109,21 @@ def test_errors_name_the_object_and_the_stroke() -> None:
     assert "sites[" not in said
 
 
+@pytest.mark.parametrize("shape", [CURVE.points, np.array([-8 + 1j, 8 - 1j]), np.array([-6, -1 + 4j, 1 - 4j, 6])])
 @pytest.mark.parametrize("group", vt.GROUPS)
-def test_a_cell_is_proposed_about_what_is_drawn(group: str) -> None:
-    """As large as it needs, with its origin where a starter's is: tiles come of a drawing anywhere."""
-    points = 3.0 * CURVE.points + (500 - 200j)
+def test_a_cell_is_proposed_about_what_is_drawn(group: str, shape: Complexes) -> None:
+    """As large as it needs, with its origin where a starter's is: tiles come of a drawing anywhere.
+
+    Of one as well whose middle is its own centre of rotation.
+    """
+    points = 3.0 * shape + (500 - 200j)
     cell = proposed_cell(group, points)
     box = complex(np.ptp(points.real), np.ptp(points.imag))
     assert max(box.real, box.imag) < cell.a < 12 * max(box.real, box.imag)
     assert abs(points.mean() - cell.origin) < cell.a
     for grown in 1.25 ** np.arange(13):
-        origin = points.mean() + grown * (cell.origin - points.mean())
+        middle = (points.real.min() + points.real.max() + 1j * (points.imag.min() + points.imag.max())) / 2
+        origin = middle + grown * (cell.origin - middle)
         seen = DrawnSpline("poly", points - origin)
         try:
             tiles = DrawnTiling(group, cell.a * grown, cell.b * grown, cell.angle, (("Bird", (seen,)),)).tiles()

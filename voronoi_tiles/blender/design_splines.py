@@ -15,6 +15,7 @@ from voronoi_tiles.designs.design import Design
 from voronoi_tiles.designs.drawn_solid import Solid
 from voronoi_tiles.designs.schema import stroke
 from voronoi_tiles.designs.starters import starter
+from voronoi_tiles.vector.tessellation import tessellate
 
 ROOM = 1.1
 """How much larger a proposed cell is, relative to the drawing, than that of the starter; a factor."""
@@ -75,10 +76,14 @@ class ProposedCell(NamedTuple):
 
 
 def proposed_cell(group: str, points: Complexes) -> ProposedCell:
-    """A cell for what is drawn: as large and as far from the drawing as a starter's is from its largest site."""
+    """A cell for what is drawn: as large and as far from the drawing as a starter's is from its largest site.
+
+    Of those that lie beside rotation centres and mirrors: on them, copies of another drawing would touch in any cell.
+    """
     design = starter(group)
-    drawn = max((site.nodes for site in design.noded), key=lambda nodes: _extent(nodes)[1])
-    middle, size = _extent(drawn)
+    tiles = tessellate(design.noded, design.group, design.lattice)
+    beside = [site.nodes for site, tile in zip(design.noded, tiles, strict=True) if len(tile.symmetry) == 1]
+    middle, size = max(map(_extent, beside), key=lambda extent: extent[1])
     at, own = _extent(points)
     factor = ROOM * own / size if own > 0.0 else 1.0
     cell = opened(design)

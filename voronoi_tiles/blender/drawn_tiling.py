@@ -75,7 +75,7 @@ class DrawnTiling:
         if isinstance(error, TouchingCopiesError):
             place = f"({error.place.real:.4g}, {error.place.imag:.4g})"
             who = "its own copy" if error.site == error.other else f"a copy of {error.other}"
-            return f"{error.site} touches {who} at {place}: the marker is there. Move it away, or make the cell larger."
+            return f"{error.site} touches {who} at {place}: the marker is there. Move it away, or fit the cell."
         if isinstance(error, DesignError):
             where = re.match(r"sites\[(\d+)\](?:\.strokes\[(\d+)\])?", error.key or "")
             if where is not None:

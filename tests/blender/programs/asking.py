@@ -45,6 +45,16 @@ oblique = shown()
 settings.group = "p6"
 quiet()
 hexagonal = shown()
+fitted = {}
+for group in module("settings").GROUPS:
+    settings.group = group
+    bpy.ops.voronoi_tiles.fit()
+    fitted[group] = [settings.message, settings.proved, settings.a / settings.height]
+bpy.ops.voronoi_tiles.remove()
+for item in list(bpy.data.objects):
+    bpy.data.objects.remove(item)
+bpy.ops.voronoi_tiles.starter(group="p2")
+settings = tiling().voronoi_tiles
 settings.group = "p4"
 quiet()
 settings.clearance, settings.unit_mm = 0.3, 2.0
@@ -129,6 +139,7 @@ answer(
     nothing=nothing,
     oblique=oblique,
     hexagonal=hexagonal,
+    fitted=fitted,
     prisms=[*prisms, made],
     closed=closed,
     lofts=[*lofts],
