@@ -30,7 +30,7 @@ class VORONOI_TILES_PT_tiles(bpy.types.Panel):
         if not requirements.usable():
             say(layout, requirements.engine_missing(), "ERROR")
             return
-        from .settings import is_local, owner, tiling_of
+        from .settings import ELSEWHERE, is_local, owner, tiling_of
 
         say(layout, requirements.missing(), "ERROR")
         tiling = tiling_of(context.object)
@@ -46,7 +46,7 @@ class VORONOI_TILES_PT_tiles(bpy.types.Panel):
             row.operator("voronoi_tiles.open", text="Open")
             return
         if not is_local(tiling):
-            say(layout, ["This tiling is of another file: make it local, or open that file."], "LIBRARY_DATA_DIRECT")
+            say(layout, [f"{tiling.name} {ELSEWHERE}."], "LIBRARY_DATA_DIRECT")
             return
         draw_tiling(layout, tiling)
 

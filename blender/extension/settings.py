@@ -22,6 +22,11 @@ from voronoi_tiles.groups.wallpaper import GROUPS
 DRAWN = ("CURVE", "GPENCIL", "GREASEPENCIL")
 """The types of objects that can be sites; grease pencil is called otherwise before 4.3."""
 
+GROUP_ITEMS = [(name, name, f"{group.system} cell, {group.order} copies") for name, group in GROUPS.items()]
+
+ELSEWHERE = "is of another file: make it local, or open that file"
+"""What keeps an object from being changed, after its name."""
+
 
 def _changed(settings: Any, _context: Any) -> None:
     """The tiles are others: at once, so that what comes and goes is in the step of undo that follows."""
@@ -89,7 +94,7 @@ class VORONOI_TILES_Settings(bpy.types.PropertyGroup):
         "group": EnumProperty(
             name="Group",
             description="The wallpaper group that copies the sites over the plane",
-            items=[(name, name, f"{group.system} cell, {group.order} copies") for name, group in GROUPS.items()],
+            items=GROUP_ITEMS,
             default="p4",
             update=_changed,
         ),
