@@ -12,6 +12,9 @@ import numpy as np
 from voronoi_tiles.blender.drawn_splines import DrawnSpline, nurbs_knots
 from voronoi_tiles.blender.drawn_tiling import DrawnTiling, decimal
 
+BEZIER = 2
+"""What a stroke of a grease pencil has as its `curve_type` where it is a Bezier curve."""
+
 
 def drawn_tiling(tiling: Any) -> DrawnTiling:
     """What is drawn of a tiling; objects that are in no scene any more are left out."""
@@ -66,17 +69,39 @@ def splines(item: Any, frame: Any) -> Iterator[DrawnSpline]:
         yield from (_spline(spline, to_plane) for spline in item.data.splines if spline.point_count_v <= 1)
         return
     for layer in item.data.layers:
-        if layer.hide:
+        if _hidden(layer):
             continue
         own = to_plane @ np.array(getattr(layer, "matrix_local", None) or layer.matrix_layer, np.float64)
         old = hasattr(layer, "active_frame")  # before 4.3
         shown = layer.active_frame if old else layer.current_frame()
         if shown is None:
             continue
-        for stroke in shown.strokes if old else shown.drawing.strokes:
-            name = "co" if old else "position"
-            points = np.array([getattr(point, name) for point in stroke.points], np.float64).reshape(-1, 3)
-            yield DrawnSpline("freehand", _plane(points, own), bool(stroke.use_cyclic if old else stroke.cyclic))
+        if not old:
+            yield from _strokes(shown.drawing, own)
+            continue
+        for stroke in shown.strokes:
+            points = _plane(_read(stroke.points, "co", 3), own)
+            yield DrawnSpline("freehand", points, bool(stroke.use_cyclic))
+
+
+def _hidden(layer: Any) -> bool:
+    """Whether a layer of a grease pencil, or a group that it is in, is hidden."""
+    return layer.hide or (getattr(layer, "parent_group", None) is not None and _hidden(layer.parent_group))
+
+
+def _strokes(drawing: Any, to_plane: Any) -> Iterator[DrawnSpline]:
+    """The strokes of a drawing of a grease pencil; read all at once, for there are many points."""
+    if not drawing.strokes:
+        return
+    there = filter(None, map(drawing.attributes.get, ("position", "handle_left", "handle_right")))
+    read = [_plane(_read(attribute.data, "vector", 3), to_plane) for attribute in there]
+    ends = [offset.value for offset in drawing.curve_offsets]
+    for stroke, a, b in zip(drawing.strokes, ends[:-1], ends[1:], strict=True):
+        parts = [points[a:b] for points in read]
+        if getattr(stroke, "curve_type", None) == BEZIER and len(parts) == 3:
+            yield DrawnSpline("bezier", parts[0], bool(stroke.cyclic), *parts[1:])
+        else:
+            yield DrawnSpline("freehand", parts[0], bool(stroke.cyclic))
 
 
 def _spline(spline: Any, to_plane: Any) -> DrawnSpline:

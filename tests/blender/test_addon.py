@@ -159,7 +159,10 @@ def test_copies_that_touch_are_marked_and_the_tile_stays(extension: Extension) -
 
 
 def test_all_kinds_of_drawings_are_read(extension: Extension) -> None:
-    """NURBS as Blender draws them, grease pencil, objects that are moved and turned; one that is deleted goes."""
+    """NURBS as Blender draws them, grease pencil, its Bezier strokes exactly, objects that are moved and turned.
+
+    Hidden layers are left out, and one that is deleted goes.
+    """
     found, _ = extension.run("kinds")
     for away, ends in found["nurbs"].values():
         assert away < 1e-3  # of Blender's own chords; 4.2 cuts corners by 4e-4
@@ -167,6 +170,8 @@ def test_all_kinds_of_drawings_are_read(extension: Extension) -> None:
     assert found["tile"] == ["", True, ["hand", "line"]]
     assert np.array(found["seen"]) == pytest.approx(np.array([[40.0, 9.0], [24.0, 9.0]]), abs=1e-5)
     assert found["strokes"] == 100
+    if found["bezier"]:
+        assert found["bezier"] == ["bezier", pytest.approx(2**0.5), pytest.approx(8**0.5), 100, 0]
     assert found["resized"]
     assert found["left"] == ["", True]
     assert found["tiles"] == ["hand"]

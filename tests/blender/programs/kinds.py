@@ -71,6 +71,23 @@ for item in (hand, line):
     item.select_set(True)
 bpy.context.view_layer.objects.active = hand
 bpy.ops.voronoi_tiles.tile(group="pmg")
+# A stroke of Bezier curves, since 4.3; a layer in a hidden group.
+bezier = []
+if hasattr(frame, "drawing"):
+    other = bpy.data.objects.new("other", pencil.copy())
+    bpy.context.scene.collection.objects.link(other)
+    drawing = other.data.layers[0].frames[0].drawing
+    drawing.set_types(type="BEZIER", indices=[0])
+    for k, name in enumerate(("handle_left", "handle_right")):
+        made = drawing.attributes.get(name) or drawing.attributes.new(name, "FLOAT_VECTOR", "POINT")
+        made.data.foreach_set("vector", np.array(row, np.float32).ravel() + np.float32(k + 1))
+    (read,) = reading.splines(other, np.eye(4))
+    bezier = [read.kind, *(abs(part - read.points).max() for part in (read.left, read.right)), len(read.points)]
+    group = other.data.layer_groups.new("group")
+    other.data.layers.move_to_layer_group(other.data.layers[0], group)
+    group.hide = True
+    bezier.append(len(list(reading.splines(other, np.eye(4)))))
+    bpy.data.objects.remove(other)
 settings = tiling().voronoi_tiles
 first = [settings.message, settings.proved, [site.object.name for site in settings.sites]]
 cell = [settings.a, settings.b]
@@ -101,6 +118,7 @@ answer(
     cell=cell,
     seen=[[z.real, z.imag] for z in seen],
     resized=sizes != moved,
+    bezier=bezier,
     strokes=len(drawn["hand"][0].points),
     left=message,
     tiles=tiles,
