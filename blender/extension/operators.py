@@ -228,7 +228,7 @@ def file_job(settings: Any, suffix: str) -> FileJob:
         prisms, solid = solid_jobs(settings)
     elif suffix != ".toml":
         names = ("kerf", "feed", "power") if suffix == ".gcode" else ("kerf",)
-        cuts = {name: value for name in names if (value := decimal(getattr(settings, name)))}
+        cuts: dict[str, Any] = {name: value for name in names if (value := decimal(getattr(settings, name)))}
         if settings.sheet:
             cuts["sheet"] = bpy.path.abspath(settings.sheet)
         flat = Job(**cuts) if cuts else None
