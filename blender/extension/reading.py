@@ -12,6 +12,8 @@ import numpy as np
 from voronoi_tiles.blender.drawn_splines import DrawnSpline, nurbs_knots
 from voronoi_tiles.blender.drawn_tiling import DrawnTiling, decimal
 
+from .settings import DRAWN
+
 BEZIER = 2
 """What a stroke of a grease pencil has as its `curve_type` where it is a Bezier curve."""
 
@@ -33,13 +35,13 @@ def drawn_tiling(tiling: Any) -> DrawnTiling:
 def drawn_sites(tiling: Any) -> list[Any]:
     """The sites whose objects are in a scene: those that have been deleted are kept by their tiling alone.
 
-    Those that have gone to another tiling are left out.
+    Those that have gone to another tiling, or have been converted to meshes, are left out.
     """
-    return [
-        site
-        for site in tiling.voronoi_tiles.sites
-        if site.object and site.object.users_scene and site.object.voronoi_tiles.of == tiling
-    ]
+    return [site for site in tiling.voronoi_tiles.sites if site.object and _is_drawn(tiling, site.object)]
+
+
+def _is_drawn(tiling: Any, item: Any) -> bool:
+    return item.type in DRAWN and item.voronoi_tiles.of == tiling and bool(item.users_scene)
 
 
 def _inverse(matrix: Any) -> Any:

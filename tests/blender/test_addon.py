@@ -135,6 +135,7 @@ def test_what_is_shown_outlasts_what_users_do_to_it(extension: Extension) -> Non
     assert [said.rpartition(": ")[2] for said in found["no place"][4:]] == ["number beyond 1e+12."] * 2 + [""]
     for key in ("back", "mended", "marked"):
         assert found[key], key
+    assert found["converted"] == found["copy of the empty"]
     assert found["renamed"] == ["", True]
     assert found["lifted"] == [True]
     assert found["called"] == [True] * (1 + 24)

@@ -131,6 +131,10 @@ found["mended"] = shown(tiling()) == before
 tiling().voronoi_tiles.a = 20.0
 quiet()
 found["marked"] = not role(tiling(), "marker")[0].hide_viewport
+chosen(site())
+bpy.ops.object.convert(target="MESH")
+quiet()
+found["converted"] = tiling().voronoi_tiles.message
 
 # New names: tiles follow as before, and are called so with Update; copies are called as what they are.
 emptied()
