@@ -82,8 +82,13 @@ def draw_tiling(layout: Any, tiling: Any) -> None:
     if group.fixed_angle is None:
         column.prop(settings, "angle")
     layout.operator("voronoi_tiles.fit")
-    if any(site.object.type != "CURVE" for site in sites):
+    if any(is_smoothed(site.object) for site in sites):
         column.prop(settings, "smoothing")
+
+
+def is_smoothed(item: Any) -> bool:
+    """Whether a site is drawn by hand, or has NURBS."""
+    return item.type != "CURVE" or any(spline.type == "NURBS" for spline in item.data.splines)
 
 
 class _Part(bpy.types.Panel):

@@ -189,6 +189,7 @@ def test_the_panel_asks_for_what_the_group_needs(extension: Extension) -> None:
     assert {"Tile", "Starter", "Open a Design"} <= set(found["nothing"])
     assert {"Proved", "a", "b", "Angle", "Make Solids", "Export Tiles"} <= set(found["oblique"])
     assert not {"b", "Angle"} & set(found["hexagonal"])
+    assert ["Smoothing" in found[key] for key in ("oblique", "smoothed")] == [False, True]
     assert list(found["fitted"]) == list(vt.GROUPS)
     for group, (message, proved, flat) in found["fitted"].items():
         assert (message, proved) == ("", True), group

@@ -42,6 +42,9 @@ nothing = shown()
 bpy.ops.voronoi_tiles.starter(group="p2")
 settings = tiling().voronoi_tiles
 oblique = shown()
+site().data.splines.new("NURBS")
+smoothed = shown()
+site().data.splines.remove(site().data.splines[1])
 settings.group = "p6"
 quiet()
 hexagonal = shown()
@@ -138,6 +141,7 @@ requirements.engine_missing.cache_clear()
 answer(
     nothing=nothing,
     oblique=oblique,
+    smoothed=smoothed,
     hexagonal=hexagonal,
     fitted=fitted,
     prisms=[*prisms, made],
