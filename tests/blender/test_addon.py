@@ -207,7 +207,7 @@ def test_the_panel_asks_for_what_the_group_needs(extension: Extension) -> None:
         assert what in said
         assert "Traceback" not in said
     assert not {"out.dxf", "other.svg"} & {file.name for file in folder.iterdir()}
-    assert found["opened"] == ["fish", "p4", 120.0, 1.0, True, 40.0, 10.0, [30.0, 30.0], 21]
+    assert found["opened"] == ["fish", "p4", 120.0, 1.0, True, 40.0, 10.0, [30.0, 30.0], 5]
     assert found["lacking"][0].startswith("No solids")
     assert found["solids"] is False
     assert found["other"][0].startswith("voronoi_tiles 0.0.1 is loaded")

@@ -74,7 +74,7 @@ for mesh in module("showing").sources(tiling()).values():
         [all(edge.is_manifold and edge.is_contiguous for edge in shape.edges), shape.calc_volume(signed=True)]
     )
     shape.free()
-settings.loft, settings.turn, settings.height, settings.about = True, 10.0, 20.0, (15.0, 15.0)
+settings.loft, settings.turn, settings.height, settings.about, settings.layers = True, 10.0, 20.0, (15.0, 15.0), 5
 quiet()
 lofts = bpy.ops.voronoi_tiles.solids()
 volumes = []
