@@ -61,7 +61,9 @@ class Crowd:
                             )
         mesh = meshes[site]
         box = (mesh.vertices.min(axis=0), mesh.vertices.max(axis=0))
-        return cls(solid_of(mesh), float(np.ptp(mesh.vertices, axis=0).max()), box, tuple(others))
+        # What is met is mostly one of the nearest.
+        nearest = tuple(sorted(others, key=lambda other: abs(other[2])))
+        return cls(solid_of(mesh), float(np.ptp(mesh.vertices, axis=0).max()), box, nearest)
 
     def behind(self, degrees: float | None) -> list[tuple[Any, Box]]:
         """The copies that stand when the tile goes in, where rows follow each other in a direction; all with None."""
@@ -70,9 +72,9 @@ class Crowd:
         back = cmath.rect(1, -np.radians(degrees))
         return [(solid, box) for solid, box, away in self.others if (away * back).real <= 1e-7 * self.size]
 
-    def common(self, standing: list[tuple[Any, Box]], shift: Floats) -> float:
-        """What the tile, moved, has in common with any of those that stand, at most; relative to its volume."""
+    def meets(self, standing: list[tuple[Any, Box]], shift: Floats, more_than: float) -> bool:
+        """Whether the tile, moved, has more than so much of its volume in common with one of those that stand."""
         low, high = self.box[0] + shift, self.box[1] + shift
-        own = self.own.translate(tuple(shift))
-        near = [solid for solid, box in standing if (box[0] < high).all() and (box[1] > low).all()]
-        return max((float((own ^ solid).volume()) for solid in near), default=0.0) / float(self.own.volume())
+        own, limit = self.own.translate(tuple(shift)), more_than * float(self.own.volume())
+        near = (solid for solid, box in standing if (box[0] < high).all() and (box[1] > low).all())
+        return any(float((own ^ solid).volume()) > limit for solid in near)
