@@ -81,9 +81,9 @@ test: $(INSTALLED_DEV)
 test-slow: $(INSTALLED_DEV)
 	$(VENV)/bin/python -m pytest -m slow -n auto --dist worksteal $(PYTEST)
 
-# What the page does in a browser is the same whatever Python serves it, Blender has its own; the wheel is one for all; and numpy and the kernels
-# compute the same: of that each Python takes other cases.
-ANOTHER := $(patsubst %,--ignore-glob=*/test_%,browser* page_* accessibility* wheel* addon*) --thin
+# What the page does in a browser is the same whatever Python serves it, Blender has its own; the wheel is one for all, and so are the sources;
+# and numpy and the kernels compute the same: of that each Python takes other cases. Asserts are not rewritten to say more: of a failure the test itself is run again.
+ANOTHER := $(patsubst %,--ignore-glob=*/test_%,browser* page_* accessibility* wheel* addon* layering*) --thin --assert=plain
 
 # $(call each-python,TARGET): made for every other Python that is here, in an environment of its own.
 define each-python

@@ -34,15 +34,18 @@ NUMERIC = {
     "blender",
     "crosscheck",
     "fabrication",
+    "gradients",
     "groups",
     "paths",
     "pictures",
+    "preflight",
     "raster",
     "solid",
     "tiling",
     "vector",
-} | {f"test_{name}.py" for name in ("dxf", "gallery", "paper", "readers")}
-"""Folders and files whose tests are of what numpy, shapely and the kernels compute, the same on every Python."""
+} | {f"test_{name}.py" for name in ("documentation", "dxf", "gallery", "paper", "readers")}
+"""Folders and files whose tests are of what numpy, shapely and the kernels compute, the same on every Python; and of
+the documentation's pages, whose commands the tests of the command line have in short."""
 
 _LEFT_OUT = pytest.StashKey[Counter[str]]()
 """How many "slow" tests and "other" cases are not run."""
