@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         OutputError,
         ProofError,
         RenderError,
+        SchedulerError,
         TouchingCopiesError,
         UnknownNameError,
         VoronoiTilesError,
@@ -127,6 +128,7 @@ __all__ = [
     "RenderError",
     "RenderOptions",
     "Rendering",
+    "SchedulerError",
     "Shape",
     "ShapeGradient",
     "Site",
@@ -172,7 +174,7 @@ __all__ = [
 _HOMES = {
     "voronoi_tiles.base.errors": (
         "ArgumentError CheckError DesignError MissingLibraryError OutputError ProofError RenderError "
-        "TouchingCopiesError UnknownNameError VoronoiTilesError"
+        "SchedulerError TouchingCopiesError UnknownNameError VoronoiTilesError"
     ),
     "voronoi_tiles.base.maps": "Isometry Placement",
     "voronoi_tiles.base.operations": "Operation",

@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[2]
 
 RANKS = (
     ("base",),
-    ("groups", "paths"),
+    ("groups", "parallel", "paths"),
     ("formats",),
     ("designs",),
     ("vector", "raster"),

@@ -149,6 +149,10 @@ class RenderError(_ExplainedError, RuntimeError):
     exit_code: ClassVar[int] = 1
 
 
+class SchedulerError(_ExplainedError, ConnectionError):
+    """A scheduler of Dask's that cannot be used; `message` and `remedy` are those of DesignError."""
+
+
 class OutputError(_ExplainedError, OSError):
     """A file that could not be written; `path` is the file, which is as it was before.
 
