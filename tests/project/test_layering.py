@@ -21,7 +21,7 @@ RANKS = (
     ("fabrication", "preflight", "crosscheck", "pictures", "gradients"),
     ("tile",),
     ("tiling",),
-    ("solid",),
+    ("escherization", "solid"),
     ("blender", "inkscape", "studio"),
     ("cli",),
 )

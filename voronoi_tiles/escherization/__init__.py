@@ -1,0 +1,1 @@
+"""Designs whose tiles come near to a given outline."""
