@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from voronoi_tiles.designs.proposals import placed
     from voronoi_tiles.designs.site import NodedSite
     from voronoi_tiles.designs.starters import starter, starter_text
+    from voronoi_tiles.escherization.fits import Fit, fit
     from voronoi_tiles.fabrication.coupon import coupon
     from voronoi_tiles.fabrication.exporting import Exported
     from voronoi_tiles.fabrication.inventory import Inventory
@@ -96,6 +97,7 @@ __all__ = [
     "DrawingError",
     "Exported",
     "Figure",
+    "Fit",
     "Finding",
     "Frame",
     "Inventory",
@@ -157,6 +159,7 @@ __all__ = [
     "coupon",
     "drawing",
     "extrude",
+    "fit",
     "hermite",
     "path",
     "placed",
@@ -189,6 +192,7 @@ _HOMES = {
     "voronoi_tiles.designs.proposals": "placed",
     "voronoi_tiles.designs.site": "NodedSite",
     "voronoi_tiles.designs.starters": "starter starter_text",
+    "voronoi_tiles.escherization.fits": "Fit fit",
     "voronoi_tiles.fabrication.coupon": "coupon",
     "voronoi_tiles.fabrication.exporting": "Exported",
     "voronoi_tiles.fabrication.inventory": "Inventory",

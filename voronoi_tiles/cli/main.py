@@ -25,6 +25,7 @@ COMMANDS: Final = (
     "completion",
     "coupon",
     "export",
+    "fit",
     "info",
     "inkscape",
     "new",

@@ -1,1 +1,1 @@
-"""Designs whose tiles come near to a given outline."""
+"""From an outline to designs whose exact tiles come near to it: Escherization."""

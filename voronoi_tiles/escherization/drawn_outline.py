@@ -1,0 +1,157 @@
+"""The outline of a drawing: the closed line around all else, and what is drawn within."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass, replace
+from typing import Final, NamedTuple
+
+import numpy as np
+import shapely
+from shapely.geometry import Polygon
+
+from voronoi_tiles.base.arrays import plane
+from voronoi_tiles.base.errors import ArgumentError
+from voronoi_tiles.base.text import counted
+from voronoi_tiles.designs.art import GUIDE
+from voronoi_tiles.escherization.silhouette import Silhouette
+from voronoi_tiles.formats.reading import DrawingError, ReadDrawing, Shape, read_drawing
+from voronoi_tiles.paths.conversion import to_lines
+from voronoi_tiles.paths.paths import Paths
+
+_FLAT: Final = 1e-4
+"""How far chords may be from the outline's curves; relative to the larger side of the drawing."""
+
+_SPECK: Final = 1e-3
+"""What lies outside of the outline and has a smaller area than this is no second outline; relative to the first."""
+
+_PIXELS: Final = (b"\x89PNG", b"\xff\xd8\xff", b"GIF8", b"BM", b"RIFF", b"II*\0", b"MM\0*")
+"""How files of pixels begin: PNG, JPEG, GIF, BMP, WebP, TIFF."""
+
+
+@dataclass(frozen=True, eq=False)
+class DrawnOutline:
+    """The silhouette of a drawing, in its millimetres, and the drawing of all else, whose shapes are art.
+
+    `name` is that of the file without its suffix; `notes` are sentences on what was taken for what.
+    """
+
+    name: str
+    silhouette: Silhouette
+    rest: ReadDrawing
+    notes: tuple[str, ...]
+
+
+class _Contour(NamedTuple):
+    """A path of a shape, by their numbers, as a polygon; `closed` is whether it is drawn closed, or filled."""
+
+    shape: int
+    path: int
+    polygon: Polygon
+    closed: bool
+    ends: float
+
+
+def read_outline(path: str | os.PathLike[str], *, element: str | None = None) -> DrawnOutline:
+    """Read the outline of an SVG or DXF file: of its closed lines that of the largest area.
+
+    With `element` it is looked for in what has that id (SVG) or handle (DXF) alone. Lines within it, holes of its shape
+    too, are art; a second closed line beside it is refused. Raises DrawingError.
+    """
+    name = os.fspath(path)
+    _refuse_pixels(name)
+    drawing = read_drawing(name)
+    shapes = [shape for shape in drawing.shapes if GUIDE not in shape.layer.casefold() and len(shape.paths)]
+    sources = {shape.source for shape in read_drawing(name, element=element).shapes} if element else None
+    contours = _contours(shapes, name)
+    candidates = [each for each in contours if sources is None or shapes[each.shape].source in sources]
+    chosen = max((each for each in candidates if each.closed), key=lambda each: each.polygon.area, default=None)
+    longest = max(candidates, key=lambda each: _extent(each.polygon), default=None)
+    if longest is None:
+        raise DrawingError("nothing is drawn", file=name, remedy="Draw one closed line around the shape.")
+    if chosen is None or (not longest.closed and _extent(longest.polygon) > _extent(chosen.polygon)):
+        raise DrawingError(
+            f"the outline is open: the ends of {shapes[longest.shape].source} are {longest.ends:.4g} mm apart",
+            file=name,
+            remedy="Close its path.",
+        )
+    if sources is None:
+        _refuse_second(chosen, contours, shapes, name)
+    try:
+        silhouette = Silhouette.of(chosen.polygon)
+    except ArgumentError as error:
+        message = error.message.replace("`outline`", f"the outline, {shapes[chosen.shape].source},")
+        raise DrawingError(message, file=name, remedy=error.remedy) from None
+    rest, holes = _without(shapes, chosen)
+    notes = [f"{name}: {counted(holes, 'hole')} of the outline become art: a tile has none"] if holes else []
+    stem = os.path.splitext(os.path.basename(name))[0]  # noqa: PTH119, PTH122 - any name
+    return DrawnOutline(stem or "outline", silhouette, replace(drawing, shapes=tuple(rest)), tuple(notes))
+
+
+def _refuse_pixels(name: str) -> None:
+    """Refuse a file of pixels, with what to do. A file that cannot be read is refused by the reader."""
+    try:
+        with open(name, "rb") as file:  # noqa: PTH123 - any name
+            head = file.read(8)
+    except (OSError, ValueError):
+        return
+    if head.startswith(_PIXELS):
+        raise DrawingError(
+            "a picture of pixels has no outline",
+            file=name,
+            remedy="Trace it first, in Inkscape by Path > Trace Bitmap, and save the outline as SVG.",
+        )
+
+
+def _contours(shapes: list[Shape], name: str) -> list[_Contour]:
+    """All lines of shapes that enclose something."""
+    if not shapes:
+        return []
+    left, bottom, right, top = Paths.concatenate([shape.paths for shape in shapes]).bounds
+    accuracy = _FLAT * max(right - left, top - bottom)
+    if not accuracy > 0.0:
+        raise DrawingError("what is drawn has no size", file=name, remedy="Draw one closed line around the shape.")
+    found = []
+    for number, shape in enumerate(shapes):
+        lines = to_lines(shape.paths, accuracy=accuracy)
+        for k in range(len(lines)):
+            points = np.append(
+                lines.start[lines.offsets[k] : lines.offsets[k + 1]], lines.end[lines.offsets[k + 1] - 1]
+            )
+            if len(points) >= 4:
+                ends = float(abs(points[-1] - points[0]))
+                closed = bool(lines.closed[k]) or shape.fill is not None or ends <= accuracy
+                found.append(_Contour(number, k, Polygon(plane(points)), closed, ends))
+    return found
+
+
+def _extent(polygon: Polygon) -> float:
+    """The larger side of the rectangle around a polygon."""
+    left, bottom, right, top = polygon.bounds
+    return float(max(right - left, top - bottom))
+
+
+def _refuse_second(chosen: _Contour, contours: list[_Contour], shapes: list[Shape], name: str) -> None:
+    """Refuse another closed line that is not within the outline."""
+    outline = chosen.polygon if chosen.polygon.is_valid else chosen.polygon.buffer(0)
+    for other in contours:
+        if other is chosen or not other.closed or other.polygon.area <= _SPECK * chosen.polygon.area:
+            continue
+        if not outline.covers(shapely.point_on_surface(other.polygon)):
+            raise DrawingError(
+                f"there are two outlines beside each other, {shapes[chosen.shape].source} and "
+                f"{shapes[other.shape].source}",
+                file=name,
+                remedy="Name the one to fit by its id, --element ID, or take the other out.",
+            )
+
+
+def _without(shapes: list[Shape], chosen: _Contour) -> tuple[list[Shape], int]:
+    """The shapes but the outline, and how many of its shape's other paths are drawn as lines of their own."""
+    shape = shapes[chosen.shape]
+    others = np.delete(np.arange(len(shape.paths)), chosen.path)
+    rest = [each for each in shapes if each is not shape]
+    if len(others):
+        ink = shape.stroke or shape.fill or "#000000"
+        rest.insert(chosen.shape, replace(shape, paths=shape.paths.take(others), fill=None, stroke=ink))
+    return rest, len(others)

@@ -1,0 +1,81 @@
+"""Strokes of few corners whose tile is that of a stroke of many, within a distance."""
+
+from __future__ import annotations
+
+from typing import Final
+
+import numpy as np
+import shapely
+from shapely.geometry import LinearRing, Polygon
+
+from voronoi_tiles.base.arrays import plane
+from voronoi_tiles.designs.design import Design
+from voronoi_tiles.escherization.closed_design import closed_design, corners_of, tiled
+from voronoi_tiles.escherization.outline_distance import largest_distance, towards
+from voronoi_tiles.tiling import Tiling
+
+_TOLERANCES: Final = (0.06, 0.04, 0.03, 0.02, 0.014, 0.01, 0.007, 0.005, 0.0035)
+"""How far corners that are left out lie from the stroke, the most first; relative to the size."""
+
+_STEPS: Final = 6
+"""How many steps of least squares a stroke is led by; a count."""
+
+_SAMPLES: Final = 400
+"""At how many points of the tile its outline is compared; a count."""
+
+DISTANCE_STEP: Final = 4e-3
+"""The step at which distances of outlines are sampled; relative to the size."""
+
+
+def fewer_corners(tiling: Tiling, size: float, within: float) -> Tiling | None:
+    """The tiling of a stroke of fewer corners, its tile nowhere further than `within` from that of the whole one.
+
+    The corners that are left are moved so that the tile comes as near as least squares of its distances along the
+    normals lead, by the tile's gradient; the cell stays. None where no stroke of fewer corners is near enough.
+    """
+    accuracy = min(1e-4 * size, 0.1 * within)
+    wanted: LinearRing = tiling[0].to_shapely(accuracy=accuracy).exterior
+    whole = tiling.design
+    corners = corners_of(whole)
+    for tolerance in _TOLERANCES:
+        simple = Polygon(plane(corners)).simplify(tolerance * size).exterior
+        fewer = shapely.get_coordinates(simple)[:-1] @ np.array([1.0, 1j])
+        if not 3 <= len(fewer) < len(corners):
+            continue
+        led = _led(closed_design(whole.group, whole.cell, fewer, whole.name, size), wanted)
+        found = (
+            None if led is None else tiled(closed_design(whole.group, whole.cell, corners_of(led), whole.name, size))
+        )
+        if found is None:
+            continue
+        ring = found[0].to_shapely(accuracy=accuracy).exterior
+        if largest_distance(ring, wanted, DISTANCE_STEP * size) <= within:
+            return found
+    return None
+
+
+def _led(design: Design, wanted: LinearRing) -> Design | None:
+    """A design led towards an outline by its stroke's corners (Levenberg, Marquardt); None without a tile."""
+    tiling = tiled(design)
+    if tiling is None:
+        return None
+    gradient = tiling.shape_gradient("site")
+    points = gradient[0].along(_SAMPLES)
+    away = towards(points.place, points.normal, wanted)
+    damping = 1e-2
+    for _ in range(_STEPS):
+        scale = float(np.sqrt((points.velocity**2).sum(axis=0).mean()))
+        count = len(gradient.parameters)
+        matrix = np.vstack((points.velocity, np.sqrt(damping) * scale * np.eye(count)))
+        step, *_ = np.linalg.lstsq(matrix, np.concatenate((away, np.zeros(count))), rcond=None)
+        stepped = tiled(gradient.stepped(step))
+        damping *= 10.0
+        if stepped is None:
+            continue
+        new_gradient = stepped.shape_gradient("site")
+        new_points = new_gradient[0].along(_SAMPLES)
+        new_away = towards(new_points.place, new_points.normal, wanted)
+        if new_away @ new_away < away @ away:
+            tiling, gradient, points, away = stepped, new_gradient, new_points, new_away
+            damping *= 0.03
+    return tiling.design

@@ -1,0 +1,222 @@
+"""A folder of fits: designs with their art, pictures, a table and a contact sheet."""
+
+from __future__ import annotations
+
+import cmath
+import csv
+import io
+import math
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Final
+
+import numpy as np
+import shapely
+from shapely.geometry import LinearRing
+
+from voronoi_tiles.base.arrays import Complexes, plane
+from voronoi_tiles.base.errors import OutputError
+from voronoi_tiles.base.files import output_error, write_whole
+from voronoi_tiles.designs.art import GUIDE, Art
+from voronoi_tiles.designs.design import Design
+from voronoi_tiles.designs.drawn_site import Site
+from voronoi_tiles.escherization.carried_art import CarriedArt, carried_art
+from voronoi_tiles.escherization.carrying import Carrying
+from voronoi_tiles.escherization.drawn_outline import DrawnOutline
+from voronoi_tiles.escherization.fits import Fit
+from voronoi_tiles.formats.reading import drawing_of
+from voronoi_tiles.paths.paths import Paths
+from voronoi_tiles.pictures.contact_sheet import (
+    COPY_FILL,
+    INK,
+    SITE_INK,
+    TILE_FILL,
+    ContactSheet,
+    DrawnPaths,
+    SheetPicture,
+)
+from voronoi_tiles.pictures.rendering import render
+
+TABLE: Final = "fits.csv"
+SHEETS: Final = ("sheet.html", "sheet.png")
+COLUMNS: Final = (
+    "file", "group", "overlap", "bound", "distance_mm", "corners", "neighbours", "width_mm", "height_mm"
+)  # fmt: skip
+
+_PICTURE: Final = 800
+"""The longer side of a design's picture; pixels."""
+
+_AROUND: Final = 3.5
+"""The side of what it shows; relative to the larger side of the tile."""
+
+_SAMPLES: Final = 0.02
+"""The distance of the points of the outline whose displacement is carried; relative to its size."""
+
+_GIVEN: Final = "#2060c0"
+"""The colour of the given outline on the contact sheet."""
+
+
+def write_fits(
+    folder: str,
+    fits: Sequence[Fit],
+    source: str,
+    drawn: DrawnOutline,
+    scale: float,
+    progress: Callable[[float, float], None] | None = None,
+) -> tuple[str, ...]:
+    """Write fits of a drawing's outline, all or none, into a new or an empty folder; sentences on their art.
+
+    `source` is the drawing's name, `scale` how many times as large as drawn the outline is. Raises OutputError for a
+    folder that holds anything, and what cannot be written.
+    """
+    refuse_folder(folder)
+    path = Path(folder)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        made = Path(tempfile.mkdtemp(prefix=f".{path.name}-", dir=path.parent))
+    except (OSError, ValueError) as error:
+        raise output_error(folder or repr(folder), error) from error
+    try:
+        made.chmod(0o777 & ~_umask())
+        notes = _write_all(made, fits, source, drawn, scale, progress)
+        if path.exists():
+            path.rmdir()
+        made.rename(path)
+    except OSError as error:
+        raise output_error(folder, error) from error
+    finally:
+        shutil.rmtree(made, ignore_errors=True)
+    return notes
+
+
+def refuse_folder(folder: str) -> None:
+    """Raise OutputError for a folder that holds anything, and for what is none."""
+    path = Path(folder)
+    try:
+        taken = path.exists() and (not path.is_dir() or any(path.iterdir()))
+    except (OSError, ValueError) as error:
+        raise output_error(folder or repr(folder), error) from error
+    if taken:
+        raise OutputError(f"{folder} exists already", path=folder, remedy="Give a folder that is new, or empty.")
+
+
+def _umask() -> int:
+    """What the process takes from the rights of new files."""
+    mask = os.umask(0o022)
+    os.umask(mask)
+    return mask
+
+
+def _write_all(
+    folder: Path,
+    fits: Sequence[Fit],
+    source: str,
+    drawn: DrawnOutline,
+    scale: float,
+    progress: Callable[[float, float], None] | None,
+) -> tuple[str, ...]:
+    """Write all files into a folder of their own."""
+    notes, pictures, rows = [], [], []
+    for number, each in enumerate(fits, 1):
+        stem = f"{number:0{len(str(len(fits)))}d}-{each.group}"
+        design, art = _with_art(each, folder, f"{stem}-art.svg", source, drawn, scale)
+        notes += [note for note in (art.notes if art else ()) if note not in notes]
+        design.save(folder / f"{stem}.toml")
+        overlays = ("art",) if design.art[0] is not None else ()
+        region = _square(each, _AROUND)
+        render(design, folder / f"{stem}.png", size=_PICTURE, region=region, overlay=overlays, renderer="cpu")
+        pictures.append(_picture(each, design, art, stem))
+        rows.append(_row(each, f"{stem}.toml"))
+        if progress is not None:
+            progress(number, len(fits))
+    table = io.StringIO()
+    writer = csv.writer(table, lineterminator="\n")
+    writer.writerows((COLUMNS, *rows))
+    write_whole(folder / TABLE, table.getvalue().encode())
+    sheet = ContactSheet(tuple(pictures), f"Tiles near to {os.path.basename(source)}")  # noqa: PTH119 - any name
+    for name in SHEETS:
+        sheet.save(folder / name)
+    return tuple(notes)
+
+
+def _row(fit: Fit, file: str) -> tuple[object, ...]:
+    """A row of the table."""
+    left, bottom, right, top = fit.tiling[0].bounds
+    return (
+        file,
+        fit.group,
+        f"{fit.overlap:.5f}",
+        f"{fit.bound:.5f}",
+        f"{fit.distance:.4f}",
+        fit.corners,
+        fit.neighbours,
+        f"{right - left:.3f}",
+        f"{top - bottom:.3f}",
+    )
+
+
+def _with_art(
+    fit: Fit, folder: Path, file: str, source: str, drawn: DrawnOutline, scale: float
+) -> tuple[Design, CarriedArt | None]:
+    """The design of a fit with what else is drawn, carried to the tile and written to a file."""
+    if not drawn.rest.shapes:
+        return fit.design, None
+    given, size = fit.silhouette, drawn.silhouette.size
+
+    def as_drawn(points: Complexes) -> Complexes:
+        return (fit.placement.taken_back(points, given.centroid) - given.centroid) / scale + drawn.silhouette.centroid
+
+    ring = fit.tiling[0].to_shapely(accuracy=1e-3 * given.size).exterior
+    outline = corners(shapely.segmentize(fit.outline.exterior, _SAMPLES * given.size))
+    nearest = shapely.line_interpolate_point(ring, shapely.line_locate_point(ring, shapely.points(plane(outline))))
+    moved = as_drawn(shapely.get_coordinates(nearest) @ np.array([1.0, 1j])) - as_drawn(outline)
+    reach = float(np.clip(4.0 * np.abs(moved).max(), 0.15 * size, 0.5 * size))
+    guide = Paths.polylines([as_drawn(corners(ring))], closed=True)
+    art = carried_art(drawn.rest, source, None, Carrying.of(as_drawn(outline), moved, reach), guide=guide)
+    write_whole(folder / file, art.svg)
+    shift = fit.placement.centre + scale * (art.corner - drawn.silhouette.centroid) * cmath.exp(1j * fit.placement.turn)
+    placed = Art(file, scale=scale, rotate=math.degrees(fit.placement.turn), translate=shift)
+    site = fit.design.sites[0]
+    sites = Site(site.strokes, name=site.name, art=placed)
+    return fit.design.replace(sites=sites, folder=folder), art
+
+
+def _square(fit: Fit, times: float) -> tuple[float, float, float, float]:
+    """A square about the tile, so many times as large as it reaches."""
+    left, bottom, right, top = fit.tiling[0].bounds
+    half, x, y = times / 2.0 * max(right - left, top - bottom), (left + right) / 2.0, (bottom + top) / 2.0
+    return x - half, y - half, x + half, y + half
+
+
+def _picture(fit: Fit, design: Design, art: CarriedArt | None, stem: str) -> SheetPicture:
+    """A tile with its stroke, its neighbours and its art, as upright as the outline is drawn, which lies over it."""
+    back, centre = cmath.exp(-1j * fit.placement.turn), fit.placement.centre
+
+    def upright(paths: Paths) -> Paths:
+        return paths.moved(back, -centre * back)
+
+    tile, placed = fit.tiling[0], design.art[0]
+    copies = fit.tiling.copies(_square(fit, _AROUND))
+    given = upright(Paths.polylines([corners(fit.outline.exterior)], closed=True))
+    drawn = [
+        DrawnPaths(upright(Paths.concatenate([copy.outline.paths for copy in copies])), COPY_FILL, INK, 0.5),
+        DrawnPaths(upright(tile.outline.paths), TILE_FILL, INK),
+        DrawnPaths(upright(Paths.polylines(list(tile.site.ends))), "", SITE_INK, 1.0),
+    ]
+    if art is not None and placed is not None:
+        shapes = [shape for shape in drawing_of(art.svg, f"{stem}.svg").shapes if GUIDE not in shape.layer]
+        unit, shift, _ = placed.placement.similarity
+        drawn += [DrawnPaths(upright(shape.paths.moved(unit, shift)), "", shape.stroke or INK) for shape in shapes]
+    drawn.append(DrawnPaths(given, "", _GIVEN, 1.5))
+    left, bottom, right, top = given.bounds
+    half, x, y = 0.6 * max(right - left, top - bottom), (left + right) / 2.0, (bottom + top) / 2.0
+    caption = (f"{fit.group}: overlap {fit.overlap:.3f}", f"within {fit.distance:.2g} mm, {fit.corners} corners")
+    return SheetPicture(tuple(drawn), (x - half, y - half, x + half, y + half), caption, f"{stem}.toml")
+
+
+def corners(ring: LinearRing) -> Complexes:
+    """The corners of a ring, the first not repeated: complex128 (n,)."""
+    return np.asarray(shapely.get_coordinates(ring)[:-1] @ np.array([1.0, 1j]))

@@ -1,0 +1,206 @@
+"""Designs whose tiles come near to an outline: `fit`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Final, Literal
+
+from shapely.geometry import Polygon
+
+from voronoi_tiles.base.arguments import number, texts
+from voronoi_tiles.base.arrays import Complexes, plane
+from voronoi_tiles.base.errors import ArgumentError, SchedulerError
+from voronoi_tiles.base.values import shown
+from voronoi_tiles.designs.design import Design
+from voronoi_tiles.escherization.closed_design import closed_design, tiled
+from voronoi_tiles.escherization.covering import overlap_bound
+from voronoi_tiles.escherization.drawn_apart import drawn_apart
+from voronoi_tiles.escherization.fewer_corners import DISTANCE_STEP, fewer_corners
+from voronoi_tiles.escherization.group_placement import GroupPlacement
+from voronoi_tiles.escherization.outline_distance import largest_distance, overlap
+from voronoi_tiles.escherization.polishing import Found, Placed, different, found_placements, polished
+from voronoi_tiles.escherization.silhouette import Silhouette
+from voronoi_tiles.groups.wallpaper import GROUPS
+from voronoi_tiles.parallel.block_runner import Block, LostBlock, Result
+from voronoi_tiles.parallel.blocks import run_blocks
+from voronoi_tiles.tiling import Tiling
+
+Strokes = Literal["few", "outline"]
+
+POLYGONS: Final = ("pmm", "p4m", "p3m1", "p6m")
+"""The groups whose tile is a polygon whatever is drawn: they are left out, unless they are asked for."""
+
+_EACH: Final = 2
+"""How many designs of one group there are at most, where more groups are looked in than designs are kept; a count."""
+
+_GAIN: Final = 0.015
+"""How much less a placement may leave uncovered once it is led on by areas; a share of the plane. Of the placements of
+30 animals the most was 0.013."""
+
+WITHIN: Final = 0.005
+"""How far the tile of few strokes may be from that of the whole outline, where nothing else is said; relative to the
+side of a square of its area."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Fit:
+    """A design whose tile comes near to an outline.
+
+    `overlap` is the area that tile and outline have in common over that of their union, and `bound` the most that any
+    tile of the group has in its place; `distance` is how far they are from each other at most, in millimetres.
+    `outline` is the given one where the design has it, and `placement` how it came there.
+    """
+
+    tiling: Tiling
+    silhouette: Silhouette
+    placement: GroupPlacement
+    overlap: float
+    bound: float
+    distance: float
+
+    def __repr__(self) -> str:
+        return f"<Fit in {self.group}: overlap {self.overlap:.4f}, within {self.distance:.3g} mm>"
+
+    @property
+    def design(self) -> Design:
+        """The design, in millimetres."""
+        return self.tiling.design
+
+    @property
+    def group(self) -> str:
+        """The name of its wallpaper group."""
+        return self.design.group.name
+
+    @property
+    def corners(self) -> int:
+        """How many corners its stroke has."""
+        return len(self.design.noded[0].segments)
+
+    @property
+    def neighbours(self) -> int:
+        """How many copies share an edge with the tile."""
+        return len(self.tiling[0].outline.neighbours)
+
+    @property
+    def outline(self) -> Polygon:
+        """The given outline where it lies in the design, as a shapely polygon."""
+        return _outline(self.silhouette, self.placement)
+
+
+def fit(
+    outline: Any,
+    *,
+    groups: str | Iterable[str] | None = None,
+    keep: int = 8,
+    mirrored: bool = True,
+    strokes: Strokes = "few",
+    within: float | None = None,
+    name: str = "fit",
+    seed: int = 0,
+    workers: int | None = 1,
+    scheduler: str | None = None,
+    progress: Callable[[float, float], None] | None = None,
+) -> list[Fit]:
+    """Designs whose tiles come nearest to an outline, in millimetres: the nearest first, `keep` of them at most.
+
+    `outline` is a shapely polygon, anything with its interface, such as a Tile, or the corners of a closed line.
+    `groups` are those to look in; without them all whose tiles are not the same polygon whatever is drawn. With
+    `mirrored` False only those are, whose copies are never mirror images. `strokes` are an "outline" drawn a little
+    smaller, or "few": a closed stroke of fewer corners, whose tile is within `within` millimetres of that one's
+    (without it, a two-hundredth of the side of a square of the outline's area). The same `seed`, from 0, gives the same
+    designs, whatever the number of `workers`; None takes all processors.
+
+    Raises ArgumentError for an outline that crosses itself, has holes or no area, and for groups that are none.
+    """
+    silhouette = Silhouette.of(outline)
+    names = _groups(groups, mirrored=mirrored)
+    count = int(number("keep", keep, "Give a number of designs.", least=1))
+    if strokes not in ("few", "outline"):
+        raise ArgumentError(f"`strokes` {shown(strokes)} cannot be", remedy='Give "few" or "outline".')
+    near = WITHIN * silhouette.size if within is None else number("within", within, "Give millimetres.", least=1e-6)
+    unit = silhouette.unit
+    phases = _Phases(workers, scheduler, progress)
+    found = [each for row in phases.run(partial(found_placements, unit, seed), names, 0.5) for each in row]
+    best = _best(phases, unit, sorted(found, key=lambda each: each.uncovered), count, len(names))
+    making = partial(_made, silhouette, name, near if strokes == "few" else None)
+    made = [each for each in phases.run(making, best, 1.0) if each is not None]
+    return sorted(made, key=lambda each: -each.overlap)
+
+
+def _best(phases: _Phases, unit: Silhouette, found: list[Found], count: int, groups: int) -> list[Placed]:
+    """So many different placements, those that cover most once they are led on; `found` are in their order."""
+    most = max(_EACH, math.ceil(count / groups))
+    placed: list[Placed] = []
+    best: list[Placed] = []
+    while found and len(best) < count:
+        # Those that may be among the best, once they are led on, and more where many of them were the same.
+        limit = found[min(count, len(found)) - 1].uncovered + _GAIN
+        tried = [each for each in found if each.uncovered <= limit][: 2 * count]
+        found = found[len(tried) :]
+        placed += phases.run(partial(polished, unit), tried, 0.75)
+        best = different(placed, most)[:count]
+    return best
+
+
+@dataclass
+class _Phases:
+    """Work of several phases, each of blocks, of which progress is told."""
+
+    workers: int | None
+    scheduler: str | None
+    progress: Callable[[float, float], None] | None
+    _done: float = 0.0
+
+    def run(self, function: Callable[[Block], Result], blocks: Sequence[Block], until: float) -> list[Result]:
+        """What a function gives of each block, in their order; then so much of all work is done, a share."""
+        results: dict[int, Result] = {}
+        for k, result in run_blocks(function, blocks, workers=self.workers, scheduler=self.scheduler):
+            if isinstance(result, LostBlock):
+                raise SchedulerError(f"a part of the search came to nothing: {result.reason}", remedy="Try it again.")
+            results[k] = result
+            if self.progress is not None:
+                self.progress(self._done + (until - self._done) * len(results) / len(blocks), 1.0)
+        self._done = until
+        return [results[k] for k in range(len(blocks))]
+
+
+def _groups(groups: str | Iterable[str] | None, *, mirrored: bool) -> list[str]:
+    """The names of the groups to look in."""
+    if groups is None or groups == "all":
+        names = [name for name in GROUPS if groups == "all" or name not in POLYGONS]
+    else:
+        names = list(dict.fromkeys(texts("groups", groups, "Give names of wallpaper groups.")))
+        for name in names:
+            if name not in GROUPS:
+                raise ArgumentError(
+                    f"`groups` has {shown(name)}, which is no wallpaper group", remedy=f"There are {', '.join(GROUPS)}."
+                )
+    chosen = [name for name in names if mirrored or all(each.determinant == 1 for each in GROUPS[name].operations)]
+    if not chosen:
+        raise ArgumentError("`groups` has none without mirror images", remedy="Give p1, p2, p3, p4 or p6.")
+    return chosen
+
+
+def _outline(silhouette: Silhouette, placement: GroupPlacement) -> Polygon:
+    """A silhouette in its place."""
+    return Polygon(plane(placement.laid(silhouette.points, silhouette.centroid)))
+
+
+def _made(silhouette: Silhouette, name: str, within: float | None, placed: Placed) -> Fit | None:
+    """The design of a placement; None where its tile is not one piece."""
+    placement = placed.placement.scaled(silhouette.size)
+    corners: Complexes = drawn_apart(silhouette, placement)
+    if len(corners) < 3:
+        return None
+    tiling = tiled(closed_design(placement.group, placement.cell, corners, name, silhouette.size))
+    if tiling is not None and within is not None:
+        tiling = fewer_corners(tiling, silhouette.size, within) or tiling
+    if tiling is None:
+        return None
+    given = _outline(silhouette, placement)
+    tile = tiling[0].to_shapely(accuracy=1e-4 * silhouette.size)
+    distance = largest_distance(tile.exterior, given.exterior, DISTANCE_STEP * silhouette.size)
+    return Fit(tiling, silhouette, placement, overlap(tile, given), overlap_bound(placed.uncovered), distance)

@@ -1,0 +1,214 @@
+"""The placements of a silhouette in a group whose copies come nearest to covering the plane once.
+
+Copies cover the plane once if their sum, which has the periods of the lattice, is constant: if its Fourier coefficients
+at all reciprocal vectors but 0 vanish. These are sums over the operations of the transform of one copy, so that
+looking at a placement takes some dozen looks at a table, and the sum of their squares is a smooth function of the
+placement: least squares find its minima from many starts at a time, first of low frequencies, whose valleys are wide.
+That translates of a figure tile if its transform vanishes so is as old as Fuglede, Journal of Functional Analysis 16
+(1974).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Final, NamedTuple
+
+import numpy as np
+from scipy.stats import qmc
+
+from voronoi_tiles.base.arrays import Complexes, Floats, Ints
+from voronoi_tiles.escherization.area_transform import FREQUENCY_MAX, AreaTransform
+from voronoi_tiles.escherization.group_placement import GroupPlacement
+from voronoi_tiles.groups.wallpaper import WallpaperGroup
+
+_FIRST_FREQUENCY: Final = 1.8
+"""What is looked at first; in the unit of FREQUENCY_MAX. Details that are finer than a quarter of the size make
+valleys of their own, some hundred of them for each good one."""
+
+_LOOKS: Final = 4096
+"""How many placements are looked at; a count."""
+
+_STARTS: Final = 128
+"""How many of them, the best, are led into their valleys, and half of these to the bottom; a count."""
+
+_ROUGH_STEPS: Final = 12
+_FINE_STEPS: Final = 16
+"""How many steps of least squares are made for each, at low and at all frequencies; counts."""
+
+_SAME: Final = 1e-3
+"""Two minima whose values differ by less, relative to the larger, are one, found again; symmetric ones have the same
+value."""
+
+_LONGEST: Final = 5.0
+"""How many times as long as wide reduced cells may be at least; wide outlines need longer ones."""
+
+
+class _Waves(NamedTuple):
+    """Reciprocal vectors of a group, one of each orbit, n of them, and their images under its k operations.
+
+    `images` (intp, n x k x 2) are in integers, `phase` (complex128, n x k) what the operations' translations turn them
+    by, and `weight` (float64, n) the square root of how many vectors there are in the orbit.
+    """
+
+    images: Ints
+    phase: Complexes
+    weight: Floats
+
+
+def sides(group: WallpaperGroup, rows: Floats) -> tuple[Complexes, Complexes]:
+    """The sides of the cells of rows of numbers, for silhouettes of area 1: complex128 (m,) twice."""
+    one = np.ones(len(rows))
+    match group.system:
+        case "oblique":
+            ratio: Complexes = rows[:, -2] + np.exp(rows[:, -1]) * 1j
+        case "rectangular":
+            ratio = np.asarray(1j * np.exp(rows[:, -1]), complex)
+        case "square":
+            ratio = np.asarray(1j * one, complex)
+        case "hexagonal":
+            ratio = np.asarray(one * complex(-0.5, math.sqrt(0.75)), complex)
+    a = np.sqrt(group.order / ratio.imag) + 0j
+    return a, ratio * a
+
+
+def placement_of(group: WallpaperGroup, row: Floats) -> GroupPlacement:
+    """The placement of a silhouette of area 1 by a row of numbers: see PlacementSearch."""
+    a, b = (complex(side[0]) for side in sides(group, row[None]))
+    lattice = group.lattice(a.real, abs(b), math.degrees(np.angle(b)))
+    centre = 0j if group.name == "p1" else lattice.cartesian(row[1], row[2])
+    return GroupPlacement(group, lattice, float(row[0]), centre)
+
+
+@dataclass(frozen=True, eq=False)
+class PlacementSearch:
+    """Placements of a silhouette, of area 1, in a group, as rows of numbers.
+
+    A row is the turn in radians, where the centroid lies in fractions of the cell, and the shape of the cell: none of a
+    square or hexagonal one, the logarithm of b / a of a rectangular one, and of an oblique one the point b / a of the
+    upper half plane as its real part and the logarithm of its imaginary part. Where the group is p1 all places are one.
+    `width` is the least width of the silhouette.
+    """
+
+    group: WallpaperGroup
+    transform: AreaTransform
+    width: float
+
+    @cached_property
+    def _bounds(self) -> Floats:
+        """The least and the greatest of each number of a row: float64 (d, 2)."""
+        longest = math.log(max(_LONGEST, self.group.order / self.width**2))
+        place = [] if self.group.name == "p1" else [(0.0, 1.0)] * 2
+        cell = {
+            "oblique": [(-0.5, 0.5), (math.log(0.86), longest)],
+            "rectangular": [(-longest, longest)],
+        }.get(self.group.system, [])
+        return np.array([(0.0, 2.0 * math.pi), *place, *cell])
+
+    @property
+    def _periodic(self) -> int:
+        """How many numbers of a row, the first ones, repeat."""
+        return 1 if self.group.name == "p1" else 3
+
+    def found(self, seed: int = 0) -> list[Floats]:
+        """The rows of minima, each once, the best first; the same for the same seed, from 0."""
+        low, high = self._bounds.T
+        sampled = qmc.Sobol(len(low), seed=seed).random(_LOOKS)
+        rows = low + (high - low) * sampled
+        waves = self._waves(_FIRST_FREQUENCY)
+        values = (self._residuals(rows, waves, _FIRST_FREQUENCY) ** 2).sum(axis=1)
+        rows = rows[np.argsort(values, kind="stable")[:_STARTS]]
+        rows, values = self._led_down(rows, waves, _FIRST_FREQUENCY, _ROUGH_STEPS)
+        rows = rows[np.argsort(values, kind="stable")[: _STARTS // 2]]
+        rows, values = self._led_down(rows, self._waves(FREQUENCY_MAX), FREQUENCY_MAX, _FINE_STEPS)
+        different: list[int] = []
+        for k in np.argsort(values, kind="stable").tolist():
+            if not different or values[k] - values[different[-1]] > _SAME * values[k] + 1e-9:
+                different.append(k)
+        return [rows[k] for k in different]
+
+    def _led_down(self, rows: Floats, waves: _Waves, highest: float, steps: int) -> tuple[Floats, Floats]:
+        """Rows led towards minima by Levenberg's and Marquardt's method, all at a time, and their values."""
+        low, high = self._bounds.T
+        repeats = np.arange(len(low)) < self._periodic
+        low, high = np.where(repeats, -np.inf, low), np.where(repeats, np.inf, high)
+        count = rows.shape[1]
+        damping = np.full(len(rows), 1e-2)
+        residuals = self._residuals(rows, waves, highest)
+        values = (residuals**2).sum(axis=1)
+        for _ in range(steps):
+            slopes = np.empty((*residuals.shape, count))
+            for k in range(count):
+                moved = rows.copy()
+                moved[:, k] += _DIFFERENCE
+                slopes[:, :, k] = (self._residuals(moved, waves, highest) - residuals) / _DIFFERENCE
+            matrix = np.einsum("nij,nik->njk", slopes, slopes)
+            diagonal = np.einsum("njj->nj", matrix)
+            damped = matrix + np.eye(count) * (damping[:, None] * (diagonal + 1e-9))[:, None, :]
+            right = np.einsum("nij,ni->nj", slopes, residuals)
+            step = np.clip(-np.linalg.solve(damped, right[..., None])[..., 0], -_STEP_MAX, _STEP_MAX)
+            tried = np.clip(rows + step, low, high)
+            new = self._residuals(tried, waves, highest)
+            new_values = (new**2).sum(axis=1)
+            better = new_values < values
+            rows = np.where(better[:, None], tried, rows)
+            residuals = np.where(better[:, None], new, residuals)
+            values = np.where(better, new_values, values)
+            damping = np.clip(np.where(better, damping * 0.3, damping * 5.0), 1e-7, 1e4)
+        return rows, values
+
+    def _waves(self, highest: float) -> _Waves:
+        """The reciprocal vectors that may be as low as a frequency, for some cell within the bounds."""
+        low, high = self._bounds.T
+        corners = np.array([np.where(low == row, low, high) for row in (low, high)])
+        a, b = (float(np.abs(side).max()) for side in sides(self.group, np.vstack((corners, [low, high]))))
+        i = np.arange(-math.floor(highest * a), math.floor(highest * a) + 1)
+        j = np.arange(-math.floor(highest * b) * 2, math.floor(highest * b) * 2 + 1)
+        vectors = np.stack(np.meshgrid(i, j, indexing="ij"), axis=-1).reshape(-1, 2)
+        # Of operations that differ by a centring one is enough: the others say which vectors there are.
+        operations = {operation.linear: operation for operation in reversed(self.group.operations)}
+        linear = np.array([*operations]).reshape(-1, 2, 2)
+        shifts = np.array([[float(t) for t in operation.translation] for operation in operations.values()])
+        # Vectors are mapped by transposes; the orbit's representative is its greatest, as conjugates are one as well.
+        images = np.einsum("kji,hj->hki", linear, vectors)
+        both = np.concatenate((images, -images), axis=1)
+        order = both[..., 0] * (4 * len(j)) + both[..., 1]
+        own = vectors[:, 0] * (4 * len(j)) + vectors[:, 1]
+        first = (own == order.max(axis=1)) & (own > 0)
+        if len(operations) < self.group.order:  # centred by x + 1/2, y + 1/2
+            first &= vectors.sum(axis=1) % 2 == 0
+        sizes = np.array([len(np.unique(row)) for row in order[first]])
+        phase = np.exp(-2j * np.pi * (vectors[first] @ shifts.T))
+        return _Waves(images[first], phase, np.sqrt(sizes))
+
+    def _residuals(self, rows: Floats, waves: _Waves, highest: float) -> Floats:
+        """The Fourier coefficients of the sum of all copies, real and imaginary parts: float64 (m, 2 n).
+
+        They fade out towards the highest frequency: none comes in with a step as the cell changes.
+        """
+        a, b = sides(self.group, rows)
+        along, across = waves.images[..., 0], waves.images[..., 1]
+        # The reciprocal vectors of a, along +x, and b.
+        a_x, a_y, b_y = 1.0 / a.real, -b.real / (a.real * b.imag), 1.0 / b.imag
+        x0 = along[None, :, 0] * a_x[:, None]
+        y0 = along[None, :, 0] * a_y[:, None] + across[None, :, 0] * b_y[:, None]
+        length = np.hypot(x0, y0)
+        row, wave = np.nonzero(length < highest)
+        h, k = along[wave], across[wave]
+        x, y = h * a_x[row, None], h * a_y[row, None] + k * b_y[row, None]
+        cos, sin = np.cos(rows[row, :1]), np.sin(rows[row, :1])
+        copies = self.transform(cos * x + sin * y, cos * y - sin * x) * waves.phase[wave]
+        if self.group.name != "p1":
+            copies *= np.exp(-2j * np.pi * (h * rows[row, 1:2] + k * rows[row, 2:3]))
+        fading = np.cos(0.5 * np.pi * length[row, wave] / highest) * waves.weight[wave] / h.shape[1]
+        sums = np.zeros((len(rows), len(waves.weight)), complex)
+        sums[row, wave] = copies.sum(axis=1) * fading
+        return np.concatenate((sums.real, sums.imag), axis=1)
+
+
+_DIFFERENCE: Final = 1e-5
+"""The step of differences that stand for derivatives; radians, fractions, logarithms."""
+
+_STEP_MAX: Final = 0.3
+"""The longest step of a number of a row; in the same."""

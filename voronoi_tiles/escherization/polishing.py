@@ -1,0 +1,76 @@
+"""Placements that leave least uncovered: what least squares of waves found, led on by areas themselves."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Final, NamedTuple
+
+import numpy as np
+from scipy import optimize
+
+from voronoi_tiles.base.arrays import Floats
+from voronoi_tiles.escherization.area_transform import AreaTransform
+from voronoi_tiles.escherization.covering import gap
+from voronoi_tiles.escherization.group_placement import GroupPlacement
+from voronoi_tiles.escherization.placement_search import PlacementSearch, placement_of
+from voronoi_tiles.escherization.silhouette import Silhouette
+from voronoi_tiles.groups.wallpaper import GROUPS
+
+_SIMPLEX: Final = 0.02
+"""The size of the first simplex; radians, fractions of the cell, logarithms."""
+
+_EVALUATIONS: Final = 240
+"""How many placements are compared at most; a count."""
+
+_SAME: Final = 2e-4
+"""Placements of a group that leave the same uncovered within this are one, or images of each other; a share."""
+
+
+class Found(NamedTuple):
+    """A placement as the search has it, and the share of the plane that copies leave uncovered."""
+
+    group: str
+    row: Floats
+    uncovered: float
+
+
+class Placed(NamedTuple):
+    """A placement of a silhouette of area 1, and the share of the plane that its copies leave uncovered."""
+
+    placement: GroupPlacement
+    uncovered: float
+
+
+def found_placements(unit: Silhouette, seed: int, group: str) -> list[Found]:
+    """The best placements of a silhouette of area 1 in a group, as waves see it; those that cover most first."""
+    search = PlacementSearch(GROUPS[group], AreaTransform.of(unit), unit.width)
+    found = [Found(group, row, gap(unit, placement_of(search.group, row))) for row in search.found(seed)]
+    return sorted(found, key=lambda each: each.uncovered)
+
+
+def polished(unit: Silhouette, found: Found) -> Placed:
+    """A placement led on to where copies leave least uncovered.
+
+    The share has kinks where corners pass outlines, so that it is led down without derivatives (Nelder, Mead).
+    """
+    group = GROUPS[found.group]
+    options = {
+        "initial_simplex": np.vstack((found.row, found.row + _SIMPLEX * np.eye(len(found.row)))),
+        "maxfev": _EVALUATIONS,
+        "xatol": 1e-6,
+        "fatol": 1e-7,
+    }
+    led = optimize.minimize(
+        lambda row: gap(unit, placement_of(group, row)), found.row, method="Nelder-Mead", options=options
+    )
+    return Placed(placement_of(group, led.x), float(led.fun))
+
+
+def different(placed: Iterable[Placed], most: int) -> list[Placed]:
+    """Placements that are not images of each other, those that cover most first, so many of a group at most."""
+    kept: list[Placed] = []
+    for each in sorted(placed, key=lambda each: each.uncovered):
+        others = [other for other in kept if other.placement.group.name == each.placement.group.name]
+        if len(others) < most and all(each.uncovered - other.uncovered > _SAME for other in others):
+            kept.append(each)
+    return kept
