@@ -10,7 +10,7 @@ import numpy as np
 from scipy import ndimage
 
 from voronoi_tiles.base.arrays import Complexes, Floats
-from voronoi_tiles.escherization.silhouette import Silhouette
+from voronoi_tiles.escherization.goal_outline import GoalOutline
 
 FREQUENCY_MAX: Final = 4.0
 """The highest frequency that is looked at; relative to one over the square root of the area. Parts of the outline
@@ -24,7 +24,7 @@ _CHUNK: Final = 1 << 21
 """How many products are held in memory at a time; a count."""
 
 
-def transform(silhouette: Silhouette, x: Floats, y: Floats) -> Complexes:
+def transform(silhouette: GoalOutline, x: Floats, y: Floats) -> Complexes:
     """The integrals of exp(-2 pi i (x u + y v)) over the silhouette's points (u, v), exact: complex128, shaped as x.
 
     By Green's theorem a sum over the sides of the polygon, each the transform of a segment. The frequency 0, where it
@@ -56,7 +56,7 @@ class AreaTransform:
     _imag: Floats
 
     @classmethod
-    def of(cls, silhouette: Silhouette) -> AreaTransform:
+    def of(cls, silhouette: GoalOutline) -> AreaTransform:
         """The table of a silhouette, which is moved and scaled to its unit."""
         unit = silhouette.unit
         step = 1.0 / (_STEPS * unit.reach)

@@ -7,11 +7,11 @@ from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
 from voronoi_tiles.base.arrays import plane
+from voronoi_tiles.escherization.goal_outline import GoalOutline
 from voronoi_tiles.escherization.group_placement import GroupPlacement
-from voronoi_tiles.escherization.silhouette import Silhouette
 
 
-def laid_out(silhouette: Silhouette, placement: GroupPlacement, further: float = 0.0) -> tuple[Polygon, list[Polygon]]:
+def laid_out(silhouette: GoalOutline, placement: GroupPlacement, further: float = 0.0) -> tuple[Polygon, list[Polygon]]:
     """The silhouette in its place, and its copies nearer to it than `further` and a little more, in millimetres."""
     points = placement.laid(silhouette.points, silhouette.centroid)
     own = Polygon(plane(points))
@@ -19,7 +19,7 @@ def laid_out(silhouette: Silhouette, placement: GroupPlacement, further: float =
     return own, copies
 
 
-def gap(silhouette: Silhouette, placement: GroupPlacement) -> float:
+def gap(silhouette: GoalOutline, placement: GroupPlacement) -> float:
     """The share of the plane that no copy of the silhouette covers, exact; from 0, where it tiles, to below 1.
 
     Copies have the area of the cell together, so that the share is what they cover more than once, counted as often as

@@ -11,8 +11,8 @@ from shapely.geometry.base import BaseGeometry
 
 from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.escherization.covering import laid_out
+from voronoi_tiles.escherization.goal_outline import GoalOutline
 from voronoi_tiles.escherization.group_placement import GroupPlacement
-from voronoi_tiles.escherization.silhouette import Silhouette
 
 APART: Final = 5e-3
 """How far the stroke keeps from the silhouette's outline, and from copies; relative to the size. Less makes tiles of
@@ -22,7 +22,7 @@ _CORNERS: Final = 0.3
 """How far corners that are left out of the stroke may lie from it; relative to APART."""
 
 
-def drawn_apart(silhouette: Silhouette, placement: GroupPlacement) -> Complexes:
+def drawn_apart(silhouette: GoalOutline, placement: GroupPlacement) -> Complexes:
     """The corners of a closed stroke inside the placed silhouette, and outside of all copies: complex128 (n,).
 
     What the silhouette has in common with copies is taken from both, so that the edge between their tiles is the middle

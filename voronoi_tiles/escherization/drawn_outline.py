@@ -14,7 +14,7 @@ from voronoi_tiles.base.arrays import plane
 from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.text import counted
 from voronoi_tiles.designs.art import GUIDE
-from voronoi_tiles.escherization.silhouette import Silhouette
+from voronoi_tiles.escherization.goal_outline import GoalOutline
 from voronoi_tiles.formats.reading import DrawingError, ReadDrawing, Shape, read_drawing
 from voronoi_tiles.paths.conversion import to_lines
 from voronoi_tiles.paths.paths import Paths
@@ -37,7 +37,7 @@ class DrawnOutline:
     """
 
     name: str
-    silhouette: Silhouette
+    silhouette: GoalOutline
     rest: ReadDrawing
     notes: tuple[str, ...]
 
@@ -78,7 +78,7 @@ def read_outline(path: str | os.PathLike[str], *, element: str | None = None) ->
     if sources is None:
         _refuse_second(chosen, contours, shapes, name)
     try:
-        silhouette = Silhouette.of(chosen.polygon)
+        silhouette = GoalOutline.of(chosen.polygon)
     except ArgumentError as error:
         message = error.message.replace("`outline`", f"the outline, {shapes[chosen.shape].source},")
         raise DrawingError(message, file=name, remedy=error.remedy) from None

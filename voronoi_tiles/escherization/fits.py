@@ -19,10 +19,10 @@ from voronoi_tiles.escherization.closed_design import closed_design, tiled
 from voronoi_tiles.escherization.covering import overlap_bound
 from voronoi_tiles.escherization.drawn_apart import drawn_apart
 from voronoi_tiles.escherization.fewer_corners import DISTANCE_STEP, fewer_corners
+from voronoi_tiles.escherization.goal_outline import GoalOutline
 from voronoi_tiles.escherization.group_placement import GroupPlacement
 from voronoi_tiles.escherization.outline_distance import largest_distance, overlap
 from voronoi_tiles.escherization.polishing import Found, Placed, different, found_placements, polished
-from voronoi_tiles.escherization.silhouette import Silhouette
 from voronoi_tiles.groups.wallpaper import GROUPS
 from voronoi_tiles.parallel.block_runner import Block, LostBlock, Result
 from voronoi_tiles.parallel.blocks import run_blocks
@@ -55,7 +55,7 @@ class Fit:
     """
 
     tiling: Tiling
-    silhouette: Silhouette
+    silhouette: GoalOutline
     placement: GroupPlacement
     overlap: float
     bound: float
@@ -115,12 +115,13 @@ def fit(
 
     Raises ArgumentError for an outline that crosses itself, has holes or no area, and for groups that are none.
     """
-    silhouette = Silhouette.of(outline)
+    silhouette = GoalOutline.of(outline)
     names = _groups(groups, mirrored=mirrored)
     count = int(number("keep", keep, "Give a number of designs.", least=1))
     if strokes not in ("few", "outline"):
         raise ArgumentError(f"`strokes` {shown(strokes)} cannot be", remedy='Give "few" or "outline".')
     near = WITHIN * silhouette.size if within is None else number("within", within, "Give millimetres.", least=1e-6)
+    seed = int(number("seed", seed, "Give a whole number from 0.", least=0))
     unit = silhouette.unit
     phases = _Phases(workers, scheduler, progress)
     found = [each for row in phases.run(partial(found_placements, unit, seed), names, 0.5) for each in row]
@@ -130,7 +131,7 @@ def fit(
     return sorted(made, key=lambda each: -each.overlap)
 
 
-def _best(phases: _Phases, unit: Silhouette, found: list[Found], count: int, groups: int) -> list[Placed]:
+def _best(phases: _Phases, unit: GoalOutline, found: list[Found], count: int, groups: int) -> list[Placed]:
     """So many different placements, those that cover most once they are led on; `found` are in their order."""
     most = max(_EACH, math.ceil(count / groups))
     placed: list[Placed] = []
@@ -184,12 +185,12 @@ def _groups(groups: str | Iterable[str] | None, *, mirrored: bool) -> list[str]:
     return chosen
 
 
-def _outline(silhouette: Silhouette, placement: GroupPlacement) -> Polygon:
+def _outline(silhouette: GoalOutline, placement: GroupPlacement) -> Polygon:
     """A silhouette in its place."""
     return Polygon(plane(placement.laid(silhouette.points, silhouette.centroid)))
 
 
-def _made(silhouette: Silhouette, name: str, within: float | None, placed: Placed) -> Fit | None:
+def _made(silhouette: GoalOutline, name: str, within: float | None, placed: Placed) -> Fit | None:
     """The design of a placement; None where its tile is not one piece."""
     placement = placed.placement.scaled(silhouette.size)
     corners: Complexes = drawn_apart(silhouette, placement)

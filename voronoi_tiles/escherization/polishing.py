@@ -11,9 +11,9 @@ from scipy import optimize
 from voronoi_tiles.base.arrays import Floats
 from voronoi_tiles.escherization.area_transform import AreaTransform
 from voronoi_tiles.escherization.covering import gap
+from voronoi_tiles.escherization.goal_outline import GoalOutline
 from voronoi_tiles.escherization.group_placement import GroupPlacement
 from voronoi_tiles.escherization.placement_search import PlacementSearch, placement_of
-from voronoi_tiles.escherization.silhouette import Silhouette
 from voronoi_tiles.groups.wallpaper import GROUPS
 
 _SIMPLEX: Final = 0.02
@@ -41,14 +41,14 @@ class Placed(NamedTuple):
     uncovered: float
 
 
-def found_placements(unit: Silhouette, seed: int, group: str) -> list[Found]:
+def found_placements(unit: GoalOutline, seed: int, group: str) -> list[Found]:
     """The best placements of a silhouette of area 1 in a group, as waves see it; those that cover most first."""
     search = PlacementSearch(GROUPS[group], AreaTransform.of(unit), unit.width)
     found = [Found(group, row, gap(unit, placement_of(search.group, row))) for row in search.found(seed)]
     return sorted(found, key=lambda each: each.uncovered)
 
 
-def polished(unit: Silhouette, found: Found) -> Placed:
+def polished(unit: GoalOutline, found: Found) -> Placed:
     """A placement led on to where copies leave least uncovered.
 
     The share has kinks where corners pass outlines, so that it is led down without derivatives (Nelder, Mead).

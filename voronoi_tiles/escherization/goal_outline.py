@@ -28,13 +28,13 @@ _REMEDY: Final = "Give a shapely Polygon, a tile, or the corners of a closed out
 
 
 @dataclass(frozen=True, eq=False)
-class Silhouette:
+class GoalOutline:
     """A closed outline, in millimetres: its corners (complex128, n), counter-clockwise, the first one not repeated."""
 
     points: Complexes
 
     @classmethod
-    def of(cls, outline: Any) -> Silhouette:
+    def of(cls, outline: Any) -> GoalOutline:
         """The silhouette of a shapely polygon, of anything with its interface, such as a Tile, or of corners.
 
         Corners that lie on the outline without them, within DETAIL, are left out. Raises ArgumentError for an outline
@@ -61,7 +61,7 @@ class Silhouette:
         size = float(np.sqrt(polygon.area))
         if not size > 1e-9 * float(np.ptp(coordinates, axis=0).max()):
             raise ArgumentError("`outline` encloses no area", remedy="Draw one line around the shape.")
-        exterior = shapely.orient_polygons(polygon).simplify(DETAIL * size).exterior
+        exterior = shapely.orient_polygons(_simplified(polygon, DETAIL * size)).exterior
         made = cls(shapely.get_coordinates(exterior)[:-1] @ np.array([1.0, 1j]))
         if not made.reach <= _THIN_MAX * size:
             raise ArgumentError("`outline` is too thin: a line rather than a shape", remedy="Draw around its area.")
@@ -105,14 +105,14 @@ class Silhouette:
         """The longer side of the upright rectangle around it, in millimetres."""
         return float(max(np.ptp(self.points.real), np.ptp(self.points.imag)))
 
-    def scaled(self, factor: float) -> Silhouette:
+    def scaled(self, factor: float) -> GoalOutline:
         """The outline so many times as large, about the origin."""
-        return Silhouette(self.points * factor)
+        return GoalOutline(self.points * factor)
 
     @cached_property
-    def unit(self) -> Silhouette:
+    def unit(self) -> GoalOutline:
         """The same outline with its centroid in the origin and an area of 1."""
-        return Silhouette((self.points - self.centroid) / self.size)
+        return GoalOutline((self.points - self.centroid) / self.size)
 
 
 def _polygon(outline: Any) -> Any:
@@ -124,12 +124,25 @@ def _polygon(outline: Any) -> Any:
             return shapely.geometry.shape(outline)
         if isinstance(outline, Iterable) and not isinstance(outline, str | bytes):
             corners = np.asarray(list(outline))
-            if np.iscomplexobj(corners):
-                corners = plane(corners)
-            return Polygon(corners.astype(float))
+            corners = plane(corners) if np.iscomplexobj(corners) else corners.astype(float)
+            if np.isfinite(corners).all():
+                return Polygon(corners)
     except (TypeError, ValueError, KeyError, AttributeError):
         pass
     raise ArgumentError(f"`outline` {shown(outline)} cannot be", remedy=_REMEDY)
+
+
+def _simplified(polygon: Polygon, distance: float) -> Polygon:
+    """A valid polygon with fewer corners, within a distance, or a part of it where it would cross itself.
+
+    What keeps to that from the start takes minutes for 100,000 corners.
+    """
+    for _ in range(6):
+        simple = shapely.simplify(polygon, distance, preserve_topology=False)
+        if simple.geom_type == "Polygon" and simple.is_valid and not simple.is_empty:
+            return simple
+        distance /= 4.0
+    return polygon
 
 
 def _why(polygon: Polygon) -> str:

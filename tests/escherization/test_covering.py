@@ -1,0 +1,92 @@
+"""What copies of an outline leave uncovered, and that no tile does better."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+import shapely
+from helpers.silhouettes import random_polygon, random_tiling
+
+import voronoi_tiles as vt
+from voronoi_tiles.base.arrays import plane
+from voronoi_tiles.escherization.covering import gap, laid_out, overlap_bound
+from voronoi_tiles.escherization.drawn_apart import APART, drawn_apart
+from voronoi_tiles.escherization.goal_outline import GoalOutline
+from voronoi_tiles.escherization.group_placement import GroupPlacement
+from voronoi_tiles.escherization.outline_distance import overlap
+
+CELLS = {"oblique": (1.0, 1.1, 75.0), "rectangular": (1.0, 1.3, 90.0), "square": (1.0,), "hexagonal": (1.0,)}
+
+
+def placed(silhouette: GoalOutline, group: str, seed: int) -> GroupPlacement:
+    """A random placement whose cell has the area of the copies in it."""
+    dice, found = np.random.default_rng(seed), vt.GROUPS[group]
+    shape = found.lattice(*CELLS[found.system])
+    size = math.sqrt(found.order * silhouette.area / shape.det)
+    lattice = vt.Lattice(shape.a * size, shape.b * size)
+    return GroupPlacement(found, lattice, dice.uniform(0, 6.28), lattice.cartesian(*dice.uniform(-1, 2, 2)))
+
+
+def counted(silhouette: GoalOutline, placement: GroupPlacement, count: int) -> float:
+    """The share of points of a grid over the cell that no copy covers, by all copies that reach into it."""
+    lattice, own = placement.lattice, placement.laid(silhouette.points, silhouette.centroid)
+    share = (np.arange(count) + 0.5) / count
+    s, t = (grid.ravel() for grid in np.meshgrid(share, share))
+    points = s * lattice.a + t * lattice.b
+    covered = np.zeros(len(points), bool)
+    for operation in placement.group.operations:
+        for i in range(-6, 7):
+            for j in range(-6, 7):
+                copy = shapely.Polygon(plane(lattice.isometry(operation.translated(i, j))(own)))
+                covered |= shapely.contains_xy(copy, points.real, points.imag)
+    return float(1.0 - covered.mean())
+
+
+@pytest.mark.parametrize("group", list(vt.GROUPS))
+def test_the_gap_is_the_share_of_points_that_nothing_covers(group: str) -> None:
+    """Counted over a grid, for a random outline in each group, of whichever depth its overlaps are."""
+    silhouette = GoalOutline.of(random_polygon(list(vt.GROUPS).index(group)))
+    placement = placed(silhouette, group, 1)
+    assert gap(silhouette, placement) == pytest.approx(counted(silhouette, placement, 90), abs=0.02)
+
+
+def test_what_tiles_leaves_nothing() -> None:
+    """A square on its own lattice, also where it lies askew to it; and what lies on another leaves what it must."""
+    square = GoalOutline.of([0j, 1 + 0j, 1 + 1j, 1j])
+    group = vt.GROUPS["p1"]
+    for a, b in ((1 + 0j, 1j), (1 + 0j, 0.3 + 1j)):
+        assert gap(square, GroupPlacement(group, vt.Lattice(a, b), 0.0, 5 + 2j)) == pytest.approx(0.0, abs=1e-12)
+    wide = GroupPlacement(group, vt.Lattice(0.5 + 0j, 2j), 0.0, 0j)
+    assert gap(square, wide) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_no_tile_has_more_in_common_with_an_outline_than_the_bound(seed: int) -> None:
+    """Tiles of random curves beside random placements, in all groups."""
+    tiling = random_tiling(seed, list(vt.GROUPS)[seed % 17])
+    tile = tiling[0].to_shapely(accuracy=1e-3)
+    silhouette = GoalOutline.of(random_polygon(seed))
+    silhouette = silhouette.scaled(math.sqrt(tile.area / silhouette.area))
+    dice = np.random.default_rng(seed)
+    centre = complex(tile.centroid.x, tile.centroid.y) + silhouette.size * 0.1 * complex(*dice.normal(size=2))
+    placement = GroupPlacement(tiling.design.group, tiling.design.lattice, dice.uniform(0, 6.28), centre)
+    own, _ = laid_out(silhouette, placement)
+    bound = overlap_bound(gap(silhouette, placement))
+    assert overlap(own, tile) <= bound + 1e-5
+    itself = GoalOutline.of(tile)
+    place = GroupPlacement(placement.group, placement.lattice, 0.0, itself.centroid)
+    assert overlap_bound(gap(itself, place)) > 0.997
+
+
+@pytest.mark.parametrize("group", ["p1", "p2", "p3", "p4", "p6", "pg", "pgg", "cm", "pmg"])
+def test_a_stroke_drawn_apart_lies_inside_and_outside_of_copies(group: str) -> None:
+    """By APART of the size at least, but for the corners that are left out; so that copies of it do not touch."""
+    silhouette = GoalOutline.of(random_polygon(3)).unit
+    placement = placed(silhouette, group, 2)
+    own, copies = laid_out(silhouette, placement)
+    stroke = shapely.Polygon(plane(drawn_apart(silhouette, placement)))
+    assert stroke.is_valid
+    assert own.buffer(-0.6 * APART).contains(stroke)
+    assert all(copy.distance(stroke) >= 0.6 * APART for copy in copies)
