@@ -67,9 +67,7 @@ def test_discs_are_packed_as_is_best() -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_what_a_fit_says_is_so(seed: int) -> None:
-    """Overlap and distance, measured anew; few corners whose tile is within the distance asked for; a proved design in
-    millimetres that survives its file.
-    """
+    """Overlap and distance, measured anew; few corners whose tile is as near as asked for; a design to save."""
     outline = random_polygon(seed)
     size = math.sqrt(outline.area)
     (whole,) = vt.fit(outline, groups="p2", keep=1, strokes="outline", name="bird")

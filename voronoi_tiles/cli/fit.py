@@ -67,10 +67,13 @@ def fit(
     What else is drawn, eyes and feathers, becomes their art, moved so that it fits the tile's edge. DIR gets a design
     file and a picture of each, the nearest first, a table (fits.csv) and a contact sheet (sheet.html).
     """
+    from voronoi_tiles.base.text import counted
     from voronoi_tiles.escherization.drawn_outline import read_outline
     from voronoi_tiles.escherization.fit_folder import refuse_folder, write_fits
     from voronoi_tiles.escherization.fits import fit as fit_outline
 
+    if size == 0.0:
+        raise click.UsageError("--size is 0: give the length of the longer side, 80mm.")
     with reporting(outline):
         refuse_folder(folder)
         drawn = read_outline(outline, element=element)
@@ -94,11 +97,11 @@ def fit(
             notes = write_fits(folder, found, outline, drawn, scale, progress)
     if quiet:
         return
-    for note in (*drawn.notes, *notes):
+    for note in dict.fromkeys((*drawn.notes, *notes)):
         say(as_options(note))
     for number, each in enumerate(found, 1):
         say(_line(number, each))
-    say(f"wrote {folder}: {len(found)} designs, their pictures, fits.csv, sheet.html")
+    say(f"wrote {folder}: {counted(len(found), 'design')} with pictures, fits.csv, sheet.html")
 
 
 def _line(number: int, fit: Fit) -> str:

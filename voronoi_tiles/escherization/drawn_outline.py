@@ -15,6 +15,7 @@ from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.text import counted
 from voronoi_tiles.designs.art import GUIDE
 from voronoi_tiles.escherization.goal_outline import GoalOutline
+from voronoi_tiles.formats.caveats import caveats
 from voronoi_tiles.formats.reading import DrawingError, ReadDrawing, Shape, read_drawing
 from voronoi_tiles.paths.conversion import to_lines
 from voronoi_tiles.paths.paths import Paths
@@ -62,28 +63,39 @@ def read_outline(path: str | os.PathLike[str], *, element: str | None = None) ->
     _refuse_pixels(name)
     drawing = read_drawing(name)
     shapes = [shape for shape in drawing.shapes if GUIDE not in shape.layer.casefold() and len(shape.paths)]
-    sources = {shape.source for shape in read_drawing(name, element=element).shapes} if element else None
     contours = _contours(shapes, name)
-    candidates = [each for each in contours if sources is None or shapes[each.shape].source in sources]
+    candidates = contours
+    if element is not None:
+        asked = [shape.paths.start for shape in read_drawing(name, element=element).shapes]
+        own = [any(np.array_equal(shape.paths.start, start) for start in asked) for shape in shapes]
+        candidates = [each for each in contours if own[each.shape]]
     chosen = max((each for each in candidates if each.closed), key=lambda each: each.polygon.area, default=None)
     longest = max(candidates, key=lambda each: _extent(each.polygon), default=None)
     if longest is None:
-        raise DrawingError("nothing is drawn", file=name, remedy="Draw one closed line around the shape.")
+        raise DrawingError(
+            "nothing is drawn that encloses an area",
+            file=name,
+            remedy="Draw one closed line around the shape; texts have to be converted to paths.",
+        )
     if chosen is None or (not longest.closed and _extent(longest.polygon) > _extent(chosen.polygon)):
         raise DrawingError(
             f"the outline is open: the ends of {shapes[longest.shape].source} are {longest.ends:.4g} mm apart",
             file=name,
             remedy="Close its path.",
         )
-    if sources is None:
+    if element is None:
         _refuse_second(chosen, contours, shapes, name)
     try:
         silhouette = GoalOutline.of(chosen.polygon)
     except ArgumentError as error:
         message = error.message.replace("`outline`", f"the outline, {shapes[chosen.shape].source},")
+        message += ", in mm from the page's lower left corner" if " at " in message else ""
         raise DrawingError(message, file=name, remedy=error.remedy) from None
     rest, holes = _without(shapes, chosen)
-    notes = [f"{name}: {counted(holes, 'hole')} of the outline become art: a tile has none"] if holes else []
+    became = "becomes" if holes == 1 else "become"
+    notes = [*caveats(drawing, name)]
+    if holes:
+        notes.append(f"{name}: {counted(holes, 'hole')} of the outline {became} art: a tile has none")
     stem = os.path.splitext(os.path.basename(name))[0]  # noqa: PTH119, PTH122 - any name
     return DrawnOutline(stem or "outline", silhouette, replace(drawing, shapes=tuple(rest)), tuple(notes))
 
