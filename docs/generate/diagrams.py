@@ -1,7 +1,7 @@
 """The drawings and tables of the documentation, from the project's own numbers: docs/pictures, and tables in pages.
 
 Run it after a change of the engine, of the groups or of an example in docs/design-file.md: python
-docs/generate/diagrams.py [tables] [groups] [strokes] [method] [cones] [gradients].
+docs/generate/diagrams.py [tables] [groups] [strokes] [method] [cones] [gradients] [fits].
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import sys
 
 import diagrams_cones
+import diagrams_fits
 import diagrams_gradients
 import diagrams_groups
 import diagrams_method
@@ -22,6 +23,7 @@ PARTS = {
     "method": diagrams_method.write,
     "cones": diagrams_cones.write,
     "gradients": diagrams_gradients.write,
+    "fits": diagrams_fits.write,
 }
 
 

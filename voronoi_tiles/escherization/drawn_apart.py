@@ -1,41 +1,106 @@
-"""A silhouette drawn apart from its copies: a stroke whose Voronoi tile is as near to it as tiles can be."""
+"""An outline drawn apart from its copies: a stroke whose Voronoi tile is as near to it as tiles can be."""
 
 from __future__ import annotations
 
-from typing import Final
+from collections.abc import Callable, Iterable
+from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from voronoi_tiles.base.arrays import Complexes
-from voronoi_tiles.escherization.covering import laid_out
+from voronoi_tiles.base.arrays import Complexes, plane
+from voronoi_tiles.base.maps import Isometry
 from voronoi_tiles.escherization.goal_outline import GoalOutline
 from voronoi_tiles.escherization.group_placement import GroupPlacement
 
 APART: Final = 5e-3
-"""How far the stroke keeps from the silhouette's outline, and from copies; relative to the size. Less makes tiles of
-more and smaller edges, and brings them nearer by less than a thousandth."""
+"""How far the stroke keeps from the outline, and from copies; relative to the size. Less makes tiles of more and
+smaller edges, and brings them nearer by less than a thousandth."""
 
 _CORNERS: Final = 0.3
 """How far corners that are left out of the stroke may lie from it; relative to APART."""
 
+_LEAST: Final = 2e-3
+"""What is cut off, or kept, counts from this area on; relative to the outline's."""
+
+_CONTESTED_MAX: Final = 24
+"""How many of the areas that copies have in common are decided on, the largest; a count."""
+
+
+class _Lens(NamedTuple):
+    """An area that the outline has in common with a copy, by the copy's number; `back` is the same of that copy.
+
+    What is the outline's there is the copy's `back`, the lens's image under the inverse: one of the two goes to the
+    outline, the other is lost, or both are halved.
+    """
+
+    copy: int
+    area: Polygon
+    back: Polygon
+
 
 def drawn_apart(silhouette: GoalOutline, placement: GroupPlacement) -> Complexes:
-    """The corners of a closed stroke inside the placed silhouette, and outside of all copies: complex128 (n,).
+    """The corners of a closed stroke inside the placed outline, whose copies keep apart: complex128 (n,).
 
-    What the silhouette has in common with copies is taken from both, so that the edge between their tiles is the middle
-    line of it, as it is that of what lies between them: all share alike. Where that divides the silhouette, the largest
-    part is left.
+    What the outline has in common with copies is taken from both, so that the edge between their tiles is the middle
+    line of it, as it is that of what lies between them: all share alike. Where that would cut off a leg or a head, the
+    outline has all of it, and loses all of what the copy has the same way, if more is left so. Of what is left in
+    several parts the largest is the stroke; none where nothing is.
     """
     apart = APART * silhouette.size
-    own, copies = laid_out(silhouette, placement, further=2.0 * apart)
-    near = [copy for copy in copies if copy.distance(own) <= 2.0 * apart]
-    inside: BaseGeometry = own.buffer(-apart).difference(shapely.union_all(near).buffer(apart))
-    parts = [part for part in shapely.get_parts(inside) if part.geom_type == "Polygon"]
-    if not parts:
-        return np.zeros(0, complex)
-    largest: Polygon = max(parts, key=lambda part: part.area)
-    exterior = Polygon(largest.exterior).simplify(_CORNERS * apart).exterior
+    points = placement.laid(silhouette.points, silhouette.centroid)
+    own = Polygon(plane(points))
+    maps = placement.copies(2.0 * silhouette.reach + 2.0 * apart)
+    copies = [Polygon(plane(each(points))) for each in maps]
+    near = [k for k, copy in enumerate(copies) if copy.distance(own) <= 2.0 * apart]
+    around = {k: copies[k].buffer(apart) for k in near}
+    inner = own.buffer(-apart)
+
+    def left(kept: Iterable[_Lens]) -> Polygon:
+        """The largest part of what is left where the outline has all of some lenses."""
+        taken = dict(around)
+        for lens in kept:
+            taken[lens.copy] = taken[lens.copy].difference(lens.area.buffer(apart))
+        return _largest(inner.difference(shapely.union_all([*taken.values()])))
+
+    stroke = left(())
+    if inner.area - stroke.area > _LEAST * own.area:
+        stroke = _decided(stroke, _lenses(own, [(k, maps[k], copies[k]) for k in near]), left, _LEAST * own.area)
+    exterior = Polygon(stroke.exterior).simplify(_CORNERS * apart).exterior
     return np.asarray(shapely.get_coordinates(exterior)[:-1] @ np.array([1.0, 1j]))
+
+
+def _lenses(own: Polygon, copies: list[tuple[int, Isometry, Polygon]]) -> list[_Lens]:
+    """All areas that the outline has in common with copies, the largest first; not those that are their own `back`."""
+    lenses = []
+    for number, copy, polygon in copies:
+        for part in shapely.get_parts(own.intersection(polygon)):
+            if part.area > _LEAST * own.area and part.geom_type == "Polygon":
+                corners = shapely.get_coordinates(part.exterior) @ np.array([1.0, 1j])
+                # The inverse of a z + b, or of a conj(z) + b.
+                moved = (corners - copy.b) / copy.a
+                back = Polygon(plane(np.conj(moved) if copy.conj else moved))
+                if part.intersection(back).area < 0.5 * part.area:
+                    lenses.append(_Lens(number, part, back))
+    return sorted(lenses, key=lambda lens: -lens.area.area)[:_CONTESTED_MAX]
+
+
+def _decided(stroke: Polygon, lenses: list[_Lens], left: Callable[[Iterable[_Lens]], Polygon], least: float) -> Polygon:
+    """The stroke where the outline has all of those lenses by which it is larger, decided one after the other."""
+    kept: list[_Lens] = []
+    for lens in lenses:
+        # Of a lens and the one that goes with it the copy can have one alone.
+        if any(lens.area.intersection(other.back).area > 0.5 * lens.area.area for other in kept):
+            continue
+        larger = left([*kept, lens])
+        if larger.area > stroke.area + least:
+            kept, stroke = [*kept, lens], larger
+    return stroke
+
+
+def _largest(geometry: BaseGeometry) -> Polygon:
+    """The largest of the parts of a geometry; an empty polygon where there is none."""
+    parts = [part for part in shapely.get_parts(geometry) if part.geom_type == "Polygon"]
+    return max(parts, key=lambda part: part.area, default=Polygon())

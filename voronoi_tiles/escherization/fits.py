@@ -11,7 +11,7 @@ from typing import Any, Final, Literal
 from shapely.geometry import Polygon
 
 from voronoi_tiles.base.arguments import number, texts
-from voronoi_tiles.base.arrays import Complexes, plane
+from voronoi_tiles.base.arrays import plane
 from voronoi_tiles.base.errors import ArgumentError, SchedulerError
 from voronoi_tiles.base.values import shown
 from voronoi_tiles.designs.design import Design
@@ -22,7 +22,7 @@ from voronoi_tiles.escherization.fewer_corners import DISTANCE_STEP, fewer_corne
 from voronoi_tiles.escherization.goal_outline import GoalOutline
 from voronoi_tiles.escherization.group_placement import GroupPlacement
 from voronoi_tiles.escherization.outline_distance import largest_distance, overlap
-from voronoi_tiles.escherization.polishing import Found, Placed, different, found_placements, polished
+from voronoi_tiles.escherization.polishing import Found, found_placements, polished
 from voronoi_tiles.groups.wallpaper import GROUPS
 from voronoi_tiles.parallel.block_runner import Block, LostBlock, Result
 from voronoi_tiles.parallel.blocks import run_blocks
@@ -35,6 +35,9 @@ POLYGONS: Final = ("pmm", "p4m", "p3m1", "p6m")
 
 _EACH: Final = 2
 """How many designs of one group there are at most, where more groups are looked in than designs are kept; a count."""
+
+_SAME: Final = 2e-4
+"""Placements of a group whose bounds differ by less are one, or images of each other; a share."""
 
 _GAIN: Final = 0.015
 """How much less a placement may leave uncovered once it is led on by areas; a share of the plane. Of the placements of
@@ -122,28 +125,40 @@ def fit(
         raise ArgumentError(f"`strokes` {shown(strokes)} cannot be", remedy='Give "few" or "outline".')
     near = WITHIN * silhouette.size if within is None else number("within", within, "Give millimetres.", least=1e-6)
     seed = int(number("seed", seed, "Give a whole number from 0.", least=0))
-    unit = silhouette.unit
     phases = _Phases(workers, scheduler, progress)
-    found = [each for row in phases.run(partial(found_placements, unit, seed), names, 0.5) for each in row]
-    best = _best(phases, unit, sorted(found, key=lambda each: each.uncovered), count, len(names))
-    making = partial(_made, silhouette, name, near if strokes == "few" else None)
-    made = [each for each in phases.run(making, best, 1.0) if each is not None]
-    return sorted(made, key=lambda each: -each.overlap)
+    found = phases.run(partial(found_placements, silhouette.unit, seed), names, 0.5)
+    ordered = sorted((each for row in found for each in row), key=lambda each: each.uncovered)
+    best = _best(phases, partial(_made, silhouette, name), ordered, count, len(names))
+    if strokes == "few":
+        best = phases.run(partial(_with_fewer_corners, near), best, 1.0)
+    return sorted(best, key=lambda each: -each.overlap)
 
 
-def _best(phases: _Phases, unit: GoalOutline, found: list[Found], count: int, groups: int) -> list[Placed]:
-    """So many different placements, those that cover most once they are led on; `found` are in their order."""
+def _best(
+    phases: _Phases, making: Callable[[Found], Fit | None], found: list[Found], count: int, groups: int
+) -> list[Fit]:
+    """So many different fits of whole outlines, those that overlap most first; `found` are in their order."""
     most = max(_EACH, math.ceil(count / groups))
-    placed: list[Placed] = []
-    best: list[Placed] = []
+    made: list[Fit] = []
+    best: list[Fit] = []
     while found and len(best) < count:
         # Those that may be among the best, once they are led on, and more where many of them were the same.
         limit = found[min(count, len(found)) - 1].uncovered + _GAIN
         tried = [each for each in found if each.uncovered <= limit][: 2 * count]
         found = found[len(tried) :]
-        placed += phases.run(partial(polished, unit), tried, 0.75)
-        best = different(placed, most)[:count]
+        made += [each for each in phases.run(making, tried, 0.75) if each is not None]
+        best = _different(made, most)[:count]
     return best
+
+
+def _different(fits: list[Fit], most: int) -> list[Fit]:
+    """Fits whose placements are not images of each other, those that overlap most first, so many of a group at most."""
+    kept: list[Fit] = []
+    for each in sorted(fits, key=lambda each: -each.overlap):
+        others = [other for other in kept if other.group == each.group]
+        if len(others) < most and all(abs(each.bound - other.bound) > _SAME for other in others):
+            kept.append(each)
+    return kept
 
 
 @dataclass
@@ -190,18 +205,26 @@ def _outline(silhouette: GoalOutline, placement: GroupPlacement) -> Polygon:
     return Polygon(plane(placement.laid(silhouette.points, silhouette.centroid)))
 
 
-def _made(silhouette: GoalOutline, name: str, within: float | None, placed: Placed) -> Fit | None:
-    """The design of a placement; None where its tile is not one piece."""
+def _made(silhouette: GoalOutline, name: str, found: Found) -> Fit | None:
+    """The fit of the whole outline in a placement that is led on; None where its tile is not one piece."""
+    placed = polished(silhouette.unit, found)
     placement = placed.placement.scaled(silhouette.size)
-    corners: Complexes = drawn_apart(silhouette, placement)
+    corners = drawn_apart(silhouette, placement)
     if len(corners) < 3:
         return None
     tiling = tiled(closed_design(placement.group, placement.cell, corners, name, silhouette.size))
-    if tiling is not None and within is not None:
-        tiling = fewer_corners(tiling, silhouette.size, within) or tiling
-    if tiling is None:
-        return None
+    return tiling and _measured(tiling, silhouette, placement, overlap_bound(placed.uncovered))
+
+
+def _with_fewer_corners(within: float, fit: Fit) -> Fit:
+    """The fit with a stroke of fewer corners, if there is one."""
+    tiling = fewer_corners(fit.tiling, fit.silhouette.size, within)
+    return fit if tiling is None else _measured(tiling, fit.silhouette, fit.placement, fit.bound)
+
+
+def _measured(tiling: Tiling, silhouette: GoalOutline, placement: GroupPlacement, bound: float) -> Fit:
+    """A fit with its figures."""
     given = _outline(silhouette, placement)
     tile = tiling[0].to_shapely(accuracy=1e-4 * silhouette.size)
     distance = largest_distance(tile.exterior, given.exterior, DISTANCE_STEP * silhouette.size)
-    return Fit(tiling, silhouette, placement, overlap(tile, given), overlap_bound(placed.uncovered), distance)
+    return Fit(tiling, silhouette, placement, overlap(tile, given), bound, distance)

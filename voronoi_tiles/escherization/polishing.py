@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -21,9 +20,6 @@ _SIMPLEX: Final = 0.02
 
 _EVALUATIONS: Final = 240
 """How many placements are compared at most; a count."""
-
-_SAME: Final = 2e-4
-"""Placements of a group that leave the same uncovered within this are one, or images of each other; a share."""
 
 
 class Found(NamedTuple):
@@ -64,13 +60,3 @@ def polished(unit: GoalOutline, found: Found) -> Placed:
         lambda row: gap(unit, placement_of(group, row)), found.row, method="Nelder-Mead", options=options
     )
     return Placed(placement_of(group, led.x), float(led.fun))
-
-
-def different(placed: Iterable[Placed], most: int) -> list[Placed]:
-    """Placements that are not images of each other, those that cover most first, so many of a group at most."""
-    kept: list[Placed] = []
-    for each in sorted(placed, key=lambda each: each.uncovered):
-        others = [other for other in kept if other.placement.group.name == each.placement.group.name]
-        if len(others) < most and all(each.uncovered - other.uncovered > _SAME for other in others):
-            kept.append(each)
-    return kept
