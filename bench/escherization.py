@@ -115,10 +115,9 @@ def outline_of(file: Path) -> Complexes:
     scale = SIZE_MM / max(high_x - low_x, high_y - low_y)
     lines = to_lines(paths.moved(scale, -scale * complex(low_x + high_x, low_y + high_y) / 2), accuracy=FLAT_MM)
     rings = [shapely.Polygon(xy(lines.take(np.array([k])).start)) for k in range(len(lines)) if lines.counts[k] > 2]
-    largest = shapely.Polygon(max(rings, key=lambda ring: ring.area).exterior).normalize()
-    points = shapely.get_coordinates(largest.reverse().exterior)[:-1]
-    outline = points[:, 0] + 1j * points[:, 1]
-    return outline if largest.reverse().exterior.is_ccw else outline[::-1]
+    ring = max(rings, key=lambda ring: ring.area).exterior
+    points = shapely.get_coordinates(ring if ring.is_ccw else ring.reverse())[:-1]
+    return np.asarray(points[:, 0] + 1j * points[:, 1])
 
 
 def xy(points: Complexes) -> Any:

@@ -66,7 +66,7 @@ class _Map(NamedTuple):
     @property
     def inverse(self) -> _Map:
         """The map that undoes this one."""
-        back = np.linalg.inv(self.linear)
+        back = np.asarray(np.linalg.inv(self.linear), np.float64)
         return _Map(back, -back @ self.shift)
 
 

@@ -12,7 +12,7 @@ from helpers.curves import arc, chain, sampled
 from helpers.svg_text import svg
 from scipy.spatial import cKDTree
 
-from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.base.arrays import Complexes, plane
 from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.escherization.carried_art import carried_art
 from voronoi_tiles.escherization.carried_paths import carried_paths
@@ -31,11 +31,16 @@ def blob(seed: int, count: int = 120) -> Complexes:
     return np.asarray(radius * np.exp(1j * t))
 
 
+def anywhere(rng: np.random.Generator, size: float, count: int) -> Complexes:
+    """So many points of a square about 0."""
+    return np.asarray(rng.uniform(-size, size, count) + 1j * rng.uniform(-size, size, count))
+
+
 def moved(seed: int, count: int = 120, size: float = 2.0) -> Complexes:
     """Displacements that change smoothly along an outline, the longest of them `size` long."""
     rng = np.random.default_rng(seed)
     t = np.arange(count) / count * 2 * np.pi
-    found = sum(rng.normal(0, 1, 2) @ (1, 1j) * np.exp(1j * k * t) for k in range(-4, 5))
+    found = sum(factor * np.exp(1j * k * t) for k, factor in enumerate(anywhere(rng, 1.0, 9).tolist(), -4))
     return np.asarray(found * (size / np.abs(found).max()))
 
 
@@ -62,7 +67,7 @@ def test_points_are_displaced_as_the_definition_says(seed: int) -> None:
     """Within and without, beside the outline and far from it; whichever way round the outline runs."""
     rng = np.random.default_rng(seed)
     field = carrying(seed)
-    points = rng.uniform(-60, 60, (20, 2)) @ (1, 1j)
+    points = anywhere(rng, 60.0, 20)
     points = np.concatenate((points, field.outline[:9] + rng.normal(0, 1e-6, 9), field.outline[9:20] * 0.97))
     right = np.array([shift_by_definition(field.outline, field.displacement, z) for z in points.tolist()])
     back = Carrying.of(field.outline[::-1], field.displacement[::-1], REACH)
@@ -109,7 +114,7 @@ def test_what_is_far_stays() -> None:
     beside = long.shift(1j * REACH * np.array([0.0, 0.25, 0.5, 0.75, 0.999, 1.01]))
     assert np.abs(beside - [1, 0.84375, 0.5, 0.15625, 3e-6, 0]).max() < 1e-5
     field = Carrying.of(2 * blob(2), moved(2), 3.0)
-    points = np.random.default_rng(2).uniform(-90, 90, (4000, 2)) @ (1, 1j)
+    points = anywhere(np.random.default_rng(2), 90.0, 4000)
     ring = shapely.LinearRing(np.column_stack((field.outline.real, field.outline.imag)))
     far = shapely.distance(ring, shapely.points(points.real, points.imag)) > math.pi * field.reach
     assert 500 < np.count_nonzero(far) < 3500
@@ -134,7 +139,7 @@ def test_what_is_folded_is_seen() -> None:
     """A side that is pushed further than it reaches passes over what lies behind it."""
     square = np.array([0, 60, 60 + 60j, 60j])
     field = Carrying.of(square, np.array([20j, 20j, 0, 0]), 10.0)
-    points = 30 + 1j * np.linspace(0.5, 30, 60)
+    points = np.asarray(30 + 1j * np.linspace(0.5, 30, 60))
     flips = np.diff(field(points).imag) < 0
     found = ~field.keeps_orientation(points)
     assert flips.sum() > 5
@@ -145,7 +150,7 @@ def test_derivatives_are_those_of_the_map() -> None:
     """Against differences of another step, along any direction, of any length; of none it is none."""
     field = carrying(3)
     rng = np.random.default_rng(3)
-    points, directions = 0.8 * field.outline[:40], rng.normal(0, 3, (40, 2)) @ (1, 1j)
+    points, directions = 0.8 * field.outline[:40], anywhere(rng, 4.0, 40)
     found = field.derivative(points, directions)
     step = 1e-4
     assert (
@@ -207,6 +212,23 @@ def test_paths_follow_the_map(seed: int, accuracy: float) -> None:
     assert apart(found, field(sampled(paths, step))) < accuracy + step
     assert apart(found, sampled(paths, step)) > 0.5
     assert len(image.start) < 300
+
+
+def test_a_finer_accuracy_has_more_curves_and_keeps_it() -> None:
+    """Where the displacement turns within a few millimetres: points of each are as near to the other's chords."""
+    line = chain((0.9 * blob(0)[3], 0.95 * blob(0)[17]), (0.95 * blob(0)[17], 0j, 0.9 * blob(0)[60]))
+    field = Carrying.of(blob(0), moved(0) * np.exp(0.9j * np.sin(np.arange(120))), REACH)
+    right = field(sampled(line, 5e-3))
+    counts = []
+    for accuracy in (1e-1, 1e-3, 1e-4):
+        image = carried_paths(line, field, accuracy=accuracy)
+        found = sampled(image, 5e-3)
+        for points, others in ((found[::23], right), (right[::23], found)):
+            chords = shapely.LineString(plane(others))
+            shapely.prepare(chords)
+            assert shapely.distance(chords, shapely.points(plane(points))).max() < accuracy + 1e-5
+        counts.append(len(image.start))
+    assert counts[0] < counts[1] < counts[2]
 
 
 def test_paths_stay_whole() -> None:

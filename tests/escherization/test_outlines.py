@@ -33,6 +33,8 @@ def test_an_outline_is_one_closed_curve_around_all_else(file: Path) -> None:
     """It crosses nowhere, is on the page, and what is drawn within is within; nothing of the file is left out."""
     drawing = read_drawing(file)
     assert not drawing.ignored
+    assert drawing.width is not None
+    assert drawing.height is not None
     outline, *rest = drawing.shapes
     assert outline.source.startswith("path 'outline'")
     assert (len(outline.paths), bool(outline.paths.closed[0])) == (1, True)

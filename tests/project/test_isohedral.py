@@ -154,7 +154,7 @@ def copies(tile: Tile) -> list[Complexes]:
         return (a, -a * b.conjugate(), True) if c else (1 / a, -b / a, False)
 
     steps = [*tile.maps, *map(inverse, tile.maps)]
-    words = {(0.0, 0.0, 1.0, 0.0, False): (1 + 0j, 0j, False)}
+    words: dict[tuple[float, ...], tuple[complex, complex, bool]] = {(0.0, 0.0, 1.0, 0.0, False): (1 + 0j, 0j, False)}
     for _ in range(3):
         for word in list(words.values()):
             for by in steps:

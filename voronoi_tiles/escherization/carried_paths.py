@@ -112,7 +112,7 @@ def _points(curves: Complexes, at: Floats) -> Complexes:
 def _still(pieces: _Pieces, carrying: Carrying, segments: int) -> Bools:
     """The segments of which nothing moves."""
     shift = carrying.shift(np.concatenate((pieces.curves[[0, 3]], _points(pieces.curves, _LOOKED_AT))))
-    return np.bincount(pieces.segment, (shift != 0.0).any(axis=0), segments) == 0.0
+    return np.asarray(np.bincount(pieces.segment, (shift != 0.0).any(axis=0), segments) == 0.0)
 
 
 def _kept(paths: Paths, still: Bools) -> Complexes:
@@ -124,7 +124,7 @@ def _image(pieces: _Pieces, carrying: Carrying) -> tuple[Complexes, Floats]:
     """The cubics with the image's ends and tangents there, and how far the image is from them at equal parameters."""
     curves = pieces.curves
     ends = carrying(curves[[0, 3]])
-    tangents = 3.0 * np.stack((curves[1] - curves[0], curves[3] - curves[2]))
+    tangents: Complexes = 3.0 * np.diff(curves, axis=0)[[0, 2]]
     leaving, arriving = carrying.derivative(curves[[0, 3]], tangents)
     image = np.stack((ends[0], ends[0] + leaving / 3, ends[1] - arriving / 3, ends[1]))
     apart = np.abs(_points(image, _LOOKED_AT) - carrying(_points(curves, _LOOKED_AT)))
