@@ -24,7 +24,7 @@ def test_the_table_has_every_file() -> None:
     assert [row[0] for row in rows] == [file.name for file in FILES]
     for name, width, height, within in rows:
         drawing = read_drawing(FOLDER / name)
-        assert (drawing.width, drawing.height) == (float(width), float(height))
+        assert (drawing.width, drawing.height) == pytest.approx((float(width), float(height)))
         assert (len(drawing.shapes) > 1) == (within != "-")
 
 
