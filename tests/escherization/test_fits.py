@@ -95,8 +95,10 @@ def test_the_search_is_the_same_again_and_on_other_processors() -> None:
     outline = random_polygon(9)
     told: list[float] = []
     once = vt.fit(outline, groups=["p1", "p3"], keep=3, strokes="outline", progress=lambda done, _: told.append(done))
-    again = vt.fit(outline, groups=["p1", "p3"], keep=3, strokes="outline", workers=2)
+    made: list[vt.Fit] = []
+    again = vt.fit(outline, groups=["p1", "p3"], keep=3, strokes="outline", workers=2, found=made.append)
     assert [each.design.source for each in once] == [each.design.source for each in again]
+    assert sorted(map(id, made)) == sorted(map(id, again))  # each was told, as it was made
     assert told == sorted(told)
     assert told[-1] == 1.0
     large = vt.fit(shapely.affinity.scale(outline, 10, 10), groups=["p1", "p3"], keep=1, strokes="outline")

@@ -16,7 +16,7 @@ from voronoi_tiles.base.text import counted
 from voronoi_tiles.designs.art import GUIDE
 from voronoi_tiles.escherization.goal_outline import GoalOutline
 from voronoi_tiles.formats.caveats import caveats
-from voronoi_tiles.formats.reading import DrawingError, ReadDrawing, Shape, read_drawing
+from voronoi_tiles.formats.reading import DrawingError, ReadDrawing, Shape, drawing_of, read_drawing
 from voronoi_tiles.paths.conversion import to_lines
 from voronoi_tiles.paths.paths import Paths
 
@@ -60,14 +60,25 @@ def read_outline(path: str | os.PathLike[str], *, element: str | None = None) ->
     too, are art; a second closed line beside it is refused. Raises DrawingError.
     """
     name = os.fspath(path)
-    _refuse_pixels(name)
+    _refuse_pixels(_head(name), name)
     drawing = read_drawing(name)
+    return _outline(drawing, name, None if element is None else read_drawing(name, element=element))
+
+
+def outline_of(data: bytes, name: str) -> DrawnOutline:
+    """The outline of an SVG or DXF file's content; `name` is that of the file. See `read_outline`."""
+    _refuse_pixels(data, name)
+    return _outline(drawing_of(data, name), name, None)
+
+
+def _outline(drawing: ReadDrawing, name: str, asked: ReadDrawing | None) -> DrawnOutline:
+    """The outline of a drawing; where a part of it is asked for, it is looked for in that alone."""
     shapes = [shape for shape in drawing.shapes if GUIDE not in shape.layer.casefold() and len(shape.paths)]
     contours = _contours(shapes, name)
     candidates = contours
-    if element is not None:
-        asked = [shape.paths.start for shape in read_drawing(name, element=element).shapes]
-        own = [any(np.array_equal(shape.paths.start, start) for start in asked) for shape in shapes]
+    if asked is not None:
+        starts = [shape.paths.start for shape in asked.shapes]
+        own = [any(np.array_equal(shape.paths.start, start) for start in starts) for shape in shapes]
         candidates = [each for each in contours if own[each.shape]]
     chosen = max((each for each in candidates if each.closed), key=lambda each: each.polygon.area, default=None)
     longest = max(candidates, key=lambda each: _extent(each.polygon), default=None)
@@ -83,7 +94,7 @@ def read_outline(path: str | os.PathLike[str], *, element: str | None = None) ->
             file=name,
             remedy="Close its path.",
         )
-    if element is None:
+    if asked is None:
         _refuse_second(chosen, contours, shapes, name)
     try:
         silhouette = GoalOutline.of(chosen.polygon)
@@ -100,13 +111,17 @@ def read_outline(path: str | os.PathLike[str], *, element: str | None = None) ->
     return DrawnOutline(stem or "outline", silhouette, replace(drawing, shapes=tuple(rest)), tuple(notes))
 
 
-def _refuse_pixels(name: str) -> None:
-    """Refuse a file of pixels, with what to do. A file that cannot be read is refused by the reader."""
+def _head(name: str) -> bytes:
+    """How a file begins. One that cannot be read is refused by the reader."""
     try:
         with open(name, "rb") as file:  # noqa: PTH123 - any name
-            head = file.read(8)
+            return file.read(8)
     except (OSError, ValueError):
-        return
+        return b""
+
+
+def _refuse_pixels(head: bytes, name: str) -> None:
+    """Refuse a file of pixels, with what to do."""
     if head.startswith(_PIXELS):
         raise DrawingError(
             "a picture of pixels has no outline",

@@ -11,7 +11,7 @@ import shutil
 import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
@@ -21,7 +21,6 @@ from voronoi_tiles.base.arrays import Complexes, plane
 from voronoi_tiles.base.errors import OutputError
 from voronoi_tiles.base.files import output_error, write_whole
 from voronoi_tiles.designs.art import GUIDE, Art
-from voronoi_tiles.designs.design import Design
 from voronoi_tiles.designs.drawn_site import Site
 from voronoi_tiles.escherization.carried_art import CarriedArt, carried_art
 from voronoi_tiles.escherization.carrying import Carrying
@@ -57,6 +56,13 @@ _SAMPLES: Final = 0.02
 
 _GIVEN: Final = "#2060c0"
 """The colour of the given outline on the contact sheet."""
+
+
+class FittedArt(NamedTuple):
+    """What else is drawn, as it is carried to the tile of a fit, and where it lies in the design."""
+
+    placed: Art
+    carried: CarriedArt
 
 
 def write_fits(
@@ -122,13 +128,22 @@ def _write_all(
     notes, pictures, rows = [], [], []
     for number, each in enumerate(fits, 1):
         stem = f"{number:0{len(str(len(fits)))}d}-{each.group}"
-        design, art = _with_art(each, folder, f"{stem}-art.svg", source, drawn, scale)
-        notes += [note for note in (art.notes if art else ()) if note not in notes]
+        art = fitted_art(each, f"{stem}-art.svg", source, drawn, scale)
+        design = each.design
+        if art is not None:
+            write_whole(folder / art.placed.file, art.carried.svg)
+            site = design.sites[0]
+            design = design.replace(sites=Site(site.strokes, name=site.name, art=art.placed), folder=folder)
+            notes += [note for note in art.carried.notes if note not in notes]
         design.save(folder / f"{stem}.toml")
         overlays = ("art",) if design.art[0] is not None else ()
         region = _square(each, _AROUND)
         render(design, folder / f"{stem}.png", size=_PICTURE, region=region, overlay=overlays, renderer="cpu")
-        pictures.append(_picture(each, design, art, stem))
+        caption = (
+            f"{each.group}: overlap {each.overlap:.3f}",
+            f"within {each.distance:.2g} mm, {each.corners} corners",
+        )
+        pictures.append(fit_picture(each, art, caption, f"{stem}.toml"))
         rows.append(_row(each, f"{stem}.toml"))
         if progress is not None:
             progress(number, len(fits))
@@ -158,12 +173,13 @@ def _row(fit: Fit, file: str) -> tuple[object, ...]:
     )
 
 
-def _with_art(
-    fit: Fit, folder: Path, file: str, source: str, drawn: DrawnOutline, scale: float
-) -> tuple[Design, CarriedArt | None]:
-    """The design of a fit with what else is drawn, carried to the tile and written to a file."""
+def fitted_art(fit: Fit, file: str, source: str, drawn: DrawnOutline, scale: float) -> FittedArt | None:
+    """What else is drawn, carried to the tile of a fit, as the art of its site in a `file`; None where nothing is.
+
+    `source` is the drawing's name, `scale` how many times as large as drawn the outline is.
+    """
     if not drawn.rest.shapes:
-        return fit.design, None
+        return None
     given, size = fit.silhouette, drawn.silhouette.size
 
     def as_drawn(points: Complexes) -> Complexes:
@@ -176,12 +192,8 @@ def _with_art(
     reach = float(np.clip(4.0 * np.abs(moved).max(), 0.15 * size, 0.5 * size))
     guide = Paths.polylines([as_drawn(corners(ring))], closed=True)
     art = carried_art(drawn.rest, source, None, Carrying.of(as_drawn(outline), moved, reach), guide=guide)
-    write_whole(folder / file, art.svg)
     shift = fit.placement.centre + scale * (art.corner - drawn.silhouette.centroid) * cmath.exp(1j * fit.placement.turn)
-    placed = Art(file, scale=scale, rotate=math.degrees(fit.placement.turn), translate=shift)
-    site = fit.design.sites[0]
-    sites = Site(site.strokes, name=site.name, art=placed)
-    return fit.design.replace(sites=sites, folder=folder), art
+    return FittedArt(Art(file, scale=scale, rotate=math.degrees(fit.placement.turn), translate=shift), art)
 
 
 def _square(fit: Fit, times: float) -> tuple[float, float, float, float]:
@@ -191,14 +203,14 @@ def _square(fit: Fit, times: float) -> tuple[float, float, float, float]:
     return x - half, y - half, x + half, y + half
 
 
-def _picture(fit: Fit, design: Design, art: CarriedArt | None, stem: str) -> SheetPicture:
+def fit_picture(fit: Fit, art: FittedArt | None, caption: tuple[str, ...] = (), link: str = "") -> SheetPicture:
     """A tile with its stroke, its neighbours and its art, as upright as the outline is drawn, which lies over it."""
     back, centre = cmath.exp(-1j * fit.placement.turn), fit.placement.centre
 
     def upright(paths: Paths) -> Paths:
         return paths.moved(back, -centre * back)
 
-    tile, placed = fit.tiling[0], design.art[0]
+    tile = fit.tiling[0]
     copies = fit.tiling.copies(_square(fit, _AROUND))
     given = upright(Paths.polylines([corners(fit.outline.exterior)], closed=True))
     drawn = [
@@ -206,15 +218,14 @@ def _picture(fit: Fit, design: Design, art: CarriedArt | None, stem: str) -> She
         DrawnPaths(upright(tile.outline.paths), TILE_FILL, INK),
         DrawnPaths(upright(Paths.polylines(list(tile.site.ends))), "", SITE_INK, 1.0),
     ]
-    if art is not None and placed is not None:
-        shapes = [shape for shape in drawing_of(art.svg, f"{stem}.svg").shapes if GUIDE not in shape.layer]
-        unit, shift, _ = placed.placement.similarity
+    if art is not None:
+        shapes = [shape for shape in drawing_of(art.carried.svg, art.placed.file).shapes if GUIDE not in shape.layer]
+        unit, shift, _ = art.placed.placement.similarity
         drawn += [DrawnPaths(upright(shape.paths.moved(unit, shift)), "", shape.stroke or INK) for shape in shapes]
     drawn.append(DrawnPaths(given, "", _GIVEN, 1.5))
     left, bottom, right, top = given.bounds
     half, x, y = 0.6 * max(right - left, top - bottom), (left + right) / 2.0, (bottom + top) / 2.0
-    caption = (f"{fit.group}: overlap {fit.overlap:.3f}", f"within {fit.distance:.2g} mm, {fit.corners} corners")
-    return SheetPicture(tuple(drawn), (x - half, y - half, x + half, y + half), caption, f"{stem}.toml")
+    return SheetPicture(tuple(drawn), (x - half, y - half, x + half, y + half), caption, link)
 
 
 def corners(ring: LinearRing) -> Complexes:

@@ -106,6 +106,7 @@ def fit(
     workers: int | None = 1,
     scheduler: str | None = None,
     progress: Callable[[float, float], None] | None = None,
+    found: Callable[[Fit], object] | None = None,
 ) -> list[Fit]:
     """Designs whose tiles come nearest to an outline, in millimetres: the nearest first, `keep` of them at most.
 
@@ -114,7 +115,8 @@ def fit(
     `mirrored` False only those are, whose copies are never mirror images. `strokes` are an "outline" drawn a little
     smaller, or "few": a closed stroke of fewer corners, whose tile is within `within` millimetres of that one's
     (without it, a two-hundredth of the side of a square of the outline's area). The same `seed`, from 0, gives the same
-    designs, whatever the number of `workers`; None takes all processors.
+    designs, whatever the number of `workers`; None takes all processors. `found` is told each design as soon as it is
+    made, in any order.
 
     Raises ArgumentError for an outline that crosses itself, has holes or no area, and for groups that are none.
     """
@@ -126,11 +128,14 @@ def fit(
     near = WITHIN * silhouette.size if within is None else number("within", within, "Give millimetres.", least=1e-6)
     seed = int(number("seed", seed, "Give a whole number from 0.", least=0))
     phases = _Phases(workers, scheduler, progress)
-    found = phases.run(partial(found_placements, silhouette.unit, seed), names, 0.5)
-    ordered = sorted((each for row in found for each in row), key=lambda each: each.uncovered)
+    seen = phases.run(partial(found_placements, silhouette.unit, seed), names, 0.5)
+    ordered = sorted((each for row in seen for each in row), key=lambda each: each.uncovered)
     best = _best(phases, partial(_made, silhouette, name), ordered, count, len(names))
     if strokes == "few":
-        best = phases.run(partial(_with_fewer_corners, near), best, 1.0)
+        best = phases.run(partial(_with_fewer_corners, near), best, 1.0, found)
+    else:
+        for each in best if found is not None else ():
+            found(each)
     return sorted(best, key=lambda each: -each.overlap)
 
 
@@ -170,13 +175,24 @@ class _Phases:
     progress: Callable[[float, float], None] | None
     _done: float = 0.0
 
-    def run(self, function: Callable[[Block], Result], blocks: Sequence[Block], until: float) -> list[Result]:
-        """What a function gives of each block, in their order; then so much of all work is done, a share."""
+    def run(
+        self,
+        function: Callable[[Block], Result],
+        blocks: Sequence[Block],
+        until: float,
+        tell: Callable[[Result], object] | None = None,
+    ) -> list[Result]:
+        """What a function gives of each block, in their order; then so much of all work is done, a share.
+
+        `tell` is told each as it comes.
+        """
         results: dict[int, Result] = {}
         for k, result in run_blocks(function, blocks, workers=self.workers, scheduler=self.scheduler):
             if isinstance(result, LostBlock):
                 raise SchedulerError(f"a part of the search came to nothing: {result.reason}", remedy="Try it again.")
             results[k] = result
+            if tell is not None:
+                tell(result)
             if self.progress is not None:
                 self.progress(self._done + (until - self._done) * len(results) / len(blocks), 1.0)
         self._done = until

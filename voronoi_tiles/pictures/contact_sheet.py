@@ -122,6 +122,11 @@ class SheetPicture:
         drawn += [DrawnPaths(Paths.polylines(list(ends)), "", SITE_INK, 2.0) for _, ends in tiles]
         return cls((*drawn, *over), square_about(outline for outline, _ in tiles), tuple(caption), link)
 
+    @property
+    def svg(self) -> str:
+        """The picture alone as an SVG file, without its caption and link."""
+        return f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {_SIDE} {_SIDE}">{_elements(self)}</svg>'
+
 
 @dataclass(frozen=True, eq=False)
 class ContactSheet:
@@ -247,18 +252,22 @@ def _figure(picture: SheetPicture) -> str:
     """A picture of the page."""
     lines = [html.escape(line) for line in picture.caption]
     label = html.escape(", ".join(picture.caption) or "a tile", quote=True)
-    drawn = "".join(
-        f'<path d="{_data(shown, picture)}" '
-        + " ".join(f'{name.replace("_", "-")}="{value}"' for name, value in _style(shown).items())
-        + "/>"
-        for shown in picture.drawn
-    )
-    image = f'<svg role="img" aria-label="{label}" viewBox="0 0 {_SIDE} {_SIDE}">{drawn}</svg>'
+    image = f'<svg role="img" aria-label="{label}" viewBox="0 0 {_SIDE} {_SIDE}">{_elements(picture)}</svg>'
     caption = f"<figcaption>{'<br>'.join(lines)}</figcaption>" if lines else ""
     inside = (
         f'<a href="{html.escape(picture.link, quote=True)}">{image}{caption}</a>' if picture.link else image + caption
     )
     return f"<figure>{inside}</figure>"
+
+
+def _elements(picture: SheetPicture) -> str:
+    """What is drawn, as elements of SVG."""
+    return "".join(
+        f'<path d="{_data(shown, picture)}" '
+        + " ".join(f'{name.replace("_", "-")}="{value}"' for name, value in _style(shown).items())
+        + "/>"
+        for shown in picture.drawn
+    )
 
 
 def _style(shown: DrawnPaths) -> dict[str, object]:
