@@ -81,12 +81,26 @@ def test_no_tile_has_more_in_common_with_an_outline_than_the_bound(seed: int) ->
 
 
 @pytest.mark.parametrize("group", ["p1", "p2", "p3", "p4", "p6", "pg", "pgg", "cm", "pmg"])
-def test_a_stroke_drawn_apart_lies_inside_and_outside_of_copies(group: str) -> None:
-    """By APART of the size at least, but for the corners that are left out; so that copies of it do not touch."""
-    silhouette = GoalOutline.of(random_polygon(3)).unit
-    placement = placed(silhouette, group, 2)
-    own, copies = laid_out(silhouette, placement)
-    stroke = shapely.Polygon(plane(drawn_apart(silhouette, placement)))
-    assert stroke.is_valid
-    assert own.buffer(-0.6 * APART).contains(stroke)
-    assert all(copy.distance(stroke) >= 0.6 * APART for copy in copies)
+def test_a_stroke_drawn_apart_lies_inside_and_its_copies_keep_apart(group: str) -> None:
+    """By APART of the size, but for the corners that are left out; whether lenses are halved or kept as a whole."""
+    for seed in range(3):
+        silhouette = GoalOutline.of(random_polygon(seed)).unit
+        placement = placed(silhouette, group, 2)
+        own, _ = laid_out(silhouette, placement)
+        corners = drawn_apart(silhouette, placement)
+        stroke = shapely.Polygon(plane(corners))
+        assert stroke.is_valid
+        assert own.buffer(-0.6 * APART).contains(stroke)
+        copies = [shapely.Polygon(plane(copy(corners))) for copy in placement.copies(2.0 * silhouette.reach)]
+        assert all(copy.distance(stroke) >= 0.3 * APART for copy in copies)
+
+
+def test_a_limb_that_a_copy_crosses_stays_whole() -> None:
+    """A long leg that lies across the foot of a copy: halves would leave the body alone; now the leg is there, and as
+    much of it lost as the copy's foot takes."""
+    figure = GoalOutline.of([0j, 10 + 0j, 10 + 4j, 22 + 4j, 22 + 10j, 18 + 10j, 18 + 6j, 10 + 6j, 10 + 10j, 10j])
+    group = vt.GROUPS["p1"]
+    area = figure.area
+    lattice = vt.Lattice(11.6 + 0j, complex(0.0, area / 11.6))
+    stroke = shapely.Polygon(plane(drawn_apart(figure, GroupPlacement(group, lattice, 0.0, figure.centroid))))
+    assert stroke.area > 0.6 * area

@@ -72,7 +72,7 @@ def test_what_a_fit_says_is_so(seed: int) -> None:
     size = math.sqrt(outline.area)
     (whole,) = vt.fit(outline, groups="p2", keep=1, strokes="outline", name="bird")
     (few,) = vt.fit(outline, groups="p2", keep=1, within=0.01 * size, name="bird")
-    assert few.corners < 0.7 * whole.corners
+    assert few.corners < 0.8 * whole.corners
     assert few.overlap >= whole.overlap - 0.05
     for found in (whole, few):
         assert judged(found) == pytest.approx(found.overlap, abs=2e-3)

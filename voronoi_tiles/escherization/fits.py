@@ -136,6 +136,8 @@ def fit(
     else:
         for each in best if found is not None else ():
             found(each)
+    if progress is not None:
+        progress(1.0, 1.0)
     return sorted(best, key=lambda each: -each.overlap)
 
 
