@@ -75,6 +75,9 @@ if TYPE_CHECKING:
     from voronoi_tiles.solid.stack import Stack, StackSheet, stack
     from voronoi_tiles.solid.stack_job import StackJob
     from voronoi_tiles.solid.standing import stand
+    from voronoi_tiles.sweeps.sweep import Sweep
+    from voronoi_tiles.sweeps.sweep_run import SweepResult, sweep
+    from voronoi_tiles.sweeps.sweep_table import SweepTable
     from voronoi_tiles.tile import Tile, TileCopy
     from voronoi_tiles.tiling import Tiling
     from voronoi_tiles.vector.arcs import Arc, LineArc, Neighbour, ParabolaArc
@@ -142,6 +145,9 @@ __all__ = [
     "StackJob",
     "StackSheet",
     "Stroke",
+    "Sweep",
+    "SweepResult",
+    "SweepTable",
     "Tile",
     "TileCopy",
     "TileGradient",
@@ -172,6 +178,7 @@ __all__ = [
     "stand",
     "starter",
     "starter_text",
+    "sweep",
 ]
 
 _HOMES = {
@@ -220,6 +227,9 @@ _HOMES = {
     "voronoi_tiles.solid.stack": "Stack StackSheet stack",
     "voronoi_tiles.solid.stack_job": "StackJob",
     "voronoi_tiles.solid.standing": "stand",
+    "voronoi_tiles.sweeps.sweep": "Sweep",
+    "voronoi_tiles.sweeps.sweep_run": "SweepResult sweep",
+    "voronoi_tiles.sweeps.sweep_table": "SweepTable",
     "voronoi_tiles.tile": "Tile TileCopy",
     "voronoi_tiles.tiling": "Tiling",
     "voronoi_tiles.vector.arcs": "Arc LineArc Neighbour ParabolaArc",

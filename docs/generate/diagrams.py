@@ -1,7 +1,7 @@
 """The drawings and tables of the documentation, from the project's own numbers: docs/pictures, and tables in pages.
 
 Run it after a change of the engine, of the groups or of an example in docs/design-file.md: python
-docs/generate/diagrams.py [tables] [groups] [strokes] [method] [cones] [gradients] [fits].
+docs/generate/diagrams.py [tables] [groups] [strokes] [method] [cones] [gradients] [fits] [sweeps].
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import diagrams_gradients
 import diagrams_groups
 import diagrams_method
 import diagrams_strokes
+import diagrams_sweeps
 import diagrams_tables
 
 PARTS = {
@@ -24,6 +25,7 @@ PARTS = {
     "cones": diagrams_cones.write,
     "gradients": diagrams_gradients.write,
     "fits": diagrams_fits.write,
+    "sweeps": diagrams_sweeps.write,
 }
 
 

@@ -29,7 +29,8 @@ def star(rng: np.random.Generator, middle: complex, size: float) -> Complexes:
     """A star-shaped polygon about a point."""
     count = int(rng.integers(3, 12))
     angles = np.sort(rng.random(count) + np.arange(count)) / count * 2 * np.pi
-    return middle + size * rng.uniform(0.3, 1.0, count) * np.exp(1j * angles)
+    corners: Complexes = middle + size * rng.uniform(0.3, 1.0, count) * np.exp(1j * angles)
+    return corners
 
 
 @pytest.mark.parametrize("seed", range(20))

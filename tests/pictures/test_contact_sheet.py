@@ -97,6 +97,17 @@ def test_pictures_in_the_png_are_where_the_svg_has_them() -> None:
     assert rows.max() == 16 + side - 1
 
 
+def test_a_site_that_is_a_point_is_a_dot() -> None:
+    """A point has no length, and is drawn all the same, in SVG and in the PNG."""
+    tiling = vt.Design("p1", (60, 50, 75), vt.Site(vt.point(20 + 20j))).tessellate()
+    tile = tiling[0]
+    sheet = ContactSheet((SheetPicture.of_tiles([(tile.outline, tile.site.ends)]),))
+    red = bytes.fromhex("b03020")
+    assert (sheet.pixels == list(red)).all(axis=2).any()
+    assert [path.get("stroke") for path in ET.fromstring(sheet.svg).iter(f"{SVG}path")][-1] == "#b03020"
+    assert len([path for path in ET.fromstring(sheet.svg).iter(f"{SVG}path") if path.get("d")]) == 2
+
+
 def test_a_long_caption_keeps_to_its_picture(sheet: ContactSheet) -> None:
     """A line that would not fit has smaller letters: no ink between the columns."""
     only = ContactSheet((SheetPicture((), (0, 0, 1, 1), sheet.pictures[1].caption),) * 2, columns=2)

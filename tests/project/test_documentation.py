@@ -505,7 +505,7 @@ def test_the_tables_of_the_groups_are_computed() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("part", ["strokes", "method", "gradients"])
+@pytest.mark.parametrize("part", ["strokes", "method", "gradients", "sweeps"])
 def test_the_drawings_are_made_anew(part: str, tmp_path: Path) -> None:
     """docs/pictures hold what docs/generate draws of the engine's answers: the same paths, to 0.02 of a point."""
     script = (
@@ -524,6 +524,21 @@ def test_the_drawings_are_made_anew(part: str, tmp_path: Path) -> None:
         assert places, path.name
         assert [part for part in made if part.isalpha()] == [part for part in kept if part.isalpha()], path.name
         assert [float(made[k]) for k in places] == pytest.approx([float(kept[k]) for k in places], abs=0.02), path.name
+
+
+def test_the_sweep_of_its_page_is_the_example() -> None:
+    """docs/sweeps.md shows examples/sweeps/birds.toml, of which its picture is made, and every key and column."""
+    text = text_of("sweeps.md")
+    shown = next(block.body for block in blocks(text) if block.comments.get("file") == "birds.toml")
+    assert shown == (ROOT / "examples/sweeps/birds.toml").read_text(encoding="utf-8")
+    sweep = vt.Sweep(vt.starter("p4"), {"cell.a": [60]}, job={"sheet": "30x20cm"})
+    with pytest.raises(vt.DesignError) as raised:
+        vt.Sweep.from_dict({"nonsense": 1})
+    keys = re.search(r"The keys here are (.*)\.", str(raised.value))
+    assert keys
+    rows = "\n".join(re.findall(r"^\| ([^|]*) \|", text, re.MULTILINE))
+    for name in (*keys[1].split(", "), *sweep.columns):
+        assert name == "cell.a" or f"`{name}`" in rows, name
 
 
 def general_tile(group: str, seed: int) -> tuple[vt.Tile, vt.Lattice]:

@@ -21,7 +21,7 @@ RANKS = (
     ("fabrication", "preflight", "crosscheck", "pictures", "gradients"),
     ("tile",),
     ("tiling",),
-    ("escherization", "solid"),
+    ("escherization", "solid", "sweeps"),
     ("blender", "inkscape", "studio"),
     ("cli",),
 )

@@ -34,6 +34,7 @@ COMMANDS: Final = (
     "report",
     "solid",
     "studio",
+    "sweep",
     "template",
     "watch",
 )

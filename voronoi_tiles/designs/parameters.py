@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import cmath
 import json
+import math
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
@@ -41,7 +43,7 @@ class Parameter(NamedTuple):
 
 def drawn_parameters(design: Design) -> list[Parameter]:
     """The free numbers of the cell, then the coordinates and radii of all strokes, in the order of the file."""
-    found = [Parameter(f"cell.{name}") for name in _free(design.group)]
+    found = [Parameter(f"cell.{name}") for name in free_in_cell(design.group)]
     for i, site in enumerate(json.loads(design.drawn)["site"]):
         for k, stroke in enumerate(site["strokes"]):
             kind = next(name for name in KINDS if name in stroke)
@@ -90,7 +92,13 @@ def _placing(by_name: dict[str, Parameter], name: str) -> list[Parameter]:
     return [by_name[full] for full in (f"{name}[0]", f"{name}[1]") if full in by_name]
 
 
-def _free(group: WallpaperGroup) -> list[str]:
+def is_free(parameter: Parameter, group: WallpaperGroup) -> bool:
+    """Whether a group leaves a number free, as all do but some of the cell."""
+    section, _, name = parameter.key.partition(".")
+    return section != "cell" or name in free_in_cell(group)
+
+
+def free_in_cell(group: WallpaperGroup) -> list[str]:
     """The numbers of the cell that a group leaves free."""
     return ["a", *([] if group.fixes_b else ["b"]), *(["angle"] if group.fixed_angle is None else [])]
 
@@ -112,14 +120,33 @@ def values_of(design: Design, parameters: Sequence[Parameter]) -> list[float]:
     return found
 
 
-def with_values(design: Design, parameters: Sequence[Parameter], values: Iterable[float]) -> Design:
-    """The design with other values of parameters, checked again. Raises DesignError."""
+def with_values(
+    design: Design,
+    parameters: Sequence[Parameter],
+    values: Iterable[float],
+    group: WallpaperGroup | None = None,
+) -> Design:
+    """The design with other values of parameters, in its own or another group, checked again. Raises DesignError.
+
+    In another group strokes stay where they are, and the cell keeps its sides and its angle as far as they are free
+    there; parameters of the cell that are not are left out.
+    """
     table = json.loads(design.drawn)
-    for name in table["cell"].keys() - set(_free(design.group)):
+    group = design.group if group is None else group
+    free = free_in_cell(group)
+    if group is not design.group:
+        a, b = design.lattice.a, design.lattice.b
+        own = {"b": table["cell"]["a"] * abs(b) / abs(a), "angle": math.degrees(cmath.phase(b / a))}
+        table["group"], table["cell"] = (
+            group.name,
+            {**{name: own[name] for name in own if name in free}, **table["cell"]},
+        )
+    for name in table["cell"].keys() - set(free):
         del table["cell"][name]  # it has to follow the side
     for parameter, value in zip(parameters, values, strict=True):
-        holder, key = _holder(table, parameter)
-        holder[key] = float(value)
+        if is_free(parameter, group):
+            holder, key = _holder(table, parameter)
+            holder[key] = float(value)
     return type(design).from_dict(table, name=design.name, folder=design.folder)
 
 

@@ -50,9 +50,18 @@ def run_blocks(
     Raises ArgumentError for workers and schedulers that cannot be, MissingLibraryError where Dask is asked for and not
     installed, and SchedulerError for a scheduler that cannot be reached, has no worker of our version, or goes away.
     """
-    with _opened(function, blocks, workers, scheduler) as runner:
+    return _results(_opened(function, blocks, workers, scheduler), len(blocks))
+
+
+def _results(
+    opened: AbstractContextManager[BlockRunner[Result]], count: int
+) -> Generator[tuple[int, Result | LostBlock], None, None]:
+    """The results of so many blocks; those that are lost are tried again at the end, each alone."""
+    if not count:
+        return
+    with opened as runner:
         lost = []
-        for number, result in runner.finished(range(len(blocks))):
+        for number, result in runner.finished(range(count)):
             if isinstance(result, LostBlock):
                 lost.append(number)
             else:

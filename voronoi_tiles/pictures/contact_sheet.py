@@ -11,13 +11,15 @@ import math
 import os
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any, Final, Self
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from voronoi_tiles.base.arguments import path_name
-from voronoi_tiles.base.arrays import Complexes
+from voronoi_tiles.base.arrays import Complexes, plane
 from voronoi_tiles.base.files import require_suffix, write_whole
 from voronoi_tiles.base.text import xml_text
 from voronoi_tiles.base.version import __version__
@@ -37,7 +39,7 @@ from voronoi_tiles.vector.outline import Outline
 SUFFIXES: Final = (".svg", ".png", ".html")
 """The files that a contact sheet can be."""
 
-TILE_FILL, COPY_FILL, INK, SITE_INK = "#f3ead8", "#ffffff", "#26222a", "#b03020"
+TILE_FILL, INK, SITE_INK = "#f3ead8", "#26222a", "#b03020"
 
 _SIDE: Final = 220
 """The side of a picture; pixels."""
@@ -61,7 +63,10 @@ _PEN: Final = 1.1
 """The width of letters' strokes; pixels."""
 
 _ROUGH: Final = 0.05
-"""How far chords may be from curves in a PNG; pixels."""
+"""How far chords may be from curves; pixels."""
+
+_SLIGHT: Final = 0.1
+"""How far lines may be from chords that they take the place of; pixels."""
 
 _COLUMNS_MAX: Final = 8
 """Most pictures beside each other where their number is not given; a count."""
@@ -117,9 +122,9 @@ class SheetPicture:
         """
         fills = [TILE_FILL] if len(tiles) == 1 else [f"#{bytes(row).hex()}" for row in palette(len(tiles))]
         outlines = Paths.concatenate([outline.paths for outline in copies])
-        drawn = [DrawnPaths(outlines, COPY_FILL, INK, 0.5)] if len(outlines) else []
+        drawn = [DrawnPaths(outlines, "", INK, 0.5)] if len(outlines) else []
         drawn += [DrawnPaths(outline.paths, fill, INK) for (outline, _), fill in zip(tiles, fills, strict=True)]
-        drawn += [DrawnPaths(Paths.polylines(list(ends)), "", SITE_INK, 2.0) for _, ends in tiles]
+        drawn += [DrawnPaths(_chained(ends), "", SITE_INK, 2.0) for _, ends in tiles]
         return cls((*drawn, *over), square_about(outline for outline, _ in tiles), tuple(caption), link)
 
     @property
@@ -190,7 +195,7 @@ class ContactSheet:
                 _letters(line, 1.0, _SIDE, "centre").moved(1.0, _SIDE / 2 - 1j * (k + 0.75) * _LINE)
                 for k, line in enumerate(picture.caption)
             ]
-            drawn = [replace(shown, paths=_in_pixels(shown.paths, picture)) for shown in picture.drawn]
+            drawn = [_in_pixels(shown, picture) for shown in picture.drawn]
             image[y : y + frame.height, x : x + _SIDE] = _image(drawn, Paths.concatenate(lines), frame)
         return image
 
@@ -280,20 +285,46 @@ def _style(shown: DrawnPaths) -> dict[str, object]:
 
 def _data(shown: DrawnPaths, picture: SheetPicture) -> str:
     """The path data of a drawing."""
-    return path_data(_in_pixels(shown.paths, picture), top=_SIDE, number=_decimal)
+    return path_data(_in_pixels(shown, picture).paths, top=_SIDE, number=_decimal)
 
 
 def _decimal(value: float) -> str:
-    """A coordinate in pixels, to a hundredth."""
-    text = f"{value:.2f}".rstrip("0").rstrip(".")
+    """A coordinate in pixels, to a tenth."""
+    text = f"{value:.1f}".rstrip("0").rstrip(".")
     return "0" if text == "-0" else text
 
 
-def _in_pixels(paths: Paths, picture: SheetPicture) -> Paths:
-    """Paths in the pixels of a picture, from its lower left corner, y up; its region lies in the middle."""
+def _chained(ends: Complexes) -> Paths:
+    """The elements of a site (k, 2) as paths: each goes on as long as the next begins where the one before ends."""
+    begins = np.flatnonzero(ends[1:, 0] != ends[:-1, 1]) + 1
+    return Paths.polylines([np.append(part[:, 0], part[-1, 1]) for part in np.split(ends, begins)])
+
+
+def _in_pixels(shown: DrawnPaths, picture: SheetPicture) -> DrawnPaths:
+    """A drawing in the pixels of its picture, from the lower left corner, y up; the region lies in the middle.
+
+    It is of as few straight lines as show the same, and of what is not filled no more than can be seen: an outline may
+    have a thousand arcs, a picture a dozen copies, and a sheet as many of them.
+    """
     x0, y0, x1, y1 = picture.region
     scale = _SIDE / max(x1 - x0, y1 - y0)
-    return paths.moved(scale, complex(_SIDE, _SIDE) / 2 - scale * complex(x0 + x1, y0 + y1) / 2)
+    placed = shown.paths.moved(scale, complex(_SIDE, _SIDE) / 2 - scale * complex(x0 + x1, y0 + y1) / 2)
+    cut = to_lines(placed, accuracy=_ROUGH)
+    lines = [
+        shapely.linestrings(plane(np.append(cut.start[first:last], cut.end[last - 1])))
+        for first, last in pairwise(cut.offsets.tolist())
+    ]
+    few = shapely.simplify(np.array(lines, object), _SLIGHT, preserve_topology=False)
+    if shown.fill:
+        rings = [shapely.get_coordinates(line)[:-1] @ (1, 1j) for line in few]
+        return replace(shown, paths=Paths.polylines(rings, closed=True))
+    low, high = -shown.width, _SIDE + shown.width
+    length = shapely.length(few)
+    dots = [
+        line for line, long in zip(lines, length, strict=True) if not long
+    ]  # a line of no length is nothing to clip
+    seen = [*shapely.get_parts(shapely.clip_by_rect(few[length > 0], low, low, high, high)), *dots]
+    return replace(shown, paths=Paths.polylines([shapely.get_coordinates(line) @ (1, 1j) for line in seen]))
 
 
 def _height(text: str, size: float, room: float) -> float:
@@ -321,7 +352,7 @@ def _image(drawn: Sequence[DrawnPaths], letters: Paths, frame: Frame) -> Pixels:
     top = frame.origin.imag
     seen = image[: int(top)]
     for shown in drawn:
-        sides = to_lines(shown.paths, accuracy=_ROUGH)
+        sides = shown.paths
         if shown.fill:
             start, end = (1j * top + points.conj() for points in (sides.start, sides.end))
             _blend(seen, area_coverage(start, end, frame.width, int(top)), shown.fill)
