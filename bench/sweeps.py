@@ -22,7 +22,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 from processes import usage_of
 from report import machine, published, table
@@ -148,7 +148,7 @@ def cluster() -> Iterator[str]:
     dask = str(Path(sys.executable).with_name("dask"))
     with tempfile.TemporaryDirectory() as place:
         file = Path(place) / "scheduler.json"
-        quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": place}
+        quiet: Any = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": place}
         started = [
             subprocess.Popen(  # noqa: S603 - of our environment
                 [dask, "scheduler", "--port", "0", "--no-dashboard", "--scheduler-file", str(file)], **quiet

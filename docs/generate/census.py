@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import multiprocessing
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
 from chambers import Chamber, chamber_about, chamber_numbers
+from in_blocks import add_options, in_blocks
 from numpy.typing import NDArray
 from random_sites import CELLS, random_design
 from shapes import Shape, congruent
@@ -137,10 +137,24 @@ def census(group: str, sites: int, cell: dict[str, float] | None = None) -> Cens
     return result
 
 
-def censuses(groups: Iterable[str], sites: int, cell: dict[str, float] | None = None) -> Iterator[Census]:
-    """Measure several groups, on all cores; in their order."""
-    with multiprocessing.Pool() as pool:
-        yield from pool.starmap(census, [(group, sites, cell) for group in groups], chunksize=1)
+Cell = dict[str, float] | None
+
+
+def censuses(
+    groups: Iterable[str],
+    sites: int,
+    cell: Cell = None,
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+) -> list[Census]:
+    """Measure several groups, on all processors or on Dask (see `in_blocks`); in their order."""
+    return in_blocks(census_of, [(group, sites, cell) for group in groups], workers=workers, scheduler=scheduler)
+
+
+def census_of(block: tuple[str, int, Cell]) -> Census:
+    """The census of a group, as a block."""
+    return census(*block)
 
 
 class _Shapes:
@@ -255,11 +269,13 @@ def main() -> None:
     parser.add_argument("groups", nargs="*", default=list(GROUPS), help="groups (default: all)")
     parser.add_argument("--sites", type=int, default=1000, help="random sites per group (default: 1000)")
     parser.add_argument("--even", action="store_true", help="cells with a = b, for groups with rectangular ones")
+    add_options(parser)
     options = parser.parse_args()
     other = [name for name in options.groups if GROUPS[name].system != "rectangular"]
     if options.even and other:
         parser.error(f"--even is for groups with rectangular cells, not for {', '.join(other)}")
-    for found in censuses(options.groups, options.sites, EVEN if options.even else None):
+    where = {"workers": options.workers, "scheduler": options.scheduler}
+    for found in censuses(options.groups, options.sites, EVEN if options.even else None, **where):
         print(describe(found))
 
 

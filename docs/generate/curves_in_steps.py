@@ -7,12 +7,12 @@ the outlines of the two tiles lie apart is measured.
 from __future__ import annotations
 
 import argparse
-import multiprocessing
 from dataclasses import dataclass
 from itertools import count
 
 import numpy as np
 import shapely
+from in_blocks import in_blocks
 from numpy.typing import NDArray
 from random_sites import random_design
 
@@ -65,8 +65,7 @@ def measure(number: int) -> Apart:
 
 def curves_in_steps(curves: int) -> list[Apart]:
     """The distances of so many random curves, on all cores; the same whatever their number."""
-    with multiprocessing.Pool() as pool:
-        return pool.map(measure, range(curves), chunksize=4)
+    return in_blocks(measure, range(curves))
 
 
 def hausdorff(one: Outline, other: Outline) -> float:

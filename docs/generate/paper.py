@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import multiprocessing
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,6 +12,7 @@ import figures
 from census import EVEN, POINTS, Census, census, censuses
 from claims import CLAIMS, WRONG, Claim, groups_of, outcome, table
 from curves_in_steps import KERF
+from in_blocks import add_options, in_blocks
 from random_sites import TOLERANCE
 from running import ROOT, Command, command_block, image_table, run_all
 from sentences import DRAWS, NOTICEABLE, TILES, Sentences
@@ -174,13 +174,14 @@ def main() -> None:
     """Make the pictures, measure, and write the page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--sites", type=int, default=SITES, help=f"random sites per group (default: {SITES})")
+    add_options(parser)
     options = parser.parse_args()
+    where = {"workers": options.workers, "scheduler": options.scheduler}
     began = time.monotonic()
     run_all(commands())
     print(f"pictures: {time.monotonic() - began:.0f} s", flush=True)
-    with multiprocessing.Pool() as pool:
-        agreed = pool.map(agrees, sorted((ROOT / "examples" / "paper").glob("*.toml")))
-    rows = list(censuses(GROUPS, options.sites))
+    agreed = in_blocks(agrees, sorted((ROOT / "examples" / "paper").glob("*.toml")), **where)
+    rows = censuses(GROUPS, options.sites, **where)
     even = census(EVEN_GROUP, options.sites // 10, EVEN)
     PAGE.write_text(page(rows, even, agreed, Sentences.measured()), encoding="utf-8")
     print(f"{PAGE.relative_to(ROOT)}: {time.monotonic() - began:.0f} s in all")

@@ -194,6 +194,13 @@ def polygon_middle(corners: np.ndarray) -> complex:
     return complex(corners.mean())
 
 
+def test_censuses_are_the_same_in_other_processes() -> None:
+    """Two processes measure what this one does, in the order of the groups."""
+    groups = ("p4", "p2", "pgg")
+    found = measuring.censuses(groups, 2, workers=2)
+    assert [measuring.describe(each) for each in found] == [measuring.describe(census(group, 2)) for group in groups]
+
+
 @pytest.mark.parametrize("group", list(GROUPS))
 def test_a_small_census(group: str) -> None:
     """Eight sites a group: mirrors are edges throughout, and nothing else is for every site; chambers are kept to."""

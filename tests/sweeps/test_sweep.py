@@ -95,7 +95,12 @@ def test_a_file_is_the_same_as_python(tmp_path: Path) -> None:
     tables = '[vary]\n"cell.a" = { from = 50, to = 80 }\n[job]\nsheet = "30x20cm"\nmargin = 5\n'
     (tmp_path / "named.toml").write_text(f'schema = 1\ndesign = "bird.toml"\n{rest}{tables}')
     (tmp_path / "starter.toml").write_text(f'design = "p4"\n{rest}{tables}')
-    within = {"design": vt.starter("p4").to_dict(), "count": 10, "seed": 4, "vary": {"cell.a": {"from": 50, "to": 80}}}
+    within: dict[str, Any] = {
+        "design": vt.starter("p4").to_dict(),
+        "count": 10,
+        "seed": 4,
+        "vary": {"cell.a": {"from": 50, "to": 80}},
+    }
     within |= {"filter": "neck > 3", "sort": ["-area", "neck"], "keep": 5, "job": {"sheet": "30x20cm", "margin": 5}}
     (tmp_path / "within.json").write_text(json.dumps(within))
     job = {"sheet": "30x20cm", "margin": 5}

@@ -20,6 +20,7 @@ from helpers.outlines import CommandLine
 import voronoi_tiles as vt
 from voronoi_tiles.parallel.block_runner import LostBlock
 from voronoi_tiles.sweeps import design_rows, sweep_folder, sweep_run
+from voronoi_tiles.sweeps.design_figures import design_figures
 
 TEXT = """
 design = "p4"
@@ -229,15 +230,14 @@ def test_a_design_that_ends_its_process_is_a_row(sweep: vt.Sweep, monkeypatch: p
 def test_what_goes_wrong_with_a_design_is_in_its_row(sweep: vt.Sweep, monkeypatch: pytest.MonkeyPatch) -> None:
     """Memory that is not enough, and a bug of ours, are rows as well, and not the end."""
     errors = {3: MemoryError(), 4: KeyError("bug"), 5: vt.ProofError("the areas are wrong")}
-    original = design_rows.design_figures
 
     def figures(tiling: vt.Tiling, job: vt.Job | None) -> list[float]:
         error = errors.get(int(tiling.design.name[-6:]) if tiling.design.name[-6:].isdecimal() else -1)
         if error is not None:
             raise error
-        return original(tiling, job)
+        return design_figures(tiling, job)
 
-    monkeypatch.setattr(design_rows, "design_figures", figures)
+    monkeypatch.setattr("voronoi_tiles.sweeps.design_rows.design_figures", figures)
     monkeypatch.setattr(vt.Sweep, "variant", lambda self, number: self.design.replace(name=f"x-{number:06d}"))
     table = vt.sweep(sweep.replaced(count=7), workers=1).table
     assert [bool(table.error(k)) for k in range(7)] == [k in errors for k in range(7)]
@@ -248,7 +248,7 @@ def test_what_goes_wrong_with_a_design_is_in_its_row(sweep: vt.Sweep, monkeypatc
 
 def test_a_sheet_gives_pieces_and_cuts(tmp_path: Path) -> None:
     """With a job the table has what `report` says; a design that does not fit has its sentence."""
-    job = {"sheet": "300x200mm", "margin": 5}
+    job: dict[str, Any] = {"sheet": "300x200mm", "margin": 5}
     sweep = vt.Sweep(vt.starter("p4"), {"cell.a": [60, 80, 2000], "scale": [1]}, job=job)
     table = vt.sweep(sweep, tmp_path / "out", workers=1).table
     for number in (0, 1):

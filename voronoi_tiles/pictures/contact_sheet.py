@@ -62,6 +62,12 @@ _CAPITAL_SHARE: Final = 0.72
 _PEN: Final = 1.1
 """The width of letters' strokes; pixels."""
 
+_STROKE: Final = 2.0
+"""The width of a site's strokes; pixels."""
+
+_DOT: Final = 6.0
+"""The width of its points; pixels."""
+
 _ROUGH: Final = 0.05
 """How far chords may be from curves; pixels."""
 
@@ -124,7 +130,7 @@ class SheetPicture:
         outlines = Paths.concatenate([outline.paths for outline in copies])
         drawn = [DrawnPaths(outlines, "", INK, 0.5)] if len(outlines) else []
         drawn += [DrawnPaths(outline.paths, fill, INK) for (outline, _), fill in zip(tiles, fills, strict=True)]
-        drawn += [DrawnPaths(_chained(ends), "", SITE_INK, 2.0) for _, ends in tiles]
+        drawn += [shown for _, ends in tiles for shown in _strokes(ends)]
         return cls((*drawn, *over), square_about(outline for outline, _ in tiles), tuple(caption), link)
 
     @property
@@ -294,10 +300,14 @@ def _decimal(value: float) -> str:
     return "0" if text == "-0" else text
 
 
-def _chained(ends: Complexes) -> Paths:
-    """The elements of a site (k, 2) as paths: each goes on as long as the next begins where the one before ends."""
-    begins = np.flatnonzero(ends[1:, 0] != ends[:-1, 1]) + 1
-    return Paths.polylines([np.append(part[:, 0], part[-1, 1]) for part in np.split(ends, begins)])
+def _strokes(ends: Complexes) -> list[DrawnPaths]:
+    """The elements of a site (k, 2): lines, that go on where the next begins at the end of one, and dots."""
+    dot = ends[:, 0] == ends[:, 1]
+    lines = ends[~dot]
+    begins = np.flatnonzero(lines[1:, 0] != lines[:-1, 1]) + 1
+    chains = [np.append(part[:, 0], part[-1, 1]) for part in np.split(lines, begins) if len(part)]
+    drawn = ((chains, _STROKE), (list(ends[dot]), _DOT))
+    return [DrawnPaths(Paths.polylines(paths), "", SITE_INK, width) for paths, width in drawn if paths]
 
 
 def _in_pixels(shown: DrawnPaths, picture: SheetPicture) -> DrawnPaths:

@@ -16,17 +16,17 @@ Row = list[Any]
 
 
 class DesignBlock(NamedTuple):
-    """The designs from `first` up to, not including, `stop` of a sweep: its identity, as JSON, and how many it has."""
+    """The designs from `first` up to, not including, `stop` of the sweep of an identity, as JSON, and a size."""
 
     identity: str
-    count: int
+    size: int
     first: int
     stop: int
 
 
 def block_rows(block: DesignBlock) -> list[Row]:
     """Make, prove and measure the designs of a block; what goes wrong with one is in its row."""
-    sweep = _sweep(block.identity, block.count)
+    sweep = _sweep(block.identity, block.size)
     return [design_row(sweep, number) for number in range(block.first, block.stop)]
 
 

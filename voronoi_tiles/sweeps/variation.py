@@ -103,7 +103,7 @@ def read_variation(value: object) -> Variation:
             ends.append(values.number(end))
     if not ends[0] < ends[1]:
         raise DesignError(f"must be greater than {ends[0]:g}", key="to", remedy="Write the smaller number first.")
-    return Span(*ends, count=count)
+    return Span(ends[0], ends[1], count=count)
 
 
 def read_groups(value: object) -> Choices:
