@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import resource
 import signal
 import subprocess
 import sys
@@ -86,12 +87,16 @@ def compare(folder: Path, designs: int) -> None:
     killed(sweep, folder / "killed", designs)
     again = timed(command(sweep, folder / "killed", "--workers", "2"))
     row(f"two, killed at {KILLED:.0%}, and again", again, beside("killed"))
+    before = processor_of_children()
     with cluster() as address:
         dask = timed(command(sweep, folder / "dask", "--scheduler", address))
+    dask = Run(dask.wall, processor_of_children() - before)
     row("Dask, two workers", dask, beside("dask"))
     local = timed(command(sweep, folder / "local", "--scheduler", "local", "--workers", "2"))
     row("Dask's own cluster of two", local, beside("local"))
-    print(f"\nTwo workers do {one.wall / two.wall:.2f} times what one does in the same time. ", end="")
+    print(f"\nTwo workers do {one.wall / two.wall:.2f} times what one does in the same time, and take ", end="")
+    print(f"{two.processor / one.processor:.2f} times its processor time: ", end="")
+    print(f"{2 * one.processor / two.processor:.2f} times as much where each has a processor to itself.")
     print(f"One takes {one.processor / loop.processor:.2f} times the processor time of the plain loop.")
 
 
@@ -123,6 +128,12 @@ def timed(words: list[str]) -> Run:
     begun = time.perf_counter()
     usage = usage_of(words)
     return Run(time.perf_counter() - begun, usage.ru_utime + usage.ru_stime)
+
+
+def processor_of_children() -> float:
+    """The processor time of all processes that were started here, and have ended; seconds."""
+    usage = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return usage.ru_utime + usage.ru_stime
 
 
 def killed(sweep: Path, folder: Path, designs: int) -> None:
@@ -166,8 +177,8 @@ def cluster() -> Iterator[str]:
             ]
             yield address
         finally:
-            for process in reversed(started):
-                process.terminate()
+            for process in started:
+                process.kill()  # workers that are asked to end may wait for a scheduler that has ended
             for process in started:
                 process.wait()
 

@@ -476,6 +476,7 @@ def test_no_option_is_invented() -> None:
     """Each option in the pages is one of some command."""
     known = {flag for command in OURS.values() for parameter in parameters(command) for flag in parameter.opts}
     foreign = {"--help", "--version", "--verbose", "--no-build-isolation", "--strict", "--cov"}
+    foreign |= {"--nthreads"}  # of dask worker
     foreign |= {"--sites", "--even"}  # of docs/generate/census.py
     foreign |= {"--actions", "--batch-process", "--export-type"}  # of Inkscape
     for page in PAGES:

@@ -11,7 +11,7 @@ from helpers.swept import solid_of
 from scipy.spatial.transform import Rotation
 
 from voronoi_tiles import TriangleMesh
-from voronoi_tiles.solid.sweeping import CONTACT, Sweep
+from voronoi_tiles.solid.sweeping import CONTACT, Sweeping
 
 X, Z = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
 
@@ -46,20 +46,20 @@ CUBE = mesh_of(block([0, 0, 0], [1, 1, 1]))
 )
 def test_a_cube_meets_what_is_ahead_of_it(low: list[float], high: list[float], met: bool) -> None:
     """At any distance; what it touches, or slides along, it does not meet."""
-    assert Sweep(CUBE, X).meets(mesh_of(block(low, high))) == met
+    assert Sweeping(CUBE, X).meets(mesh_of(block(low, high))) == met
 
 
 def test_a_hook_is_caught() -> None:
     """A hook comes out of the ring that it is in upward alone; a wall that narrows lets it out as well."""
     hook = mesh_of(block([0, 0, 0], [4, 1, 2]) + block([3, 0, 0], [4, 4, 2]))
     bar = mesh_of(block([0, 1, 0], [3, 2, 2]))
-    assert not Sweep(hook, Z).meets(bar)
-    assert Sweep(hook, -X).meets(bar)
-    assert not Sweep(hook, X).meets(bar)
-    assert Sweep(hook, np.array([0.0, 1.0, 0.0])).meets(bar)
+    assert not Sweeping(hook, Z).meets(bar)
+    assert Sweeping(hook, -X).meets(bar)
+    assert not Sweeping(hook, X).meets(bar)
+    assert Sweeping(hook, np.array([0.0, 1.0, 0.0])).meets(bar)
     leaning = np.array([0.001, 0.0, 1.0])
-    assert not Sweep(hook, leaning / np.linalg.norm(leaning)).meets(bar)
-    assert Sweep(hook, leaning * [-1, 1, 1] / np.linalg.norm(leaning)).meets(bar)
+    assert not Sweeping(hook, leaning / np.linalg.norm(leaning)).meets(bar)
+    assert Sweeping(hook, leaning * [-1, 1, 1] / np.linalg.norm(leaning)).meets(bar)
 
 
 def jagged(rng: np.random.Generator) -> Any:
@@ -81,7 +81,7 @@ def test_random_solids_meet_as_manifold3d_says(seed: int) -> None:
             continue
         direction = rng.normal(size=3)
         direction /= np.linalg.norm(direction)
-        met = Sweep(mesh_of(one), direction).meets(mesh_of(other))
+        met = Sweeping(mesh_of(one), direction).meets(mesh_of(other))
         common = (float((one.translate(tuple(direction * far)) ^ other).volume()) for far in np.linspace(0, 16, 160))
         assert met == any(volume > 1e-9 for volume in common)
         verdicts.append(met)
@@ -97,9 +97,9 @@ def test_turning_all_changes_nothing(seed: int) -> None:
     turn, factor = Rotation.random(random_state=seed).as_matrix(), 37.0
     some = rng.normal(size=(12, 3))
     for direction in some / np.linalg.norm(some, axis=1, keepdims=True):
-        met = Sweep(one, direction).meets(other)
+        met = Sweeping(one, direction).meets(other)
         turned = [TriangleMesh(factor * mesh.vertices @ turn.T, mesh.triangles) for mesh in (one, other)]
-        assert Sweep(turned[0], turn @ direction).meets(turned[1]) == met
+        assert Sweeping(turned[0], turn @ direction).meets(turned[1]) == met
 
 
 def test_contact_is_what_rounding_leaves() -> None:
@@ -109,8 +109,8 @@ def test_contact_is_what_rounding_leaves() -> None:
     for narrower, met in ((0.0, False), (1e-4 * CONTACT, False), (1e4 * CONTACT, True)):
         slot = block([-1, 0, -1], [2, 5, 2]) - block([narrower, -1, 0], [1, 6, 1])
         one, other = (TriangleMesh(mesh.vertices @ turn.T, mesh.triangles) for mesh in (mesh_of(bar), mesh_of(slot)))
-        assert Sweep(one, turn @ [0.0, 1.0, 0.0]).meets(other) == met
-        assert Sweep(one, turn @ [0.0, -1.0, 0.0]).meets(other) == met
+        assert Sweeping(one, turn @ [0.0, 1.0, 0.0]).meets(other) == met
+        assert Sweeping(one, turn @ [0.0, -1.0, 0.0]).meets(other) == met
 
 
 def test_the_oracle_has_64_bits() -> None:

@@ -49,7 +49,7 @@ class _SeenAlong(NamedTuple):
         )
 
 
-class Sweep:
+class Sweeping:
     """A solid that moves along a direction, a unit vector, float64 (3,): from where it is to any distance."""
 
     def __init__(self, mesh: TriangleMesh, direction: Floats) -> None:

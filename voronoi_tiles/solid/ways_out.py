@@ -15,7 +15,7 @@ from voronoi_tiles.solid.free_directions import SLIDING, contacts, reliable, wid
 from voronoi_tiles.solid.layers import Name
 from voronoi_tiles.solid.loft import Loft
 from voronoi_tiles.solid.mesh import TriangleMesh
-from voronoi_tiles.solid.sweeping import Sweep
+from voronoi_tiles.solid.sweeping import Sweeping
 from voronoi_tiles.vector.motion_codes import code_of, composed, moved, operation_of
 from voronoi_tiles.vector.motions import Action, to_operation
 
@@ -65,7 +65,7 @@ class TileWays:
             float(np.linalg.norm(mesh.vertices[:, :2] - place, axis=1).max())
             for mesh, place in zip(loft.meshes, self._places, strict=True)
         ]
-        self._sweeps: dict[tuple[float, ...], tuple[Sweep, dict[int, bool]]] = {}
+        self._sweeps: dict[tuple[float, ...], tuple[Sweeping, dict[int, bool]]] = {}
         self._widest: dict[tuple[int, ...], Floats | None] = {}
         self._blocking = Counter[int]()
 
@@ -115,7 +115,7 @@ class TileWays:
         passed = standing & (boxes[:, 0] < high[:2]).all(axis=1) & (boxes[:, 1] > low[:2]).all(axis=1)
         key = tuple(direction.tolist())
         if key not in self._sweeps:
-            self._sweeps[key] = Sweep(self._mesh, direction), {}
+            self._sweeps[key] = Sweeping(self._mesh, direction), {}
         sweep, met = self._sweeps[key]
         # What was in the way of others is asked first.
         for k in sorted(np.flatnonzero(passed).tolist(), key=lambda k: -self._blocking[k]):

@@ -31,7 +31,7 @@ class SweepTable:
     >>> table = vt.sweep(vt.Sweep(vt.starter("p4"), {"cell.a": [10, 60, 80]}), workers=1).table
     >>> table
     <SweepTable: 3 rows of 13 columns>
-    >>> table["neighbours"], table.error(0)[:25]
+    >>> table["neighbours"], table.error(0)[:27]
     ([None, 5, 5], 'site "bird" touches its own')
     """
 
