@@ -117,6 +117,19 @@ def test_a_block_that_kills_its_worker_is_lost_and_no_other(cluster: str) -> Non
     assert found == {k: k + 9 for k in range(9) if k != 4}
 
 
+@pytest.mark.slow
+def test_a_cluster_of_dasks_own_on_this_machine() -> None:
+    """It starts as many processes as it is asked to, does every block once, and leaves none of them."""
+    found = list(run_blocks(toy_blocks.pid, range(12), scheduler="local", workers=2))
+    assert sorted(number for number, _ in found) == list(range(12))
+    pids = {pid for _, pid in found}
+    assert len(pids) == 2
+    assert os.getpid() not in pids
+    for pid in pids:
+        with pytest.raises(ProcessLookupError):
+            os.kill(int(str(pid)), 0)
+
+
 def test_a_scheduler_without_workers_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """One message says what to start; nothing waits for ever."""
     monkeypatch.setattr(dask_blocks, "PATIENCE_S", 2.0)
