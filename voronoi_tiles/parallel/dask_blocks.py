@@ -60,6 +60,7 @@ def dask_blocks(
                     threads_per_worker=1,
                     processes=True,
                     dashboard_address=None,
+                    scheduler_kwargs={"dashboard_address": "127.0.0.1:0"},  # else it warns where 8787 is taken
                     silence_logs=logging.CRITICAL,
                 )
             )
