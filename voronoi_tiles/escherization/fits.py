@@ -36,6 +36,9 @@ POLYGONS: Final = ("pmm", "p4m", "p3m1", "p6m")
 _EACH: Final = 2
 """How many designs of one group there are at most, where more groups are looked in than designs are kept; a count."""
 
+_WIDE: Final = 6
+"""Twice as many placements are led on at least, however few designs are kept; a count."""
+
 _SAME: Final = 2e-4
 """Placements of a group whose bounds differ by less are one, or images of each other; a share."""
 
@@ -150,8 +153,9 @@ def _best(
     best: list[Fit] = []
     while found and len(best) < count:
         # Those that may be among the best, once they are led on, and more where many of them were the same.
-        limit = found[min(count, len(found)) - 1].uncovered + _GAIN
-        tried = [each for each in found if each.uncovered <= limit][: 2 * count]
+        wide = max(count, _WIDE)
+        limit = found[min(wide, len(found)) - 1].uncovered + _GAIN
+        tried = [each for each in found if each.uncovered <= limit][: 2 * wide]
         found = found[len(tried) :]
         made += [each for each in phases.run(making, tried, 0.75) if each is not None]
         best = _different(made, most)[:count]
