@@ -13,8 +13,8 @@ from click.testing import CliRunner, Result
 import voronoi_tiles as vt
 from voronoi_tiles.base.arrays import plane
 from voronoi_tiles.cli.main import cli
-from voronoi_tiles.escherization import fit_folder
 from voronoi_tiles.formats.reading import read_drawing
+from voronoi_tiles.pictures.contact_sheet import ContactSheet
 
 BIRD = Path(__file__).parents[2] / "examples" / "fit" / "bird.svg"
 FEW = ("--groups", "p2", "--keep", "2", "--workers", "1")
@@ -90,7 +90,7 @@ def test_nothing_is_left_of_what_fails(tmp_path: Path, monkeypatch: pytest.Monke
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(fit_folder.ContactSheet, "save", full)
+    monkeypatch.setattr(ContactSheet, "save", full)
     result = run(BIRD, "-o", tmp_path / "birds", *FEW, "--strokes", "outline")
     assert (result.exit_code, "No space left" in result.output) == (2, True)
     assert list(tmp_path.iterdir()) == []

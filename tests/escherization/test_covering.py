@@ -96,7 +96,7 @@ def test_a_stroke_drawn_apart_lies_inside_and_its_copies_keep_apart(group: str) 
 
 
 def test_a_limb_that_a_copy_crosses_stays_whole() -> None:
-    """A long leg across the foot of a copy: halves would leave the body alone, 0.27 of the area; now the leg is there."""
+    """A long leg across the foot of a copy: halves would leave the body alone, 0.27 of the area."""
     figure = GoalOutline.of([0j, 10 + 0j, 10 + 4j, 22 + 4j, 22 + 10j, 18 + 10j, 18 + 6j, 10 + 6j, 10 + 10j, 10j])
     group = vt.GROUPS["p1"]
     area = figure.area

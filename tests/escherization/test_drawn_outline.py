@@ -34,7 +34,8 @@ def test_holes_become_lines_of_art(tmp_path: Path) -> None:
     """As icons have eyes: what is cut out of the outline's shape is drawn in its colour, which a sentence says."""
     drawn = read_outline(svg(tmp_path, f'<path fill="#080808" fill-rule="evenodd" d="{SQUARE} M40 40h10v10h-10z"/>'))
     (hole,) = drawn.rest.shapes
-    assert (hole.stroke, hole.fill, hole.paths.bounds) == ("#080808", None, pytest.approx((40.0, 50.0, 50.0, 60.0)))
+    assert (hole.stroke, hole.fill) == ("#080808", None)
+    assert hole.paths.bounds == pytest.approx((40.0, 50.0, 50.0, 60.0))
     assert drawn.silhouette.area == pytest.approx(6400.0)
     assert drawn.notes == (f"{tmp_path / 'bird.svg'}: 1 hole of the outline becomes art: a tile has none",)
 

@@ -9,16 +9,16 @@ import pytest
 import shapely
 
 import voronoi_tiles as vt
-from voronoi_tiles.base.arrays import plane
+from voronoi_tiles.base.arrays import Complexes, plane
 from voronoi_tiles.escherization.goal_outline import DETAIL, GoalOutline
 
 SQUARE = [0j, 30 + 0j, 30 + 30j, 30j]
 
 
-def star(count: int) -> np.ndarray:
+def star(count: int) -> Complexes:
     """A flower of many corners, 40 mm wide."""
     angle = np.arange(count) / count * 2.0 * np.pi
-    return (15.0 + 5.0 * np.cos(5.0 * angle)) * np.exp(1j * angle)
+    return np.asarray((15.0 + 5.0 * np.cos(5.0 * angle)) * np.exp(1j * angle))
 
 
 @pytest.mark.parametrize(

@@ -28,15 +28,7 @@ from voronoi_tiles.escherization.drawn_outline import DrawnOutline
 from voronoi_tiles.escherization.fits import Fit
 from voronoi_tiles.formats.reading import drawing_of
 from voronoi_tiles.paths.paths import Paths
-from voronoi_tiles.pictures.contact_sheet import (
-    COPY_FILL,
-    INK,
-    SITE_INK,
-    TILE_FILL,
-    ContactSheet,
-    DrawnPaths,
-    SheetPicture,
-)
+from voronoi_tiles.pictures.contact_sheet import INK, SITE_INK, TILE_FILL, ContactSheet, DrawnPaths, SheetPicture
 from voronoi_tiles.pictures.rendering import render
 
 TABLE: Final = "fits.csv"
@@ -214,7 +206,7 @@ def fit_picture(fit: Fit, art: FittedArt | None, caption: tuple[str, ...] = (), 
     copies = fit.tiling.copies(_square(fit, _AROUND))
     given = upright(Paths.polylines([corners(fit.outline.exterior)], closed=True))
     drawn = [
-        DrawnPaths(upright(Paths.concatenate([copy.outline.paths for copy in copies])), COPY_FILL, INK, 0.5),
+        DrawnPaths(upright(Paths.concatenate([copy.outline.paths for copy in copies])), "", INK, 0.5),
         DrawnPaths(upright(tile.outline.paths), TILE_FILL, INK),
         DrawnPaths(upright(Paths.polylines(list(tile.site.ends))), "", SITE_INK, 1.0),
     ]

@@ -136,8 +136,8 @@ def fit(
     best = _best(phases, partial(_made, silhouette, name), ordered, count, len(names))
     if strokes == "few":
         best = phases.run(partial(_with_fewer_corners, near), best, 1.0, found)
-    else:
-        for each in best if found is not None else ():
+    elif found is not None:
+        for each in best:
             found(each)
     if progress is not None:
         progress(1.0, 1.0)
@@ -235,7 +235,7 @@ def _made(silhouette: GoalOutline, name: str, found: Found) -> Fit | None:
     if len(corners) < 3:
         return None
     tiling = tiled(closed_design(placement.group, placement.cell, corners, name, silhouette.size))
-    return tiling and _measured(tiling, silhouette, placement, overlap_bound(placed.uncovered))
+    return None if tiling is None else _measured(tiling, silhouette, placement, overlap_bound(placed.uncovered))
 
 
 def _with_fewer_corners(within: float, fit: Fit) -> Fit:

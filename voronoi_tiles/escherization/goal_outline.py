@@ -147,7 +147,7 @@ def _simplified(polygon: Polygon, distance: float) -> Polygon:
 
 def _why(polygon: Polygon) -> str:
     """What is wrong with a polygon, in our words: "it crosses itself at 12, 7.5"."""
-    reason, _, place = shapely.is_valid_reason(polygon).partition("[")
+    reason, _, place = str(shapely.is_valid_reason(polygon)).partition("[")
     where = ", ".join(f"{float(number):.6g}" for number in place.rstrip("]").split()[:2])
     return {"Self-intersection": "it crosses itself", "Ring Self-intersection": "it meets itself"}.get(
         reason, reason[:1].lower() + reason[1:]
