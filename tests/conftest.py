@@ -33,6 +33,7 @@ settings.load_profile("untimed")
 NUMERIC = {
     "blender",
     "crosscheck",
+    "escherization",
     "fabrication",
     "gradients",
     "groups",
@@ -41,6 +42,7 @@ NUMERIC = {
     "preflight",
     "raster",
     "solid",
+    "sweeps",
     "tiling",
     "vector",
 } | {f"test_{name}.py" for name in ("documentation", "dxf", "gallery", "paper", "readers")}

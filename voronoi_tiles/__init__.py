@@ -48,6 +48,8 @@ if TYPE_CHECKING:
     from voronoi_tiles.designs.site import NodedSite
     from voronoi_tiles.designs.starters import starter, starter_text
     from voronoi_tiles.escherization.fits import Fit, fit
+    from voronoi_tiles.escherization.goal_outline import GoalOutline
+    from voronoi_tiles.escherization.group_placement import GroupPlacement
     from voronoi_tiles.fabrication.coupon import coupon
     from voronoi_tiles.fabrication.exporting import Exported
     from voronoi_tiles.fabrication.inventory import Inventory
@@ -103,6 +105,8 @@ __all__ = [
     "Finding",
     "Fit",
     "Frame",
+    "GoalOutline",
+    "GroupPlacement",
     "Inventory",
     "Isometry",
     "Job",
@@ -200,6 +204,8 @@ _HOMES = {
     "voronoi_tiles.designs.site": "NodedSite",
     "voronoi_tiles.designs.starters": "starter starter_text",
     "voronoi_tiles.escherization.fits": "Fit fit",
+    "voronoi_tiles.escherization.goal_outline": "GoalOutline",
+    "voronoi_tiles.escherization.group_placement": "GroupPlacement",
     "voronoi_tiles.fabrication.coupon": "coupon",
     "voronoi_tiles.fabrication.exporting": "Exported",
     "voronoi_tiles.fabrication.inventory": "Inventory",

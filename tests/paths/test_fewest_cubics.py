@@ -23,7 +23,7 @@ sys.path.append(str(Path(__file__).parents[2] / "bench"))
 import cubics
 
 from voronoi_tiles.base.arrays import Complexes, Floats
-from voronoi_tiles.paths.biarc_bounds import Fit, fit
+from voronoi_tiles.paths.biarc_bounds import BiarcFit, fit
 from voronoi_tiles.paths.biarcs import to_arcs
 from voronoi_tiles.paths.cubic_bounds import FittedCubics, bounds
 from voronoi_tiles.paths.cubic_fit import CubicFit, PlacedStretches, fit_cubics
@@ -344,7 +344,7 @@ def test_last_bits_move_no_break(monkeypatch: pytest.MonkeyPatch) -> None:
         found = fit_cubics(runs, stretches)
         return found._replace(bound=shaken(found.bound))
 
-    def shaken_arcs(*stretches: Any) -> Fit:
+    def shaken_arcs(*stretches: Any) -> BiarcFit:
         """Arcs as they are."""
         found = fit(*stretches)
         return found._replace(line=shaken(found.line), arc=shaken(found.arc), biarc=shaken(found.biarc))

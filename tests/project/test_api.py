@@ -23,13 +23,13 @@ ROOT = Path(__file__).parents[2]
 
 NAMES = """
 Arc ArgumentError Art Burn CheckError CheckReport Design DesignError Dots Drawing DrawingError Exported Figure Finding
-Frame GROUPS Inventory Isometry Job JobError Key Lattice Layer LayerUse Limits LineArc Marks MissingLibraryError
-MovingPoints Neighbour NodedSite Operation Outline OutputError ParabolaArc Paths Placement PreflightReport Product
-ProofError ProofReport Provenance ReadDrawing RenderError RenderOptions Rendering SchedulerError Shape ShapeGradient
-Site Solid SolidJob SolidModel SolidPiece Stack StackJob StackSheet Stroke Sweep SweepResult SweepTable Tile TileCopy
-TileGradient Tiling TouchingCopiesError TriangleMesh UnknownNameError VoronoiTilesError WallpaperGroup __version__
-bezier bspline catmull_rom circle coupon drawing extrude hermite path placed point polyline preflight render segment
-stack stand starter starter_text sweep
+Fit Frame GROUPS GoalOutline GroupPlacement Inventory Isometry Job JobError Key Lattice Layer LayerUse Limits LineArc
+Marks MissingLibraryError MovingPoints Neighbour NodedSite Operation Outline OutputError ParabolaArc Paths Placement
+PreflightReport Product ProofError ProofReport Provenance ReadDrawing RenderError RenderOptions Rendering
+SchedulerError Shape ShapeGradient Site Solid SolidJob SolidModel SolidPiece Stack StackJob StackSheet Stroke Sweep
+SweepResult SweepTable Tile TileCopy TileGradient Tiling TouchingCopiesError TriangleMesh UnknownNameError
+VoronoiTilesError WallpaperGroup __version__ bezier bspline catmull_rom circle coupon drawing extrude fit hermite path
+placed point polyline preflight render segment stack stand starter starter_text sweep
 """
 
 INTERNAL = {

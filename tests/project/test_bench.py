@@ -440,7 +440,8 @@ def test_targets_tell_what_is_missed_from_a_crash(monkeypatch: pytest.MonkeyPatc
 def test_report_has_all_marks() -> None:
     """Every script has its place in the report."""
     text = report.REPORT.read_text(encoding="utf-8")
-    names = "targets", "engine", "accuracy", "raster", "sheets", "against", "preflight", "chromium", "escherization"
+    names = "targets", "engine", "accuracy", "raster", "sheets", "against", "preflight", "chromium"
+    names = *names, "escherization", "given back", "sweeps"
     for name in names:
         assert text.count(f"<!-- {name} -->") == text.count(f"<!-- end of {name} -->") == 1
 

@@ -46,8 +46,8 @@ def drawn_apart(silhouette: GoalOutline, placement: GroupPlacement) -> Complexes
 
     What the outline has in common with copies is taken from both, so that the edge between their tiles is the middle
     line of it, as it is that of what lies between them: all share alike. Where that would cut off a leg or a head, the
-    outline has all of it, and loses all of what the copy has the same way, if more is left so. Of what is left in
-    several parts the largest is the stroke; none where nothing is.
+    outline has all of it, and loses all of what the copy has the same way, if more hangs together so. Of several parts
+    the largest is the stroke; there is none where nothing is left.
     """
     apart = APART * silhouette.size
     points = placement.laid(silhouette.points, silhouette.centroid)
@@ -88,14 +88,15 @@ def _lenses(own: Polygon, copies: list[tuple[int, Isometry, Polygon]]) -> list[_
 
 
 def _decided(stroke: Polygon, lenses: list[_Lens], left: Callable[[Iterable[_Lens]], Polygon], least: float) -> Polygon:
-    """The stroke where the outline has all of those lenses by which it is larger, decided one after the other."""
+    """The stroke where the outline has all of those lenses that hold on to more, decided one after the other."""
     kept: list[_Lens] = []
     for lens in lenses:
         # Of a lens and the one that goes with it the copy can have one alone.
         if any(lens.area.intersection(other.back).area > 0.5 * lens.area.area for other in kept):
             continue
         larger = left([*kept, lens])
-        if larger.area > stroke.area + least:
+        # The lens itself is no gain: another one is lost for it. What it holds on to is.
+        if larger.area > stroke.area + lens.area.area + least:
             kept, stroke = [*kept, lens], larger
     return stroke
 

@@ -43,7 +43,7 @@ class DrawnOutline:
     notes: tuple[str, ...]
 
 
-class _Contour(NamedTuple):
+class _DrawnLine(NamedTuple):
     """A path of a shape, by their numbers, as a polygon; `closed` is whether it is drawn closed, or filled."""
 
     shape: int
@@ -130,7 +130,7 @@ def _refuse_pixels(head: bytes, name: str) -> None:
         )
 
 
-def _contours(shapes: list[Shape], name: str) -> list[_Contour]:
+def _contours(shapes: list[Shape], name: str) -> list[_DrawnLine]:
     """All lines of shapes that enclose something."""
     if not shapes:
         return []
@@ -148,7 +148,7 @@ def _contours(shapes: list[Shape], name: str) -> list[_Contour]:
             if len(points) >= 4:
                 ends = float(abs(points[-1] - points[0]))
                 closed = bool(lines.closed[k]) or shape.fill is not None or ends <= accuracy
-                found.append(_Contour(number, k, Polygon(plane(points)), closed, ends))
+                found.append(_DrawnLine(number, k, Polygon(plane(points)), closed, ends))
     return found
 
 
@@ -158,7 +158,7 @@ def _extent(polygon: Polygon) -> float:
     return float(max(right - left, top - bottom))
 
 
-def _refuse_second(chosen: _Contour, contours: list[_Contour], shapes: list[Shape], name: str) -> None:
+def _refuse_second(chosen: _DrawnLine, contours: list[_DrawnLine], shapes: list[Shape], name: str) -> None:
     """Refuse another closed line that is not within the outline."""
     outline = chosen.polygon if chosen.polygon.is_valid else chosen.polygon.buffer(0)
     for other in contours:
@@ -173,7 +173,7 @@ def _refuse_second(chosen: _Contour, contours: list[_Contour], shapes: list[Shap
             )
 
 
-def _without(shapes: list[Shape], chosen: _Contour) -> tuple[list[Shape], int]:
+def _without(shapes: list[Shape], chosen: _DrawnLine) -> tuple[list[Shape], int]:
     """The shapes but the outline, and how many of its shape's other paths are drawn as lines of their own."""
     shape = shapes[chosen.shape]
     others = np.delete(np.arange(len(shape.paths)), chosen.path)

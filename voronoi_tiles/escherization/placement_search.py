@@ -41,6 +41,9 @@ _SAME: Final = 1e-3
 """Two minima whose values differ by less, relative to the larger, are one, found again; symmetric ones have the same
 value."""
 
+_NEARLY: Final = 1e-2
+"""The same after the steps at low frequencies, which do not reach the bottom."""
+
 _LONGEST: Final = 5.0
 """How many times as long as wide reduced cells may be at least; wide outlines need longer ones."""
 
@@ -79,6 +82,15 @@ def placement_of(group: WallpaperGroup, row: Floats) -> GroupPlacement:
     lattice = group.lattice(a.real, abs(b), math.degrees(np.angle(b)))
     centre = 0j if group.name == "p1" else lattice.cartesian(row[1], row[2])
     return GroupPlacement(group, lattice, float(row[0]), centre)
+
+
+def _different(values: Floats, share: float) -> list[int]:
+    """The numbers of values that differ by more than a share of them, the least first."""
+    kept: list[int] = []
+    for k in np.argsort(values, kind="stable").tolist():
+        if not kept or values[k] - values[kept[-1]] > share * values[k] + 1e-9:
+            kept.append(k)
+    return kept
 
 
 @dataclass(frozen=True, eq=False)
@@ -120,13 +132,9 @@ class PlacementSearch:
         values = (self._residuals(rows, waves, _FIRST_FREQUENCY) ** 2).sum(axis=1)
         rows = rows[np.argsort(values, kind="stable")[:_STARTS]]
         rows, values = self._led_down(rows, waves, _FIRST_FREQUENCY, _ROUGH_STEPS)
-        rows = rows[np.argsort(values, kind="stable")[: _STARTS // 2]]
+        rows = rows[_different(values, _NEARLY)[: _STARTS // 2]]
         rows, values = self._led_down(rows, self._waves(FREQUENCY_MAX), FREQUENCY_MAX, _FINE_STEPS)
-        different: list[int] = []
-        for k in np.argsort(values, kind="stable").tolist():
-            if not different or values[k] - values[different[-1]] > _SAME * values[k] + 1e-9:
-                different.append(k)
-        return [rows[k] for k in different]
+        return list(rows[_different(values, _SAME)])
 
     def _led_down(self, rows: Floats, waves: _Waves, highest: float, steps: int) -> tuple[Floats, Floats]:
         """Rows led towards minima by Levenberg's and Marquardt's method, all at a time, and their values."""

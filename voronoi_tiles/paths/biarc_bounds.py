@@ -25,7 +25,7 @@ _SINGLE = kernel("biarc_single", INT, INTS, INT, *13 * [FLOATS])
 _DOUBLE = kernel("biarc_double", INT, INTS, INT, *11 * [FLOATS])
 
 
-class Fit(NamedTuple):
+class BiarcFit(NamedTuple):
     """What replaces stretches, arrays of one for each stretch.
 
     The bounds on the Hausdorff distance of the segment between the ends (`line`), of one arc between them (`arc`)
@@ -77,7 +77,7 @@ class _FittedCircles(NamedTuple):
         return _FittedCircles(*(field[rows] for field in self))
 
 
-def fit(runs: SmoothRuns, run: Ints, low: Floats, high: Floats) -> Fit:
+def fit(runs: SmoothRuns, run: Ints, low: Floats, high: Floats) -> BiarcFit:
     """Replace the stretches of runs between two places each.
 
     The biarc leaves and arrives along the curve's tangents. Its joint is where the curve crosses the circle on which
@@ -112,7 +112,7 @@ def fit(runs: SmoothRuns, run: Ints, low: Floats, high: Floats) -> Fit:
     better = second.error < first.error
     biarc = _Biarc(*(np.where(better, new, old) for new, old in zip(second, first, strict=True)))
     round_ = apart & (np.abs(biarc.turn1) <= _HALF_TURN) & (np.abs(biarc.turn2) <= _HALF_TURN)
-    return Fit(
+    return BiarcFit(
         line=single.line,
         arc=np.where(near & apart & (2 * np.abs(omega) <= _HALF_TURN), single.arc, np.inf),
         biarc=np.where(round_, biarc.error, np.inf),
