@@ -78,5 +78,18 @@ def hoard(request: Mapping[str, Any], _body: bytes) -> Done:
     return {"said": len(bytearray(request["bytes"]))}, b""
 
 
+def fits(request: Mapping[str, Any], body: bytes) -> Iterator[Done]:
+    """Find so many designs, every other with art; then go on for ever, or fail, where that is asked for."""
+    yield {"more": True, "message": {"type": "outline", "pid": os.getpid()}}, b""
+    for k in range(request["count"]):
+        art = None if k % 2 else {"scale": k}
+        yield {"more": True, "message": {"type": "fit", "art": art}}, b"" if art is None else body + b" %d" % k
+    while request.get("spin"):
+        pass
+    if request.get("wrong"):
+        raise ArgumentError("the `kerf` is wrong", remedy="Mend it.")
+    yield {}, b""
+
+
 if __name__ == "__main__":
-    run({task.__name__: task for task in (echo, count, nap, spin, listen, leave, die, chatter, fail, hoard)})
+    run({task.__name__: task for task in (echo, count, nap, spin, listen, leave, die, chatter, fail, hoard, fits)})

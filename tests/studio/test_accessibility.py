@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from helpers.outline_drawings import FISH, SEARCH_MS
 from helpers.page import tool
 from helpers.studio import Window, opened, running
 
@@ -44,11 +45,18 @@ def test_panels_and_dialogs_are_accessible(window: Window) -> None:
         page.get_by_role("tab", name=tab).click()
         page.wait_for_timeout(300)
         assert violations(window) == [], tab
-    for command in ("help", "gallery", "export", "download-solid", "new", "open", "share"):
+    for command in ("help", "gallery", "export", "download-solid", "new", "open", "fit-outline", "share"):
         page.locator(f"[data-command={command}]").first.click()
         page.locator("dialog[open]").wait_for()
         assert violations(window) == [], command
         page.keyboard.press("Escape")
+    page.locator("[data-command=fit-outline]").click()
+    page.get_by_label("Groups", exact=True).fill("p3")
+    file = {"name": "fish.svg", "mimeType": "image/svg+xml", "buffer": FISH.encode()}
+    page.get_by_label("File of the outline").set_input_files(file)
+    assert violations(window) == []
+    page.locator(".fits button").first.wait_for(timeout=SEARCH_MS)
+    assert violations(window) == []
 
 
 def test_the_page_is_accessible(window: Window) -> None:

@@ -13,11 +13,13 @@ import sys
 import time
 import tomllib
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 
 import pytest
+from helpers.outline_drawings import FISH
 from helpers.outlines import CommandLine
 from helpers.running_studio import RunningStudio, running, tell, told
 from helpers.solid_frames import read_frame
@@ -262,6 +264,10 @@ def test_files_are_downloaded(studio: RunningStudio, folder: Path, voronoi_tiles
         ("/drop?name=x.svg", b"<svg/>", 422, "units"),
         ("/drop?name=x.svg&units=mm", b"<svg", 422, "x.svg"),
         ("/drop?name=x.txt&units=mm", b"hello", 422, "neither"),
+        ("/fits?name=x.svg", b"<svg", 422, "x.svg"),
+        ("/fits?name=x.png", b"\x89PNG", 422, "pixels"),
+        ("/fits/art", b'{"number": 1}', 422, "another search"),
+        ("/fits/art", b'{"file": "../x.svg"}', 422, "file"),
     ],
 )
 def test_requests_that_cannot_be_done_are_refused(
@@ -339,6 +345,50 @@ def test_an_export_that_is_given_up_is_not_made(tmp_path: Path) -> None:
         assert is_gone(worker)
         assert is_alive(outliner)
         assert studio.ask("/coupon", method="POST", body=b'{"thickness": "3mm"}').status == 200
+
+
+def descendants(pid: int) -> set[int]:
+    """The processes that a process has started, those that these have started, and so on."""
+    parents = {}
+    for folder in Path("/proc").glob("[0-9]*"):
+        with suppress(OSError, ValueError):
+            parents[int(folder.name)] = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
+    found = {pid}
+    while more := {child for child, parent in parents.items() if parent in found} - found:
+        found |= more
+    return found - {pid}
+
+
+@linux
+@pytest.mark.parametrize("killed", [False, True])
+def test_a_search_for_fits_delays_and_outlives_nobody(tmp_path: Path, killed: bool) -> None:
+    """Outlines are answered while it goes on, by its own worker; where who asked hangs up it ends, and with the studio.
+
+    All of its processes do, also those that its worker has started.
+    """
+    with running(tmp_path) as studio, studio.page() as page:
+        design = told(page)["design"]
+        tell(page, "design", rev=1, design=design, rest=True)
+        told(page, "outline")
+        before = descendants(studio.process.pid)
+        search = http.client.HTTPConnection("127.0.0.1", studio.port, timeout=60)
+        search.request("POST", "/fits?name=fish.svg", FISH.encode(), studio.ours)
+        answer = search.getresponse()
+        assert answer.status == 200
+        assert json.loads(answer.readline()) == {"type": "outline", "notes": []}
+        assert json.loads(answer.readline())["type"] == "progress"  # of 13 groups one is looked through
+        tell(page, "design", rev=2, design=design, rest=True)
+        assert told(page, "outline")["rev"] == 2
+        looking = descendants(studio.process.pid) - before
+        assert looking
+        assert all(os.getpriority(os.PRIO_PROCESS, pid) > os.getpriority(os.PRIO_PROCESS, 0) for pid in looking)
+        if killed:
+            studio.process.kill()
+            assert all(map(is_gone, looking))
+        answer.close()
+        search.close()
+        assert all(map(is_gone, looking))
+        assert killed or all(map(is_alive, before))
 
 
 @linux

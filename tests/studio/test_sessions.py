@@ -14,6 +14,7 @@ from test_lanes import lane
 
 from voronoi_tiles.base.errors import DesignError, OutputError
 from voronoi_tiles.studio import sessions
+from voronoi_tiles.studio.fit_searches import FitSearches
 from voronoi_tiles.studio.sessions import Desk
 
 
@@ -108,7 +109,7 @@ def at_desk(story: Callable[[Desk, Keeper, Page, asyncio.Task[None]], Any], monk
 
     async def run() -> None:
         keeper, page = Keeper(), Page()
-        desk = Desk(keeper, lane(), lane())  # type: ignore[arg-type]
+        desk = Desk(keeper, lane(), lane(), FitSearches(lane()))  # type: ignore[arg-type]
         watching = asyncio.create_task(desk.watch())
         serving = asyncio.create_task(desk.serve(page.socket))
         await until(lambda: bool(page.heard))

@@ -195,9 +195,12 @@ class Lane:
         for slot in slots:
             self._slots.pop(slot, None)
 
-    async def ask(self, head: Mapping[str, Any], body: bytes = b"", *, urgent: bool = True) -> Answer:
+    async def ask(
+        self, head: Mapping[str, Any], body: bytes = b"", *, urgent: bool = True, part: Deliver | None = None
+    ) -> Answer:
         """Have something done that no newer request replaces, and wait for it; refused where too much waits already.
 
+        What comes before the last goes to `part`.
         Where the waiting is cancelled it is not done, or no longer: the worker that does it is ended.
         """
         if sum(isinstance(slot, asyncio.Future) for slot in self._slots) >= _WAITING_MAX:
@@ -205,7 +208,10 @@ class Lane:
         done: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
 
         async def deliver(answer: Answer) -> None:
-            if not done.done():
+            if answer.head.get("more"):
+                if part is not None:
+                    await part(answer)
+            elif not done.done():
                 done.set_result(answer)
 
         self.put(done, head, deliver, body=body, urgent=urgent)

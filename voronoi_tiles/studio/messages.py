@@ -35,6 +35,9 @@ POINTS_MAX: Final = 20_000
 SECONDS_MAX: Final = 10
 """For how long a worker may work at one thing; seconds."""
 
+FIT_SECONDS_MAX: Final = 300
+"""For how long one may look for designs that fit an outline; seconds. All groups take some 45 s of a processor."""
+
 LIMITS: Final = {
     "message": MESSAGE_MAX,
     "drop": DROP_MAX,

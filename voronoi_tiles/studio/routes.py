@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import os
-from collections.abc import Callable, Coroutine, Mapping
+from collections.abc import AsyncGenerator, AsyncIterator, Callable, Coroutine, Mapping
+from contextlib import aclosing
 from importlib.util import find_spec
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, Final
 from urllib.parse import quote
 
 from starlette.applications import Starlette
-from starlette.responses import JSONResponse, Response
+from starlette.responses import JSONResponse, Response, StreamingResponse
 from starlette.routing import Route, WebSocketRoute
 
 from voronoi_tiles.base.errors import ArgumentError, VoronoiTilesError
 from voronoi_tiles.base.units import UNIT_MM
 from voronoi_tiles.base.values import shown
+from voronoi_tiles.studio.art_files import lay_beside
 from voronoi_tiles.studio.lanes import Answer
 from voronoi_tiles.studio.messages import (
     DROP_MAX,
@@ -83,6 +86,8 @@ def application(desk: Desk, page: Path = PAGE) -> Starlette:
             Route("/solid", routes.solid, methods=["POST"]),
             Route("/coupon", routes.coupon, methods=["POST"]),
             Route("/drop", routes.drop, methods=["POST"]),
+            Route("/fits", routes.fits, methods=["POST"]),
+            Route("/fits/art", routes.art, methods=["POST"]),
             Route("/toml", routes.toml, methods=["POST"]),
             Route("/{path:path}", routes.file),
         ]
@@ -165,6 +170,34 @@ class _Routes:
 
         return await _unless_given_up(request, dropped())
 
+    async def fits(self, request: Request) -> Response:
+        """Designs whose tiles come near to an outline that was dropped onto the page: a line of JSON each."""
+        asked = {name: request.query_params.get(name, "") for name in ("name", "groups")}
+        mirrored = request.query_params.get("mirrored", "yes") == "yes"
+        data = await _body_of(request, DROP_MAX)
+        if data is None:
+            return _failed(_TOO_LARGE, 413)
+        messages = self._desk.fits.messages({**asked, "mirrored": mirrored}, data)
+
+        async def begun() -> Response:
+            first = await anext(messages)
+            if first["type"] == "failed":
+                return _failed(first["error"], 422)
+            return StreamingResponse(_lines(first, messages), media_type="application/x-ndjson")
+
+        return await _unless_given_up(request, begun())
+
+    async def art(self, request: Request) -> Response:
+        """The art of such a design, laid beside ours: its table, with the name of its file."""
+
+        async def laid(table: Table) -> Response:
+            refuse_others(table, ("number",))
+            found, document = self._desk.fits.art(table.get("number")), self._desk.document
+            file = await self._desk.keeper(lay_beside, document.folder, document.name, found.svg)
+            return JSONResponse({**found.table, "file": file})
+
+        return await _answered(request, laid)
+
     async def _computed(self, task: str) -> Response:
         """What a worker computes once."""
         if task not in self._known:
@@ -173,6 +206,14 @@ class _Routes:
                 return _failed(answer.error, 500)
             self._known[task] = Response(answer.body, media_type="application/json")
         return self._known[task]
+
+
+async def _lines(first: Table, others: AsyncGenerator[Table, None]) -> AsyncIterator[str]:
+    """Messages, a line of JSON each."""
+    async with aclosing(others):
+        yield json.dumps(first, allow_nan=False) + "\n"
+        async for message in others:
+            yield json.dumps(message, allow_nan=False) + "\n"
 
 
 async def _answered(request: Request, answer: Callable[[Table], Coroutine[Any, Any, Response]]) -> Response:

@@ -16,9 +16,10 @@ import uvicorn
 
 from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.studio.design_document import Document
+from voronoi_tiles.studio.fit_searches import FitSearches
 from voronoi_tiles.studio.guard import NAMES, Guard
 from voronoi_tiles.studio.lanes import Lane, Worker
-from voronoi_tiles.studio.messages import MESSAGE_MAX
+from voronoi_tiles.studio.messages import FIT_SECONDS_MAX, MESSAGE_MAX
 from voronoi_tiles.studio.routes import application
 from voronoi_tiles.studio.sessions import Desk
 
@@ -84,7 +85,8 @@ async def _serve(
         logging.getLogger(name).disabled = True
     outlines = Lane(Worker(document.folder), early=True)
     jobs = Lane(Worker(document.folder), replaced_s=_REPLACED_S)
-    desk = Desk(document, outlines, jobs)
+    fits = Lane(Worker(document.folder), limit_s=FIT_SECONDS_MAX)
+    desk = Desk(document, outlines, jobs, FitSearches(fits))
     guard = Guard(application(desk), listener.getsockname()[1])
     server = _Server(
         uvicorn.Config(
@@ -107,7 +109,7 @@ async def _serve(
         server.should_exit = True
 
     _catch(loop, end)
-    tasks = [asyncio.create_task(work) for work in (outlines.run(), jobs.run(), desk.watch())]
+    tasks = [asyncio.create_task(work) for work in (outlines.run(), jobs.run(), fits.run(), desk.watch())]
     try:
         ready(guard.address)
         await server.serve(sockets=[listener])

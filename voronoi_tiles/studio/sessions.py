@@ -12,6 +12,7 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from voronoi_tiles.base.errors import VoronoiTilesError
 from voronoi_tiles.studio.design_document import Document
+from voronoi_tiles.studio.fit_searches import FitSearches
 from voronoi_tiles.studio.lanes import Answer, Deliver, Lane
 from voronoi_tiles.studio.messages import (
     ByeMessage,
@@ -47,8 +48,8 @@ class Desk:
     Two pages at one document would overwrite each other's work: a new one takes the place of the one before.
     """
 
-    def __init__(self, document: Document, outlines: Lane, jobs: Lane) -> None:
-        self.document, self.outlines, self.jobs = document, outlines, jobs
+    def __init__(self, document: Document, outlines: Lane, jobs: Lane, fits: FitSearches) -> None:
+        self.document, self.outlines, self.jobs, self.fits = document, outlines, jobs, fits
         self._own: set[str] = set()
         self._keeper = asyncio.Lock()
         self._page: Session | None = None

@@ -36,6 +36,9 @@ _MEMORY: Final = 4 << 30
 _AHEAD_S: Final = 0.001
 """How much of a start an outline has before its proof is begun: where processors are few, it would wait; seconds."""
 
+_AFTER_OTHERS: Final = 5
+"""The rank of a worker that lets others have the processors first, of those from -20 to 19: a third of their share."""
+
 
 def text_of(message: Mapping[str, Any] | Sequence[Any]) -> Done:
     """An answer that is text: a message."""
@@ -117,6 +120,20 @@ def drop(request: Request, body: bytes) -> Done:
     return text_of(dropped(body, request["name"], UNIT_MM[request["units"]], request["folder"]))
 
 
+def fits(request: Request, body: bytes) -> Iterator[Done]:
+    """Designs whose tiles come near to an outline: messages, the first without art, and the art of each design.
+
+    Whatever else is to be done on the machine goes first.
+    """
+    from voronoi_tiles.studio.fitting import fitted
+
+    with suppress(AttributeError, OSError):  # where there are no such ranks, processors are shared evenly
+        os.setpriority(os.PRIO_PROCESS, 0, _AFTER_OTHERS)
+    for message, art in fitted(body, request["name"], request["groups"], mirrored=request["mirrored"]):
+        yield {"more": True, "message": message}, art
+    yield text_of({"type": "done"})
+
+
 def _file(name: str, data: bytes) -> Done:
     """An answer that is a file."""
     return {"file": name}, data
@@ -151,6 +168,7 @@ TASKS: Final[Tasks] = {
     "export": export,
     "coupon": coupon,
     "drop": drop,
+    "fits": fits,
 }
 
 

@@ -139,6 +139,7 @@ const COMMANDS = {
     "save-as": () => void ask.saveAs(),
     export: () => ask.export(),
     open: () => ask.open(),
+    "fit-outline": () => ask.fit(),
     new: () => ask.begin(),
     gallery: () => void ask.gallery(),
     coupon: () => ask.coupon(),

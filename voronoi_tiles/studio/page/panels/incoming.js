@@ -13,6 +13,7 @@ import { drawThumbnail } from "../view/thumbnail.js";
 import { showDialog } from "./dialog.js";
 import { field, make, said } from "./elements.js";
 import { post } from "./exchange.js";
+import { fitting, outlinePlace } from "./fitting.js";
 
 /** The side of an example's picture; CSS pixels. */
 const EXAMPLE = 140;
@@ -87,9 +88,16 @@ export function incoming({ store, link, stage, file: opened }) {
         }
     };
     document.addEventListener("dragover", (event) => event.preventDefault());
+    const fits = fitting({ store, begin, say: (message) => say(message, true) });
+    const isOutline = outlinePlace();
     document.addEventListener("drop", (event) => {
         event.preventDefault();
-        tryTake(event.dataTransfer?.files[0]);
+        const file = event.dataTransfer?.files[0];
+        if (file && (fits.isOpen() || isOutline(event))) {
+            fits.open(file);
+        } else {
+            tryTake(file);
+        }
     });
     document.addEventListener("studio-drop", (event) => tryTake(/** @type {CustomEvent} */ (event).detail));
 
@@ -108,6 +116,7 @@ export function incoming({ store, link, stage, file: opened }) {
 
     return {
         openLink,
+        fit: () => fits.open(),
 
         async gallery() {
             const list = make("ul", { class: "gallery" });
