@@ -24,9 +24,13 @@ COLOURS = 24
 SHADES = 96
 """How many that of a shaded solid has."""
 
+INKS = 40
+"""How many that of drawings in their own colours has."""
+
 SIZE = {"width": 960, "height": 560}
 
 DESIGN = DOCS.parent / "examples" / "p4-hook.toml"
+OUTLINE = DOCS.parent / "examples" / "fit" / "fish.svg"
 SOLID = DOCS.parent / "examples" / "solid" / "pgg-scutoid.toml"
 
 
@@ -72,7 +76,23 @@ def shoot_solid(chromium: Any, folder: Path) -> None:
         shoot(window, "solid", colours=SHADES)
 
 
-SHOTS = {"drawing": shoot_drawing, "solid": shoot_solid}
+def shoot_fits(chromium: Any, folder: Path) -> None:
+    """Photograph the designs that are found for an outline."""
+    shutil.copy(DESIGN, folder)
+    with (
+        running(folder, DESIGN.name) as studio,
+        opened(chromium, studio, viewport=SIZE, color_scheme="light") as window,
+    ):
+        page = window.page
+        window.wait()
+        page.locator("[data-command=fit-outline]").click()
+        page.get_by_label("File of the outline").set_input_files(OUTLINE)
+        page.get_by_text("the nearest first").wait_for(timeout=300_000)
+        page.locator("dialog").evaluate("dialog => dialog.scrollTo(0, dialog.querySelector('details').offsetTop - 12)")
+        shoot(window, "fits", colours=INKS)
+
+
+SHOTS = {"drawing": shoot_drawing, "fits": shoot_fits, "solid": shoot_solid}
 """What is photographed: all of it, or what the command line names."""
 
 

@@ -51,6 +51,7 @@ def test_panels_and_dialogs_are_accessible(window: Window) -> None:
         assert violations(window) == [], command
         page.keyboard.press("Escape")
     page.locator("[data-command=fit-outline]").click()
+    page.get_by_text("Where to look").click()
     page.get_by_label("Groups", exact=True).fill("p3")
     file = {"name": "fish.svg", "mimeType": "image/svg+xml", "buffer": FISH.encode()}
     page.get_by_label("File of the outline").set_input_files(file)

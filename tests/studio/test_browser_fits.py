@@ -55,6 +55,7 @@ def test_an_outline_is_dropped_and_a_design_taken(window: Window, studio: Studio
     assert place.is_hidden()
     dialog = page.get_by_role("dialog", name="Tiles near to an outline")
     assert dialog.get_by_role("progressbar", name="The search").is_visible()
+    dialog.get_by_text("Where to look").click()
     groups = dialog.get_by_label("Groups", exact=True)
     groups.fill("p1, p3")
     page.keyboard.press("Enter")  # looks anew, in these alone
@@ -132,9 +133,10 @@ def test_what_has_no_outline_is_said(window: Window) -> None:
         drag(window, name, data)
         page.get_by_role("dialog").get_by_role("alert").get_by_text(message).wait_for()
         assert page.locator(".fits button").count() == 0
+    page.get_by_text("Where to look").click()
     page.get_by_label("Groups", exact=True).fill("p5")
-    drag(window, "fish.svg", FISH.encode())
     page.keyboard.press("Tab")
+    drag(window, "fish.svg", FISH.encode())
     page.get_by_role("dialog").get_by_role("alert").get_by_text(
         "Groups has 'p5', which is no wallpaper group"
     ).wait_for()

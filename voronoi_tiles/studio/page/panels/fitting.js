@@ -173,6 +173,13 @@ export function fitting({ store, begin, say }) {
                     again();
                 },
             });
+            const where = make(
+                "details",
+                { open: Boolean(options.groups) || !options.mirrored },
+                make("summary", {}, "Where to look"),
+                field("Groups", groups, { help: "As p2, pgg; empty: all but those whose tile no stroke changes" }),
+                field("Mirrored copies", mirrored, { help: "Without them for material with a good side" }),
+            );
             const progress = make("progress", { max: 1, "aria-label": "The search" });
             const state = make("p", { role: "status" });
             const notes = make("p", { class: "note" });
@@ -185,8 +192,7 @@ export function fitting({ store, begin, say }) {
                 [
                     make("p", {}, MEANS),
                     field("File of the outline", input),
-                    field("Groups", groups, { help: "As p2, pgg; empty: all but those whose tile no stroke changes" }),
-                    field("Mirrored copies", mirrored, { help: "Without them for material with a good side" }),
+                    where,
                     make("div", { class: "search" }, progress, state, act),
                     notes,
                     list,
