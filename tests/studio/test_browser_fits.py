@@ -85,7 +85,7 @@ def test_an_outline_is_dropped_and_a_design_taken(window: Window, studio: Studio
     # What was found is still there, and can be taken in its place; the same art is the same file.
     page.get_by_role("button", name="Fit", exact=True).click()
     assert dialog.get_by_text("2 designs").is_visible()
-    dialog.locator(".fits button").first.click()
+    dialog.locator(".fits button").first.dblclick()
     dialog.wait_for(state="detached")
     assert window.design["group"] != name
     page.keyboard.press("Control+z")

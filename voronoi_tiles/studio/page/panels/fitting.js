@@ -60,6 +60,8 @@ export function fitting({ store, begin, say }) {
     let box = null;
     /** Show what has changed. @type {(found?: {fit: Fit, place: number}) => void} */
     let show = () => {};
+    /** @type {Fit | null} what is being taken */
+    let taken = null;
     const options = { groups: "", mirrored: true };
 
     const isOpen = () => Boolean(box?.open && box.isConnected);
@@ -113,6 +115,10 @@ export function fitting({ store, begin, say }) {
 
     /** Take a design in the place of what is drawn. @param {Fit} fit */
     const take = async (fit) => {
+        if (taken) {
+            return; // a double click
+        }
+        taken = fit;
         let { design } = fit;
         const notes = [...fit.notes];
         if (fit.art) {
@@ -125,6 +131,7 @@ export function fitting({ store, begin, say }) {
             }
         }
         begin(design);
+        taken = null;
         box?.close();
         if (notes.length) {
             say(notes.join(" "));
