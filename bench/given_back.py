@@ -58,13 +58,11 @@ def report(count: int) -> None:
     table("Tiles given back", "tiles of", "tiles", f"overlap >= {ENOUGH}", "least overlap", "found in that group")
     for group, found in overlaps.items():
         if found:
-            print(
-                f"| {group} | {len(found)} | {sum(each >= ENOUGH for each in found)} | {min(found):.4f} | {same[group]} |"
-            )
+            enough = sum(each >= ENOUGH for each in found)
+            print(f"| {group} | {len(found)} | {enough} | {min(found):.4f} | {same[group]} |")
     every = [each for found in overlaps.values() for each in found]
-    print(
-        f"\n{sum(each >= ENOUGH for each in every)} of {count} are given back, their median {statistics.median(every):.4f};"
-    )
+    enough = sum(each >= ENOUGH for each in every)
+    print(f"\n{enough} of {len(every)} are given back, their median {statistics.median(every):.4f};")
     print(f"seconds of processor time: median {statistics.median(seconds):.1f}, at most {max(seconds):.1f}.")
 
 
