@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import voronoi_tiles as vt
-from voronoi_tiles.sweeps.expression import Column, evaluate
+from voronoi_tiles.sweeps.expression import Column, evaluate, without_sign
 
 ROWS: list[dict[str, Any]] = [
     {"area": 900.0, "neck": 3.5, "group": "p3", "cell.a": 60.0, "site[0].strokes[0].bezier[1][0]": -2.0},
@@ -100,6 +100,15 @@ def test_what_is_no_expression_is_refused(text: str, message: str) -> None:
         evaluate(text, COLUMNS)
     assert message in str(raised.value)
     assert len(str(raised.value)) < 600
+
+
+@pytest.mark.parametrize(
+    ("text", "rest"),
+    [("-area", "area"), ("- (area+neck)", "area + neck"), ("-area + neck", "-area + neck"), ("area", "area")],
+)
+def test_a_minus_before_all_is_taken_off(text: str, rest: str) -> None:
+    """The minus that only says that the greatest comes first is no part of what is shown; any other minus is."""
+    assert without_sign(text) == rest
 
 
 NUMBERS = st.one_of(st.sampled_from(["area", "cell.a", "2", "0.5"]))

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import math
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -117,6 +119,26 @@ def test_a_file_is_the_same_as_python(tmp_path: Path) -> None:
     assert again.columns == made.columns
 
 
+def test_numbers_of_other_libraries_are_those_of_python() -> None:
+    """Numbers and arrays of numpy's, and fractions, make the sweep of plain ones, also in another process."""
+    vary = {
+        "group": np.array(["p4", "p3"]),
+        "cell.a": np.linspace(50, 80, 4),
+        "site[0].rotate": {"from": np.int64(1), "to": Fraction(5, 2), "steps": np.int8(3)},
+    }
+    plain = {
+        "group": ["p4", "p3"],
+        "cell.a": [50.0, 60.0, 70.0, 80.0],
+        "site[0].rotate": {"from": 1, "to": 2.5, "steps": 3},
+    }
+    sheet = {"sheet": (600, 300), "kerf": np.float32(0.25)}
+    one, other = Sweep(vt.starter("p4"), vary, job=sheet), Sweep(vt.starter("p4"), plain, job=sheet | {"kerf": 0.25})
+    assert json.dumps(one.identity) == json.dumps(other.identity)
+    assert one.made_job == other.made_job
+    again = Sweep.of_identity(json.loads(json.dumps(one.identity)), len(one))
+    assert [again.values(k) for k in range(len(one))] == [other.values(k) for k in range(len(other))]
+
+
 GOOD: dict[str, Any] = {"design": "p4", "count": 3, "vary": {"cell.a": {"from": 50, "to": 80}}}
 
 
@@ -146,6 +168,9 @@ GOOD: dict[str, Any] = {"design": "p4", "count": 3, "vary": {"cell.a": {"from": 
         ({"vary": {"cell.a": {"deviation": 1, "steps": 3}}}, "steps: a normal distribution has no steps"),
         ({"vary": {"cell.a": {"around": 1, "steps": 1}}}, "vary.cell.a.steps: must be a whole number from 2"),
         ({"vary": {"cell.a": {"around": 1, "spteps": 1}}}, 'Did you mean "steps"?'),
+        ({"vary": {"cell.a": {"around": 1, "steps": math.inf}}}, "vary.cell.a.steps: must be a whole number from 2"),
+        ({"vary": {"cell.a": {"around": 1, "steps": math.nan}}}, "vary.cell.a.steps: must be a whole number from 2"),
+        ({"vary": {"group": "p4"}}, "vary.group: must be an array, not 'p4'"),
         ({"vary": {"group": ["p5"]}}, "vary.group[0]: unknown group 'p5'"),
         ({"vary": {"cell.a": [50], "group": ["p3"]}}, "vary.group: comes first"),
         ({"vary": {"cell": [50], "cell.a": [50]}}, "vary.cell.a: cell.a varies already"),
@@ -162,6 +187,8 @@ GOOD: dict[str, Any] = {"design": "p4", "count": 3, "vary": {"cell.a": {"from": 
         ({"filter": "area"}, "filter: is a number, not a condition"),
         ({"filter": 3}, "filter: must be a text, not 3"),
         ({"sort": "pieces"}, "sort: there is no column pieces"),
+        ({"sort": 3}, "sort: must be an array, not 3"),
+        ({"sort": {"area": 3}}, "sort: must be an array, not a table"),
         ({"sort": ["area", 3]}, "sort: must be a text, not 3"),
     ],
 )

@@ -5,12 +5,13 @@ from __future__ import annotations
 import csv
 import io
 import json
+import shutil
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
@@ -113,6 +114,13 @@ def test_the_best_are_kept_in_order(sweep: vt.Sweep, whole: tuple[vt.SweepResult
     assert (folder / "sheet.svg").read_text().count("<a ") == 5
 
 
+def test_captions_say_what_was_sorted_by() -> None:
+    """A picture has the values that brought it there: without the minus before all of it, and with large ones whole."""
+    sweep = vt.Sweep(vt.starter("p4"), {"cell.a": [60]}, sort=["-(area*100)", "-area + number"])
+    page = sweep_run.contact_sheet(vt.sweep(sweep, workers=1)).html
+    assert "<br>area * 100 90,000<br>-area + number -900</figcaption>" in page
+
+
 @pytest.mark.parametrize("workers", [2, 3])
 def test_the_number_of_workers_is_in_no_result(
     workers: int, sweep: vt.Sweep, whole: tuple[vt.SweepResult, Path], tmp_path: Path
@@ -155,6 +163,79 @@ def test_what_is_there_is_not_made_again(
     with counted(monkeypatch) as made:
         vt.sweep(sweep, folder, workers=1)
     assert made == []
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "null",
+        "3",
+        '{"0": 1}',
+        "[3, null]",
+        '["%s"]' % ("x" * 13),
+        "[" * 100_000,
+        "[[{number}, {cells}, 0]]",
+        '[["{number}", {cells}, ""]]',
+        '[[null, {cells}, ""]]',
+        '[[false, {cells}, ""]]',
+        '[[{number}.5, {cells}, ""]]',
+        '[[{number}, "p9", {rest}, ""]]',
+        '[[{number}, {group}, ["p4"], {less}, ""]]',
+        '[[{number}, {group}, "wide", {less}, ""]]',
+        '[[{number}, {group}, true, {less}, ""]]',
+        '[[{number}, {group}, NaN, {less}, ""]]',
+        '[[{number}, {group}, 1e999, {less}, ""]]',
+        '[[{number}, {group}, 1%s, {less}, ""]]' % ("0" * 400),
+        '[[{number}, {cells}, "", ""]]',
+    ],
+)
+def test_what_is_no_row_is_made_again(text: str, tmp_path: Path) -> None:
+    """Whatever stands in a file of rows, the table is that of designs: what is no row of the sweep's is made again."""
+    sweep = vt.Sweep(vt.starter("p4"), {"cell.a": [60, 70]}, keep=0)
+    vt.sweep(sweep, tmp_path, workers=1)
+    before = files(tmp_path)
+    file = min((tmp_path / "rows").iterdir())
+    row = [json.dumps(cell) for cell in json.loads(file.read_text())[0][:-1]]
+    parts = {"cells": row[1:], "rest": row[2:], "less": row[3:]}
+    for name, cells in {"number": row[:1], "group": row[1:2], **parts}.items():
+        text = text.replace(f"{{{name}}}", ", ".join(cells))
+    file.write_text(text)
+    vt.sweep(sweep, tmp_path, workers=1)
+    assert files(tmp_path) == before
+    assert len(json.loads(file.read_text())) == 1
+
+
+@pytest.mark.parametrize("gone", ["rows", "kept", "both"])
+def test_folders_that_are_not_there_are_made(gone: str, tmp_path: Path) -> None:
+    """A run that was ended as it began, or whose folders somebody has removed, goes on."""
+    sweep = vt.Sweep(vt.starter("p4"), {"cell.a": [60, 70]}, keep=1)
+    vt.sweep(sweep, tmp_path, workers=1)
+    before = files(tmp_path)
+    for name in ("rows", "kept") if gone == "both" else (gone,):
+        shutil.rmtree(tmp_path / name)
+    vt.sweep(sweep, tmp_path, workers=1)
+    assert files(tmp_path) == before
+
+
+def test_a_folder_is_marked_before_anything_is_in_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Wherever a run ends while it makes its folder, the same command goes on: nothing looks like somebody else's."""
+    sweep = vt.Sweep(vt.starter("p4"), {"cell.a": [60]}, keep=1)
+    original = Path.mkdir
+    for most in range(4):
+        left, folder = [most], tmp_path / str(most)
+
+        def mkdir(path: Path, *arguments: Any, left: list[int] = left, **options: Any) -> None:
+            if not left[0]:
+                raise KeyboardInterrupt
+            left[0] -= 1
+            original(path, *arguments, **options)
+
+        with monkeypatch.context() as patched, suppress(KeyboardInterrupt):
+            patched.setattr(Path, "mkdir", mkdir)
+            vt.sweep(sweep, folder, workers=1)
+        assert (folder / "table.csv").exists() == (most == 3)
+        assert len(vt.sweep(sweep, folder, workers=1).table) == 1
 
 
 def test_another_choice_of_the_same_designs_makes_none(
@@ -312,8 +393,9 @@ def test_a_folder_of_another_sweep_is_refused(sweep: vt.Sweep, tmp_path: Path, m
     with pytest.raises(vt.OutputError, match=r"table\.csv exists already, and is of no sweep"):
         vt.sweep(sweep, theirs, workers=1)
     assert files(theirs) == {"table.csv": b"mine"}
-    with pytest.raises(vt.OutputError, match="cannot write"):
-        vt.sweep(sweep, theirs / "table.csv", workers=1)
+    for name in ("", theirs / "table.csv", folder / "sweep.json" / "x", "a\0b"):
+        with pytest.raises(vt.OutputError, match="cannot write"):
+            vt.sweep(sweep, name, workers=1)
 
 
 @pytest.mark.parametrize(

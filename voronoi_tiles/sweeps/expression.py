@@ -86,6 +86,12 @@ def evaluate(text: str, columns: Mapping[str, Column]) -> Column:
     return Column(kind, np.broadcast_to(values, (count,)))
 
 
+def without_sign(text: str) -> str:
+    """An expression without the minus by which all of it is negated, where it is: what comes first, the greatest."""
+    tree = ast.parse(text.strip(), mode="eval").body
+    return ast.unparse(tree.operand if isinstance(tree, ast.UnaryOp) and isinstance(tree.op, ast.USub) else tree)
+
+
 class _Evaluation:
     """What the parts of an expression come to."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -108,7 +108,7 @@ class Sweep:
         seed: int = 0,
         job: Mapping[str, Any] | None = None,
         filter: str = "",  # noqa: A002 - the key of the file
-        sort: str | Iterable[str] = (),
+        sort: str | Sequence[str] = (),
         keep: int = KEEP,
     ) -> None:
         if not isinstance(design, Design):
@@ -118,12 +118,12 @@ class Sweep:
         groups, numbers = _read_vary(design, vary)
         given = {
             "design": design,
-            "vary": dict(vary),
+            "vary": _plain(dict(vary)),
             "count": count,
             "seed": _whole("seed", seed, 0, _SEED_MAX),
             "job": _read_job(job),
             "filter": _text("filter", filter),
-            "sort": tuple(_text("sort", each) for each in ([sort] if isinstance(sort, str) else sort)),
+            "sort": _read_sort(sort),
             "keep": _whole("keep", keep, 0, KEEP_MAX),
             "_numbers": numbers,
             "_groups": groups,
@@ -343,7 +343,19 @@ def _read_job(job: object) -> Mapping[str, Any]:
             raise DesignError("has a value of another type than its option takes", remedy=remedy) from None
         if not isinstance(made.sheet, tuple):
             raise DesignError(f"{values.shown(sheet)} is no size", key="sheet", remedy='Write sheet = "600x300mm".')
-    return table
+    return _plain(table)
+
+
+def _read_sort(sort: object) -> tuple[str, ...]:
+    """Read one expression or several."""
+    with values.within("sort"):
+        listed = [sort] if isinstance(sort, str) else values.sequence(sort, 'Write one, "-area", or several.')
+    return tuple(_text("sort", each) for each in listed)
+
+
+def _plain(value: Any) -> Any:
+    """A value in the types of JSON: other numbers, and arrays, become Python's."""
+    return json.loads(json.dumps(value, default=lambda each: each.tolist() if hasattr(each, "tolist") else float(each)))
 
 
 def _whole(key: str, value: object, least: int, most: int) -> int:

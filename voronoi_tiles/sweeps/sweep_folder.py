@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import sys
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -11,7 +12,9 @@ from typing import Any, Final
 
 from voronoi_tiles.base.errors import OutputError
 from voronoi_tiles.base.files import output_error, write_whole
+from voronoi_tiles.base.values import is_number
 from voronoi_tiles.base.version import __version__
+from voronoi_tiles.groups.wallpaper import GROUPS
 from voronoi_tiles.sweeps.design_rows import Row
 from voronoi_tiles.sweeps.sweep import Sweep
 
@@ -38,16 +41,15 @@ class SweepFolder:
     def __init__(self, path: str, sweep: Sweep) -> None:
         self.path = Path(path)
         self._name = path
-        try:
-            (self.path / ROWS).parent.mkdir(parents=True, exist_ok=True)
-        except (OSError, ValueError) as error:
-            raise output_error(path or repr(path), error) from error
+        if not path:
+            raise output_error(path, ValueError("the name is empty"))
+        self._make("")
         mark = {"program": f"voronoi-tiles {__version__}", **sweep.identity}
         self._require_own(mark)
-        with suppress(FileExistsError):
-            (self.path / ROWS).mkdir()
-            (self.path / KEPT).mkdir()
+        # The mark comes first: what a run leaves that ends here is known as its own.
         write_whole(self.path / MARK, (json.dumps(mark, indent=1) + "\n").encode())
+        self._make(ROWS)
+        self._make(KEPT)
 
     def rows(self, width: int) -> dict[int, Row]:
         """The rows that are there, by the numbers of their designs; what cannot be read is made again."""
@@ -55,9 +57,9 @@ class SweepFolder:
         for file in sorted((self.path / ROWS).iterdir()):
             if not _BLOCK.fullmatch(file.name):
                 continue
-            with suppress(OSError, ValueError, TypeError, IndexError):
+            with suppress(OSError, ValueError, TypeError, RecursionError):
                 rows = json.loads(file.read_bytes())
-                found |= {row[0]: row for row in rows if len(row) == width}
+                found |= {row[0]: row for row in rows if _is_row(row, width)}
         return found
 
     def keep_rows(self, rows: Sequence[Row]) -> None:
@@ -91,6 +93,14 @@ class SweepFolder:
         """Write a file, whole or not at all. Raises OutputError."""
         write_whole(self.path / name, data)
 
+    def _make(self, name: str) -> None:
+        """Make a folder where there is none. Raises OutputError."""
+        path = self.path / name
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+        except (OSError, ValueError) as error:
+            raise output_error(str(path), error) from error
+
     def _require_own(self, mark: Mapping[str, Any]) -> None:
         """Raise OutputError where the folder is another sweep's, or nobody knows whose."""
         path = self.path / MARK
@@ -103,7 +113,7 @@ class SweepFolder:
         try:
             other = json.loads(path.read_bytes())
             assert isinstance(other, dict)
-        except (OSError, ValueError, AssertionError):
+        except (OSError, ValueError, RecursionError, AssertionError):
             raise OutputError(f"{path} cannot be read", path=self._name, remedy=_ANOTHER) from None
         if other == json.loads(json.dumps(mark)):
             return
@@ -113,3 +123,17 @@ class SweepFolder:
             differ = [name for name in {**mark, **other} if mark.get(name) != other.get(name)]
             message = f"{self._name} holds another sweep, with other values of {', '.join(differ)}"
         raise OutputError(message, path=self._name, remedy=_ANOTHER)
+
+
+def _is_row(row: Any, width: int) -> bool:
+    """Whether a value is a row of so many cells: a number, a group, numbers or nothing, and what went wrong."""
+    if not (isinstance(row, list) and len(row) == width):
+        return False
+    number, group, *cells, error = row
+    numbers = [cell for cell in cells if cell is not None]
+    return (
+        type(number) is int
+        and group in GROUPS
+        and isinstance(error, str)
+        and all(is_number(cell) and abs(cell) <= sys.float_info.max for cell in numbers)
+    )

@@ -17,6 +17,7 @@ from voronoi_tiles.parallel.blocks import processors, run_blocks
 from voronoi_tiles.pictures.contact_sheet import ContactSheet, SheetPicture, square_about
 from voronoi_tiles.sweeps.design_figures import design_figures
 from voronoi_tiles.sweeps.design_rows import DesignBlock, Row, block_rows, failed_row
+from voronoi_tiles.sweeps.expression import without_sign
 from voronoi_tiles.sweeps.sweep import Sweep
 from voronoi_tiles.sweeps.sweep_folder import KEPT, KEPT_TABLE, PARQUET, SHEETS, TABLE, SweepFolder
 from voronoi_tiles.sweeps.sweep_table import SweepTable, pyarrow
@@ -66,7 +67,7 @@ class SweepResult:
 def contact_sheet(result: SweepResult, links: Mapping[int, str] | None = None) -> ContactSheet:
     """Pictures of the designs that were kept, with what they were sorted by; `links` leads to files of theirs."""
     sweep, table = result.sweep, result.table
-    shown = dict.fromkeys(each.removeprefix("-") for each in ("group", *sweep.sort))
+    shown = dict.fromkeys(map(without_sign, ("group", *sweep.sort)))
     facts = {each: table.values(each) for each in shown}
     pictures = []
     for number in result.kept:
@@ -203,4 +204,6 @@ def _text(sweep: Sweep, number: int, place: SweepFolder) -> str:
 
 def _short(value: Any) -> str:
     """A value as a caption has it."""
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+    if not isinstance(value, float):
+        return str(value)
+    return f"{value:,.0f}" if 1e4 <= abs(value) < 1e9 else f"{value:.4g}"

@@ -108,7 +108,7 @@ def read_variation(value: object) -> Variation:
 
 def read_groups(value: object) -> Choices:
     """Read the groups that a sweep chooses from: names, or "all". Raises DesignError."""
-    if value == "all":
+    if isinstance(value, str) and value == "all":
         return Choices(tuple(GROUPS))
     remedy = f'Write groups, such as ["p3", "p6"], or "all"; they are {", ".join(GROUPS)}.'
     listed = values.sequence(value, remedy)
@@ -130,7 +130,7 @@ def _read_steps(table: values.Table) -> int | None:
     steps = table.get("steps")
     if steps is None:
         return None
-    if not values.is_number(steps) or steps != math.floor(steps) or not 2 <= steps <= STEPS_MAX:
+    if not (values.is_number(steps) and 2 <= steps <= STEPS_MAX and steps == math.floor(steps)):
         raise DesignError(
             f"must be a whole number from 2 to {STEPS_MAX:,}, not {values.shown(steps)}",
             key="steps",
