@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -26,11 +27,18 @@ TESTS = Path(__file__).parents[1]
 
 
 def started(*words: str, folder: Path) -> subprocess.Popen[bytes]:
-    """A process of Dask's that finds the tests' helpers."""
+    """A process of Dask's, the first of a group, that finds the tests' helpers and condemns a task at once."""
     quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL, "cwd": folder}
-    return subprocess.Popen(
-        [sys.executable, "-m", "dask", *words], env={**os.environ, "PYTHONPATH": str(TESTS)}, **quiet
-    )
+    env = {**os.environ, "PYTHONPATH": str(TESTS), "DASK_DISTRIBUTED__SCHEDULER__ALLOWED_FAILURES": "0"}
+    return subprocess.Popen([sys.executable, "-m", "dask", *words], env=env, start_new_session=True, **quiet)
+
+
+def end(processes: list[subprocess.Popen[bytes]]) -> None:
+    """End processes of Dask's, and those that they have started."""
+    for process in processes:
+        with suppress(ProcessLookupError):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
 
 
 def address_in(file: Path) -> str:
@@ -52,22 +60,20 @@ def scheduler(folder: Path) -> tuple[subprocess.Popen[bytes], str]:
 @pytest.fixture(scope="module")
 def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
     """A scheduler and two workers of one thread, which are started again when they die: the scheduler's address."""
+    from distributed import Client
+
     folder = tmp_path_factory.mktemp("dask")
     processes = []
     try:
         process, address = scheduler(folder)
+        processes = [process]
         words = ("--nworkers", "2", "--nthreads", "1", "--no-dashboard", "--host", "127.0.0.1")
-        processes = [process, started("worker", address, *words, folder=folder)]
+        processes.append(started("worker", address, *words, folder=folder))
+        with Client(address, set_as_default=False) as client:
+            client.wait_for_workers(2, timeout=60)
         yield address
     finally:
-        for process in reversed(processes):
-            process.send_signal(signal.SIGINT)
-        for process in processes:
-            try:
-                process.wait(10)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
+        end(processes)
 
 
 def test_workers_elsewhere_do_every_block_once(cluster: str) -> None:
@@ -130,18 +136,6 @@ def test_a_cluster_of_dasks_own_on_this_machine() -> None:
             os.kill(int(str(pid)), 0)
 
 
-def test_a_scheduler_without_workers_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """One message says what to start; nothing waits for ever."""
-    monkeypatch.setattr(dask_blocks, "PATIENCE_S", 2.0)
-    process, address = scheduler(tmp_path)
-    try:
-        with pytest.raises(vt.SchedulerError, match=f"the scheduler at {address} has no workers"):
-            list(run_blocks(toy_blocks.square, range(3), scheduler=address))
-    finally:
-        process.kill()
-        process.wait()
-
-
 def test_workers_of_another_version_are_refused(cluster: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Their results might be others: one message names both versions."""
     monkeypatch.setattr(dask_blocks, "__version__", "9.9")
@@ -149,20 +143,26 @@ def test_workers_of_another_version_are_refused(cluster: str, monkeypatch: pytes
         list(run_blocks(toy_blocks.square, range(3), scheduler=cluster))
 
 
-def test_a_scheduler_that_goes_away_is_told(tmp_path: Path) -> None:
-    """Where it dies in the middle there is one message, and nothing waits for ever."""
-    process, address = scheduler(tmp_path)
-    words = ("--nthreads", "1", "--no-dashboard", "--no-nanny", "--host", "127.0.0.1")
-    worker = started("worker", address, *words, folder=tmp_path)
+def test_a_scheduler_without_workers_and_one_that_goes_away_are_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """One message says what to start, at the beginning and in the middle; nothing waits for ever."""
+    processes = []
     try:
-        found = run_blocks(
-            toy_blocks.naps, [(str(tmp_path / "nap"), 0.05)] * 3 + [(str(tmp_path / "long"), 60.0)], scheduler=address
-        )
+        process, address = scheduler(tmp_path)
+        processes = [process]
+        with monkeypatch.context() as patched:
+            patched.setattr(dask_blocks, "PATIENCE_S", 2.0)
+            with pytest.raises(vt.SchedulerError, match=f"the scheduler at {address} has no workers"):
+                list(run_blocks(toy_blocks.square, range(3), scheduler=address))
+        words = ("--nthreads", "1", "--no-dashboard", "--no-nanny", "--host", "127.0.0.1")
+        processes.append(started("worker", address, *words, folder=tmp_path))
+        monkeypatch.setattr(dask_blocks, "PATIENCE_S", 60.0)
+        naps = [(str(tmp_path / "nap"), 0.05)] * 3 + [(str(tmp_path / "long"), 60.0)]
+        found = run_blocks(toy_blocks.naps, naps, scheduler=address)
         next(found)
         process.kill()
         with pytest.raises(vt.SchedulerError, match=f"the scheduler at {address} went away"):
             list(found)
     finally:
-        for each in (process, worker):
-            each.kill()
-            each.wait()
+        end(processes)
