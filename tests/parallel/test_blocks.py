@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import itertools
 import os
 import signal
 import subprocess
@@ -16,7 +18,7 @@ import pytest
 from helpers import toy_blocks
 
 import voronoi_tiles as vt
-from voronoi_tiles.parallel import blocks, dask_blocks
+from voronoi_tiles.parallel import blocks, child_processes, dask_blocks
 from voronoi_tiles.parallel.block_runner import LostBlock
 from voronoi_tiles.parallel.blocks import run_blocks
 
@@ -174,6 +176,24 @@ def test_processes_end_with_the_one_that_started_them(number: signal.Signals, tm
         process.send_signal(number)
         process.wait(20)
     wait_until(lambda: not any(map(runs, children)))
+
+
+def test_processes_that_cannot_be_started_are_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the system gives no more processes, one message says so, and those that are there end."""
+    begun: list[subprocess.Popen[bytes]] = []
+    asked = itertools.count()
+
+    def popen(*arguments: Any, **options: Any) -> subprocess.Popen[bytes]:
+        if next(asked):
+            raise OSError(errno.EMFILE, "Too many open files")
+        begun.append(subprocess.Popen(*arguments, **options))
+        return begun[0]
+
+    monkeypatch.setattr(child_processes, "Popen", popen)
+    naps = [(str(tmp_path / str(k)), 20.0) for k in range(2)]
+    with pytest.raises(vt.ArgumentError, match=r"started: Too many open files\. Give fewer `workers`"):
+        list(run_blocks(toy_blocks.naps, naps, workers=2))
+    assert all(process.poll() is not None for process in begun)
 
 
 def test_functions_of_scripts_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:

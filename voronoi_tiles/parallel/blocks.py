@@ -47,8 +47,9 @@ def run_blocks(
     if it dies again; in this very process there is nothing to catch it. What the function raises ends all. No process
     is left when the iterator is done, closed or interrupted.
 
-    Raises ArgumentError for workers and schedulers that cannot be, MissingLibraryError where Dask is asked for and not
-    installed, and SchedulerError for a scheduler that cannot be reached, has no worker of our version, or goes away.
+    Raises ArgumentError for workers and schedulers that cannot be, or be started, MissingLibraryError where Dask is
+    asked for and not installed, and SchedulerError for a scheduler that cannot be reached, has no worker of our
+    version, or goes away.
     """
     return _results(_opened(function, blocks, workers, scheduler), len(blocks))
 

@@ -19,6 +19,7 @@ from subprocess import PIPE, Popen
 from types import TracebackType
 from typing import Any, Final, Generic, Self
 
+from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.parallel.block_runner import Block, BlockRunner, LostBlock, Result
 
 _START: Final = "import sys; sys.path[:] = {path!r}; from voronoi_tiles.parallel.block_worker import main; main()"
@@ -118,14 +119,24 @@ class _ChildProcess:
                 self.close()
                 self._process = None
             if self._process is None:
-                self._process = Popen(  # noqa: S603 - our own interpreter
-                    [sys.executable, "-P", "-c", _START.format(path=sys.path)],
-                    stdin=PIPE,
-                    stdout=PIPE,
-                    env={**dict.fromkeys(_THREADS, "1"), **os.environ},
-                    start_new_session=True,  # Ctrl-C is for us, who end it
-                )
+                self._process = _begun()
             return self._process
+
+
+def _begun() -> Popen[bytes]:
+    """A new process. Raises ArgumentError where the system gives none."""
+    try:
+        return Popen(  # noqa: S603 - our own interpreter
+            [sys.executable, "-P", "-c", _START.format(path=sys.path)],
+            stdin=PIPE,
+            stdout=PIPE,
+            env={**dict.fromkeys(_THREADS, "1"), **os.environ},
+            start_new_session=True,  # Ctrl-C is for us, who end it
+        )
+    except OSError as error:
+        raise ArgumentError(
+            f"a process cannot be started: {error.strerror}", remedy="Give fewer `workers`; one is this very process."
+        ) from error
 
 
 def _how_it_ended(status: int) -> str:

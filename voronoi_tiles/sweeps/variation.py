@@ -47,16 +47,21 @@ class Span:
 
     def drawn(self, own: float, random: Random) -> float:
         """A value in between, or one of the steps."""
+        base = own if self.about_own else 0.0
         if self.count is not None:
-            return self.steps(own)[int(random.random() * self.count)]
-        return (own if self.about_own else 0.0) + self.low + random.random() * (self.high - self.low)
+            return base + self._step(int(random.random() * self.count), self.count)
+        return base + self.low + random.random() * (self.high - self.low)
 
     def steps(self, own: float) -> tuple[float, ...]:
         """The steps, both ends among them. Raises DesignError where there are none."""
         if self.count is None:
             raise DesignError("has no steps, which a grid needs", remedy=_STEPS)
         base = own if self.about_own else 0.0
-        return tuple((base + np.linspace(self.low, self.high, self.count)).tolist())
+        return tuple(base + self._step(k, self.count) for k in range(self.count))
+
+    def _step(self, k: int, count: int) -> float:
+        """One of so many steps; the last is the upper end to the last digit."""
+        return self.high if k == count - 1 else self.low + k * ((self.high - self.low) / (count - 1))
 
 
 @dataclass(frozen=True, slots=True)
