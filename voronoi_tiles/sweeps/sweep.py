@@ -353,9 +353,10 @@ def _read_sort(sort: object) -> tuple[str, ...]:
     return tuple(_text("sort", each) for each in listed)
 
 
-def _plain(value: Any) -> Any:
-    """A value in the types of JSON: other numbers, and arrays, become Python's."""
-    return json.loads(json.dumps(value, default=lambda each: each.tolist() if hasattr(each, "tolist") else float(each)))
+def _plain(table: dict[str, Any]) -> dict[str, Any]:
+    """A table in the types of JSON: other numbers, and arrays, become Python's."""
+    text = json.dumps(table, default=lambda each: each.tolist() if hasattr(each, "tolist") else float(each))
+    return dict(json.loads(text))
 
 
 def _whole(key: str, value: object, least: int, most: int) -> int:
