@@ -5,7 +5,7 @@ python docs/generate/fits.py        writes docs/fits/*.png, and the table of the
 
 from __future__ import annotations
 
-import csv
+import json
 import re
 import subprocess
 import sys
@@ -32,9 +32,8 @@ def main() -> None:
             made = Path(folder) / "fits"
             command = [sys.executable, "-m", "voronoi_tiles", "fit", str(file), "-o", str(made), "--keep", "1", "-q"]
             subprocess.run(command, check=True, cwd=folder)
-            with (made / "fits.csv").open(encoding="utf-8") as table:
-                (row,) = csv.DictReader(table)
-            design = vt.Design.load(made / row["file"])
+            (row,) = json.loads((made / "index.json").read_text(encoding="utf-8"))
+            design = vt.Design.load(made / row["design"])
             left, bottom, right, top = design.tessellate()[0].bounds
             half = 1.45 * max(right - left, top - bottom)
             x, y = (left + right) / 2.0, (bottom + top) / 2.0
@@ -43,7 +42,7 @@ def main() -> None:
             overlay = ("art",) if design.art[0] is not None else ("outline",)
             region = (x - half, y - half, x + half, y + half)
             vt.render(design, picture, size=SIZE, region=region, overlay=overlay, renderer="cpu")
-        caption = f"{file.stem}: {row['group']}, overlap {float(row['overlap']):.3f}"
+        caption = f"{file.stem}: {row['group']}, overlap {row['overlap']:.3f}"
         rows.append((file.stem, f"fits/{picture.name}", caption))
         print(caption)
     page = PAGE.read_text(encoding="utf-8")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 from pathlib import Path
 
 import numpy as np
@@ -39,18 +40,21 @@ def test_a_folder_has_designs_pictures_a_table_and_a_sheet(birds: Path) -> None:
     """And nothing else; the table says of each what its design is, the best first."""
     names = {"1-p2", "2-p2"}
     files = {f"{name}{suffix}" for name in names for suffix in (".toml", ".png", "-art.svg")}
-    assert {path.name for path in birds.iterdir()} == files | {"fits.csv", "sheet.html", "sheet.png"}
+    assert {path.name for path in birds.iterdir()} == files | {"fits.csv", "index.json", "sheet.html", "sheet.png"}
     with (birds / "fits.csv").open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
-    assert [row["file"] for row in rows] == ["1-p2.toml", "2-p2.toml"]
+    index = json.loads((birds / "index.json").read_text(encoding="utf-8"))
+    assert [{key: str(value) for key, value in row.items()} for row in index] == rows
+    assert {"design", "group", "overlap", "distance_mm", "strokes"} <= set(index[0])
+    assert [row["design"] for row in rows] == ["1-p2.toml", "2-p2.toml"]
     for row in rows:
-        tile = vt.Design.load(birds / row["file"]).tessellate()[0]
+        tile = vt.Design.load(birds / row["design"]).tessellate()[0]
         left, bottom, right, top = tile.bounds
         assert (float(row["width_mm"]), float(row["height_mm"])) == pytest.approx(
             (right - left, top - bottom), abs=1e-3
         )
         assert int(row["neighbours"]) == len(tile.outline.neighbours)
-        assert row["file"] in (birds / "sheet.html").read_text(encoding="utf-8")
+        assert row["design"] in (birds / "sheet.html").read_text(encoding="utf-8")
     assert float(rows[0]["overlap"]) >= float(rows[1]["overlap"]) > 0.8
 
 

@@ -65,17 +65,18 @@ def fit(
     """Find designs whose exact tiles come nearest to an outline, a closed line in an SVG or DXF file.
 
     What else is drawn, eyes and feathers, becomes their art, moved so that it fits the tile's edge. DIR gets a design
-    file and a picture of each, the nearest first, a table (fits.csv) and a contact sheet (sheet.html).
+    file and a picture of each, the nearest first, a table (fits.csv, index.json) and a contact sheet (sheet.html).
     """
+    from voronoi_tiles.base.folders import refuse_filled
     from voronoi_tiles.base.text import counted
     from voronoi_tiles.escherization.drawn_outline import read_outline
-    from voronoi_tiles.escherization.fit_folder import refuse_folder, write_fits
+    from voronoi_tiles.escherization.fit_folder import write_fits
     from voronoi_tiles.escherization.fits import fit as fit_outline
 
     if size == 0.0:
         raise click.UsageError("--size is 0: give the length of the longer side, 80mm.")
     with reporting(outline):
-        refuse_folder(folder)
+        refuse_filled(folder)
         drawn = read_outline(outline, element=element)
         scale = 1.0 if size is None else size / drawn.silhouette.longer_side
         names = None if groups is None else [name.strip() for name in groups.split(",")]

@@ -5,10 +5,9 @@ from __future__ import annotations
 import cmath
 import csv
 import io
+import json
 import math
 import os
-import shutil
-import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -18,8 +17,8 @@ import shapely
 from shapely.geometry import LinearRing
 
 from voronoi_tiles.base.arrays import Complexes, plane
-from voronoi_tiles.base.errors import OutputError
-from voronoi_tiles.base.files import output_error, write_whole
+from voronoi_tiles.base.files import write_whole
+from voronoi_tiles.base.folders import filling
 from voronoi_tiles.designs.art import GUIDE, Art
 from voronoi_tiles.designs.drawn_site import Site
 from voronoi_tiles.escherization.carried_art import CarriedArt, carried_art
@@ -32,10 +31,10 @@ from voronoi_tiles.pictures.contact_sheet import INK, SITE_INK, TILE_FILL, Conta
 from voronoi_tiles.pictures.rendering import render
 
 TABLE: Final = "fits.csv"
+INDEX: Final = "index.json"
+"""The table for programs: a list, the best first."""
+
 SHEETS: Final = ("sheet.html", "sheet.png")
-COLUMNS: Final = (
-    "file", "group", "overlap", "bound", "distance_mm", "corners", "neighbours", "width_mm", "height_mm"
-)  # fmt: skip
 
 _PICTURE: Final = 800
 """The longer side of a design's picture; pixels."""
@@ -70,42 +69,8 @@ def write_fits(
     `source` is the drawing's name, `scale` how many times as large as drawn the outline is. Raises OutputError for a
     folder that holds anything, and what cannot be written.
     """
-    refuse_folder(folder)
-    path = Path(folder)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        made = Path(tempfile.mkdtemp(prefix=f".{path.name}-", dir=path.parent))
-    except (OSError, ValueError) as error:
-        raise output_error(folder or repr(folder), error) from error
-    try:
-        made.chmod(0o777 & ~_umask())
-        notes = _write_all(made, fits, source, drawn, scale, progress)
-        if path.exists():
-            path.rmdir()
-        made.rename(path)
-    except OSError as error:
-        raise output_error(folder, error) from error
-    finally:
-        shutil.rmtree(made, ignore_errors=True)
-    return notes
-
-
-def refuse_folder(folder: str) -> None:
-    """Raise OutputError for a folder that holds anything, and for what is none."""
-    path = Path(folder)
-    try:
-        taken = path.exists() and (not path.is_dir() or any(path.iterdir()))
-    except (OSError, ValueError) as error:
-        raise output_error(folder or repr(folder), error) from error
-    if taken:
-        raise OutputError(f"{folder} exists already", path=folder, remedy="Give a folder that is new, or empty.")
-
-
-def _umask() -> int:
-    """What the process takes from the rights of new files."""
-    mask = os.umask(0o022)
-    os.umask(mask)
-    return mask
+    with filling(folder) as made:
+        return _write_all(made, fits, source, drawn, scale, progress)
 
 
 def _write_all(
@@ -140,29 +105,32 @@ def _write_all(
         if progress is not None:
             progress(number, len(fits))
     table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\n")
-    writer.writerows((COLUMNS, *rows))
+    writer = csv.DictWriter(table, [*rows[0]], lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(rows)
     write_whole(folder / TABLE, table.getvalue().encode())
+    write_whole(folder / INDEX, (json.dumps(rows, indent=2) + "\n").encode())
     sheet = ContactSheet(tuple(pictures), f"Tiles near to {os.path.basename(source)}")  # noqa: PTH119 - any name
     for name in SHEETS:
         sheet.save(folder / name)
     return tuple(notes)
 
 
-def _row(fit: Fit, file: str) -> tuple[object, ...]:
+def _row(fit: Fit, file: str) -> dict[str, str | float]:
     """A row of the table."""
     left, bottom, right, top = fit.tiling[0].bounds
-    return (
-        file,
-        fit.group,
-        f"{fit.overlap:.5f}",
-        f"{fit.bound:.5f}",
-        f"{fit.distance:.4f}",
-        fit.corners,
-        fit.neighbours,
-        f"{right - left:.3f}",
-        f"{top - bottom:.3f}",
-    )
+    return {
+        "design": file,
+        "group": fit.group,
+        "overlap": round(fit.overlap, 5),
+        "bound": round(fit.bound, 5),
+        "distance_mm": round(fit.distance, 4),
+        "strokes": len(fit.design.sites[0].strokes),
+        "corners": fit.corners,
+        "neighbours": fit.neighbours,
+        "width_mm": round(right - left, 3),
+        "height_mm": round(top - bottom, 3),
+    }
 
 
 def fitted_art(fit: Fit, file: str, source: str, drawn: DrawnOutline, scale: float) -> FittedArt | None:
