@@ -26,10 +26,11 @@ def test_new_and_empty_folders_are_filled(tmp_path: Path, monkeypatch: pytest.Mo
     (tmp_path / "work" / "link").symlink_to(tmp_path / "empty")
     (tmp_path / "work" / "ahead").symlink_to(tmp_path / "later")
     monkeypatch.chdir(tmp_path / ("work" if name in {"link", "ahead"} else "empty" if name == "." else "."))
-    before = os.stat(name) if Path(name).exists() else None
+    folder = Path(name)
+    before = folder.stat().st_ino if folder.exists() else None
     filled(name)
-    assert sorted(os.listdir(name)) == ["one", "two"]
-    assert before is None or before.st_ino == os.stat(name).st_ino
+    assert sorted(path.name for path in folder.iterdir()) == ["one", "two"]
+    assert before in {None, folder.stat().st_ino}
     assert not [*tmp_path.rglob(".*")]
 
 
@@ -38,9 +39,14 @@ def test_nothing_is_left_of_what_fails(tmp_path: Path, monkeypatch: pytest.Monke
     """Neither files nor folders that were made for them."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "empty").mkdir()
-    with pytest.raises(KeyboardInterrupt), filling(name) as made:
-        (made / "one").write_text("1", encoding="utf-8")
-        raise KeyboardInterrupt
+
+    def interrupted() -> None:
+        with filling(name) as made:
+            (made / "one").write_text("1", encoding="utf-8")
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        interrupted()
     assert [*tmp_path.rglob("*")] == [tmp_path / "empty"]
 
 
@@ -65,17 +71,22 @@ def test_what_cannot_be_filled_is_refused_at_once(tmp_path: Path, monkeypatch: p
 def test_a_folder_that_was_filled_meanwhile_is_left_alone(tmp_path: Path) -> None:
     """By another, after it was found empty or missing."""
     (tmp_path / "empty").mkdir()
-    for name in ("empty", "new"):
-        with pytest.raises(OutputError, match=name), filling(str(tmp_path / name)) as made:
+
+    def overtaken(folder: Path) -> None:
+        with filling(str(folder)) as made:
             (made / "one").write_text("1", encoding="utf-8")
-            (tmp_path / name).mkdir(exist_ok=True)
-            (tmp_path / name / "one").write_text("mine", encoding="utf-8")
-        assert (tmp_path / name / "one").read_text(encoding="utf-8") == "mine"
-        assert len([*(tmp_path / name).iterdir()]) == 1
+            folder.mkdir(exist_ok=True)
+            (folder / "one").write_text("mine", encoding="utf-8")
+
+    for folder in (tmp_path / "empty", tmp_path / "new"):
+        with pytest.raises(OutputError, match=folder.name):
+            overtaken(folder)
+        assert (folder / "one").read_text(encoding="utf-8") == "mine"
+        assert len([*folder.iterdir()]) == 1
 
 
 def test_a_folder_without_rights_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """At once, and not after minutes of work."""
-    monkeypatch.setattr(os, "access", lambda path, mode: Path(path) != tmp_path)
+    monkeypatch.setattr(os, "access", lambda path, _: Path(path) != tmp_path)
     with pytest.raises(OutputError, match="Permission denied"):
         refuse_filled(str(tmp_path / "new"))

@@ -49,11 +49,8 @@ def filling(folder: str) -> Iterator[Path]:
         if not kept:
             made.chmod(0o777 & ~_umask())
             made.rename(path)
-        elif [*path.iterdir()] == [made]:
-            for each in [*made.iterdir()]:
-                each.rename(path / each.name)
         else:
-            raise OSError(errno.ENOTEMPTY, os.strerror(errno.ENOTEMPTY))
+            _move_up(made)
     except OSError as error:
         raise output_error(folder, error) from error
     finally:
@@ -62,6 +59,14 @@ def filling(folder: str) -> Iterator[Path]:
         for each in missing:
             with suppress(OSError):  # it holds what was made
                 each.rmdir()
+
+
+def _move_up(made: Path) -> None:
+    """Move the files of a folder into the one that it lies in, alone."""
+    if [*made.parent.iterdir()] != [made]:
+        raise OSError(errno.ENOTEMPTY, os.strerror(errno.ENOTEMPTY))
+    for each in [*made.iterdir()]:
+        each.rename(made.parent / each.name)
 
 
 def _real(folder: str) -> Path:
