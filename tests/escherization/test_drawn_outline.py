@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import math
+import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import voronoi_tiles as vt
@@ -49,6 +52,51 @@ def test_an_element_is_the_outline_where_it_is_named(tmp_path: Path) -> None:
         read_outline(path, element="zz")
 
 
+def test_lines_end_to_end_are_one_outline(tmp_path: Path) -> None:
+    """As CAD programs export them: lines and arcs of their own, in any order and direction."""
+    sides = ["M10 10h80", "M90 90v-80", "M90 90a40 20 0 0 0 -80 0", "M10 90v-80"]
+    body = "".join(f'<path d="{side}" stroke="#000" fill="none"/>' for side in (*sides, "M20 20h9"))
+    drawn = read_outline(svg(tmp_path, body))
+    assert drawn.silhouette.area == pytest.approx(6400.0 - math.pi * 40.0 * 20.0 / 2.0, rel=1e-3)
+    assert [shape.paths.bounds for shape in drawn.rest.shapes] == [(20.0, 80.0, 29.0, 80.0)]
+
+
+@pytest.mark.parametrize("more", ["M10 90v-79", "M10 90v-80 M10 10 l5 5"])
+def test_lines_that_leave_a_gap_or_fork_are_no_outline(tmp_path: Path, more: str) -> None:
+    """A gap of a millimetre, or a third line at a corner, that may go on either way."""
+    body = "".join(f'<path d="{side}" stroke="#000" fill="none"/>' for side in ("M10 10h80", "M90 90v-80 M90 90h-80"))
+    with pytest.raises(vt.DrawingError):
+        read_outline(svg(tmp_path, f'{body}<path d="{more}" stroke="#000" fill="none"/>'))
+
+
+def test_an_outline_that_is_drawn_twice_is_one(tmp_path: Path) -> None:
+    """As fills and strokes of their own are: neither is art, which would be engraved along the cut."""
+    twice = f'<path d="{BLOB}" fill="#ff0"/><path d="{BLOB}" fill="none" stroke="#000"/><circle cx="50" cy="40" r="4"/>'
+    drawn = read_outline(svg(tmp_path, twice))
+    assert [shape.paths.bounds for shape in drawn.rest.shapes] == [pytest.approx((46.0, 56.0, 54.0, 64.0))]
+    near = f'<path d="{SQUARE}"/><path d="M11 11h78v78h-78z" fill="none" stroke="#000"/>'
+    assert len(read_outline(svg(tmp_path, near)).rest.shapes) == 1
+
+
+def test_a_background_that_is_taken_as_outline_is_said(tmp_path: Path) -> None:
+    """The page's rectangle is the largest closed line; a rectangle that is all there is, is meant."""
+    frame = '<rect width="100" height="100" fill="#fff"/>'
+    (note,) = read_outline(svg(tmp_path, f'{frame}<path id="b" d="{BLOB}"/>')).notes
+    assert "rectangle of the page, rect" in note
+    assert "--element" in note
+    assert not read_outline(svg(tmp_path, frame)).notes
+
+
+def test_a_tangle_is_refused_at_once(tmp_path: Path) -> None:
+    """20,000 corners of which each side crosses thousands of others: mending that takes minutes."""
+    points = np.random.default_rng(1).uniform(0.0, 100.0, (20_000, 2))
+    body = f'<path d="M{" ".join(f"{x:.4f} {y:.4f}" for x, y in points)} Z"/><circle cx="50" cy="50" r="9"/>'
+    begun = time.process_time()
+    with pytest.raises(vt.DrawingError, match="crosses itself"):
+        read_outline(svg(tmp_path, body))
+    assert time.process_time() - begun < 20.0
+
+
 def test_what_is_left_out_is_said(tmp_path: Path) -> None:
     """A text within, and a size that is a guess."""
     notes = read_outline(
@@ -71,6 +119,7 @@ def test_what_is_left_out_is_said(tmp_path: Path) -> None:
         ('<path d="M10 10h30v30h-30z M60 60h30v30h-30z"/>', "two outlines beside each other"),
         ("", "nothing is drawn"),
         ('<text x="4" y="5">tit</text>', "nothing is drawn"),
+        ('<image width="9" height="9" href="data:image/png;base64,iVBORw0KGgo="/>', "picture of pixels"),
         ('<path d="M10 10 L50 50 L30 30 Z"/>', "the outline, path"),
         ('<path d="M10 10 L50 50" stroke="#000"/>', "nothing is drawn"),
         ('<path d="M0 50 h100 v0.1 h-100 z"/>', "too thin"),

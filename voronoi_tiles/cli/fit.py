@@ -78,6 +78,8 @@ def fit(
     with reporting(outline):
         refuse_filled(folder)
         drawn = read_outline(outline, element=element)
+        for note in () if quiet else drawn.notes:
+            say(as_options(note))
         scale = 1.0 if size is None else size / drawn.silhouette.longer_side
         names = None if groups is None else [name.strip() for name in groups.split(",")]
         with progress_bar("looking for tiles", quiet=quiet) as progress:
@@ -98,7 +100,7 @@ def fit(
             notes = write_fits(folder, found, outline, drawn, scale, progress)
     if quiet:
         return
-    for note in dict.fromkeys((*drawn.notes, *notes)):
+    for note in (note for note in notes if note not in drawn.notes):
         say(as_options(note))
     for number, each in enumerate(found, 1):
         say(_line(number, each))

@@ -30,7 +30,7 @@ class Found(NamedTuple):
     uncovered: float
 
 
-class PolishedPlacement(NamedTuple):
+class Polished(NamedTuple):
     """A placement of a silhouette of area 1, and the share of the plane that its copies leave uncovered."""
 
     placement: GroupPlacement
@@ -44,7 +44,7 @@ def found_placements(unit: GoalOutline, seed: int, group: str) -> list[Found]:
     return sorted(found, key=lambda each: each.uncovered)
 
 
-def polished(unit: GoalOutline, found: Found) -> PolishedPlacement:
+def polished(unit: GoalOutline, found: Found) -> Polished:
     """A placement led on to where copies leave least uncovered.
 
     The share has kinks where corners pass outlines, so that it is led down without derivatives (Nelder, Mead).
@@ -59,4 +59,4 @@ def polished(unit: GoalOutline, found: Found) -> PolishedPlacement:
     led = optimize.minimize(
         lambda row: gap(unit, placement_of(group, row)), found.row, method="Nelder-Mead", options=options
     )
-    return PolishedPlacement(placement_of(group, led.x), float(led.fun))
+    return Polished(placement_of(group, led.x), float(led.fun))
