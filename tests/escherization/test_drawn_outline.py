@@ -48,14 +48,16 @@ def test_an_element_is_the_outline_where_it_is_named(tmp_path: Path) -> None:
     path = svg(tmp_path, f'<path d="{SQUARE}"/><g id="b"><path d="M30 30h20v20h-20"/></g>')
     assert read_outline(path, element="b").silhouette.area == pytest.approx(400.0)
     assert len(read_outline(path, element="b").rest.shapes) == 1
+    assert read_outline(svg(tmp_path, '<path d="M10 10 L90 10 L50 90"/>')).silhouette.area == pytest.approx(3200.0)
     with pytest.raises(vt.DrawingError, match="'zz'"):
         read_outline(path, element="zz")
 
 
 def test_lines_end_to_end_are_one_outline(tmp_path: Path) -> None:
     """As CAD programs export them: lines and arcs of their own, in any order and direction."""
-    sides = ["M10 10h80", "M90 90v-80", "M90 90a40 20 0 0 0 -80 0", "M10 90v-80"]
+    sides = ["M10 10h80", "M90 90v-80", "M90 90a40 20 0 0 0 -80 0"]
     body = "".join(f'<path d="{side}" stroke="#000" fill="none"/>' for side in (*sides, "M20 20h9"))
+    body += '<line x1="10" y1="90" x2="10" y2="10" stroke="#000"/>'
     drawn = read_outline(svg(tmp_path, body))
     assert drawn.silhouette.area == pytest.approx(6400.0 - math.pi * 40.0 * 20.0 / 2.0, rel=1e-3)
     assert [shape.paths.bounds for shape in drawn.rest.shapes] == [(20.0, 80.0, 29.0, 80.0)]

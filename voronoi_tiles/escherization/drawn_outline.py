@@ -163,10 +163,11 @@ def _contours(shapes: list[Shape], name: str) -> list[_Closed]:
                 lines.start[lines.offsets[k] : lines.offsets[k + 1]], lines.end[lines.offsets[k + 1] - 1]
             )
             ends = float(abs(points[-1] - points[0]))
-            closed = bool(lines.closed[k]) or shape.fill is not None or ends <= accuracy
+            filled = shape.fill is not None and len(points) > 2  # a single line encloses nothing
+            closed = bool(lines.closed[k]) or filled or ends <= accuracy
             if not closed:
                 single.append(((number, k), points))
-            if len(points) >= 4:
+            if len(points) - (ends == 0.0) > 2:
                 found.append(_Closed(((number, k),), Polygon(plane(points)), closed, ends))
     return found + _end_to_end(single, accuracy)
 
