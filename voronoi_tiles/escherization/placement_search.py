@@ -168,11 +168,9 @@ class PlacementSearch:
 
     def _waves(self, highest: float) -> _Waves:
         """The reciprocal vectors that may be as low as a frequency, for some cell within the bounds."""
-        low, high = self._bounds.T
-        corners = np.array([np.where(low == row, low, high) for row in (low, high)])
-        a, b = (float(np.abs(side).max()) for side in sides(self.group, np.vstack((corners, [low, high]))))
-        i = np.arange(-math.floor(highest * a), math.floor(highest * a) + 1)
-        j = np.arange(-math.floor(highest * b) * 2, math.floor(highest * b) * 2 + 1)
+        # A vector's integers are its products with the cell's sides, which are longest at the bounds.
+        a, b = (math.floor(highest * float(np.abs(side).max())) for side in sides(self.group, self._bounds.T))
+        i, j = np.arange(-a, a + 1), np.arange(-b, b + 1)
         vectors = np.stack(np.meshgrid(i, j, indexing="ij"), axis=-1).reshape(-1, 2)
         # Of operations that differ by a centring one is enough: the others say which vectors there are.
         operations = {operation.linear: operation for operation in reversed(self.group.operations)}
