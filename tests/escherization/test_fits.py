@@ -104,6 +104,16 @@ def test_the_search_is_the_same_again_and_on_other_processors() -> None:
     assert large[0].overlap == pytest.approx(once[0].overlap, abs=2e-3)
 
 
+@pytest.mark.parametrize("scale", [1e-4, 1e3, 1e8])
+def test_the_unit_does_not_matter(scale: float) -> None:
+    """A triangle of micrometres and one of a town have the same tile: also the cell's angle, which has no size."""
+    triangle = np.array([0j, 4 + 0j, 3j])
+    (one,), (other,) = (vt.fit(triangle * size, groups="p2", keep=1) for size in (1.0, scale))
+    assert other.overlap == pytest.approx(one.overlap, abs=1e-4)
+    assert other.distance == pytest.approx(one.distance * scale, rel=0.02)
+    assert other.design.cell["angle"] == pytest.approx(one.design.cell["angle"], abs=1e-4)
+
+
 def test_without_mirror_images_there_are_none() -> None:
     """Only groups of rotations and translations are looked in."""
     found = vt.fit(random_polygon(4), groups=["pg", "p3", "pgg"], keep=4, mirrored=False, strokes="outline")

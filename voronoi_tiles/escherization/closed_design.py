@@ -18,13 +18,16 @@ from voronoi_tiles.tiling import Tiling, tessellate
 _DIGITS: Final = 5
 """Coordinates are written to so many digits of the size: a tile of 60 mm to a micrometre."""
 
+_ANGLE_PLACES: Final = 5
+"""The cell's angle is written to so many digits of a degree, which is as fine as its sides are."""
+
 
 def closed_design(group: WallpaperGroup, cell: dict[str, float], corners: Complexes, name: str, size: float) -> Design:
     """The design of a closed stroke by its corners, its numbers rounded for people; `size` is that of the tile."""
     places = _DIGITS - math.floor(math.log10(size)) - 1
-    sides = {key: round(value, places + 1) for key, value in cell.items()}
+    numbers = {key: round(value, _ANGLE_PLACES if key == "angle" else places + 1) for key, value in cell.items()}
     rounded = np.round(plane(corners), places) + 0.0
-    return Design(group, sides, Site([polyline(rounded, closed=True)], name=name), name=name)
+    return Design(group, numbers, Site([polyline(rounded, closed=True)], name=name), name=name)
 
 
 def corners_of(design: Design) -> Complexes:
