@@ -14,6 +14,7 @@ from click.testing import CliRunner, Result
 import voronoi_tiles as vt
 from voronoi_tiles.base.arrays import plane
 from voronoi_tiles.cli.main import cli
+from voronoi_tiles.escherization import fits
 from voronoi_tiles.formats.reading import read_drawing
 from voronoi_tiles.pictures.contact_sheet import ContactSheet
 
@@ -116,6 +117,14 @@ def test_what_cannot_be_asked_for_is_said(tmp_path: Path, arguments: tuple[str, 
     """By the option's name, and no folder is made."""
     result = run(BIRD, "-o", tmp_path / "birds", *arguments)
     assert (result.exit_code, said in result.output) == (2, True), result.output
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_no_folder_is_made_where_nothing_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As where all tiles of a group are of several pieces; the option that helps is named."""
+    monkeypatch.setattr(fits, "tiled", lambda _: None)
+    result = run(BIRD, "-o", tmp_path / "birds", "--groups", "p1", "--workers", "1")
+    assert (result.exit_code, "--groups" in result.output) == (2, True), result.output
     assert list(tmp_path.iterdir()) == []
 
 

@@ -10,8 +10,10 @@ from helpers.silhouettes import random_polygon
 
 import voronoi_tiles as vt
 from voronoi_tiles.escherization.area_transform import AreaTransform, transform
+from voronoi_tiles.escherization.covering import gap
 from voronoi_tiles.escherization.goal_outline import GoalOutline
 from voronoi_tiles.escherization.placement_search import PlacementSearch, placement_of
+from voronoi_tiles.escherization.polishing import Found, found_placements, polished
 
 HIGHEST = 2.3
 
@@ -69,3 +71,15 @@ def test_minima_are_lower_than_all_that_is_near(group: str) -> None:
     rows[:, search._periodic :] = np.clip(rows, low, high)[:, search._periodic :]
     values = (search._residuals(rows, waves, 4.0) ** 2).sum(axis=1)
     assert values[0] <= values[1:].min() + 1e-6
+
+
+@pytest.mark.parametrize("group", ["p2", "pg", "p6m"])
+def test_led_on_placements_leave_no_more_uncovered(group: str) -> None:
+    """Good ones leave less; poor ones, whose tiles nobody wants, stay where they are, as looks at them take long."""
+    unit = GoalOutline.of(random_polygon(5)).unit
+    for found in found_placements(unit, 0, group)[:3]:
+        led = polished(unit, found)
+        assert led.uncovered == pytest.approx(gap(unit, led.placement), abs=1e-9)
+        assert led.uncovered <= found.uncovered
+        poor = Found(group, found.row + np.array([0.4, *[0.0] * (len(found.row) - 1)]), 0.3)
+        assert polished(unit, poor).placement.turn == poor.row[0]

@@ -67,6 +67,7 @@ def fit(
     What else is drawn, eyes and feathers, becomes their art, moved so that it fits the tile's edge. DIR gets a design
     file and a picture of each, the nearest first, a table (fits.csv, index.json) and a contact sheet (sheet.html).
     """
+    from voronoi_tiles.base.errors import ArgumentError
     from voronoi_tiles.base.folders import refuse_filled
     from voronoi_tiles.base.text import counted
     from voronoi_tiles.escherization.drawn_outline import read_outline
@@ -96,6 +97,8 @@ def fit(
                 scheduler=scheduler,
                 progress=progress,
             )
+        if not found:
+            raise ArgumentError("no group of `groups` has a tile near to this outline", remedy="Look in more groups.")
         with progress_bar("drawing designs", quiet=quiet) as progress:
             notes = write_fits(folder, found, outline, drawn, scale, progress)
     if quiet:

@@ -21,6 +21,10 @@ _SIMPLEX: Final = 0.02
 _EVALUATIONS: Final = 240
 """How many placements are compared at most; a count."""
 
+_POOR: Final = 0.25
+"""Placements that leave more uncovered are not led on; a share of the plane. Their tiles have three fifths in common
+with the outline at most, and those of stars with long rays, on which dozens of copies lie, would take an hour."""
+
 
 class Found(NamedTuple):
     """A placement as the search has it, and the share of the plane that copies leave uncovered."""
@@ -45,11 +49,13 @@ def found_placements(unit: GoalOutline, seed: int, group: str) -> list[Found]:
 
 
 def polished(unit: GoalOutline, found: Found) -> Polished:
-    """A placement led on to where copies leave least uncovered.
+    """A placement led on to where copies leave least uncovered, if it is not a poor one.
 
     The share has kinks where corners pass outlines, so that it is led down without derivatives (Nelder, Mead).
     """
     group = GROUPS[found.group]
+    if found.uncovered > _POOR:
+        return Polished(placement_of(group, found.row), found.uncovered)
     options = {
         "initial_simplex": np.vstack((found.row, found.row + _SIMPLEX * np.eye(len(found.row)))),
         "maxfev": _EVALUATIONS,
