@@ -441,8 +441,7 @@ def test_report_has_all_marks() -> None:
     """Every script has its place in the report."""
     text = report.REPORT.read_text(encoding="utf-8")
     names = "targets", "engine", "accuracy", "raster", "sheets", "against", "preflight", "chromium"
-    names = *names, "escherization", "given back", "sweeps"
-    for name in names:
+    for name in (*names, "escherization", "given back", "sweeps"):
         assert text.count(f"<!-- {name} -->") == text.count(f"<!-- end of {name} -->") == 1
 
 
