@@ -25,7 +25,7 @@ from voronoi_tiles.designs.drawn_strokes import StrokeKind
 from voronoi_tiles.designs.starters import GROUP_NAMES, starter_text
 
 ROOT = FilePath(__file__).parents[2]
-EXAMPLES = sorted(ROOT.glob("examples/**/*.toml"))
+EXAMPLES = sorted(path for path in ROOT.glob("examples/**/*.toml") if path.parent.name != "sweeps")
 
 
 def places(points: Any) -> list[complex]:

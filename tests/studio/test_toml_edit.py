@@ -24,7 +24,11 @@ from voronoi_tiles.studio.toml_syntax import syntax_of
 
 ROOT = Path(__file__).parents[2]
 TEXTS = {
-    **{path.stem: path.read_bytes().decode() for path in sorted((ROOT / "examples").rglob("*.toml"))},
+    **{
+        path.stem: path.read_bytes().decode()
+        for path in sorted((ROOT / "examples").rglob("*.toml"))
+        if path.parent.name != "sweeps"
+    },
     **{f"starter-{group}": starter_text(group) for group in GROUP_NAMES},
 }
 

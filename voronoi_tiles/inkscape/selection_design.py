@@ -9,7 +9,6 @@ from typing import Any, Final
 
 from voronoi_tiles.base.errors import DesignError, TouchingCopiesError
 from voronoi_tiles.designs.design import Design
-from voronoi_tiles.designs.placing import find_place
 from voronoi_tiles.formats.svg.path_text import path_data
 from voronoi_tiles.groups.wallpaper import GROUPS
 from voronoi_tiles.inkscape.cell_frame import CellFrame, frame_of_numbers, frame_of_place, frame_of_rectangle
@@ -45,6 +44,8 @@ def design_of(selection: Selection, fields: DesignFields) -> SelectionDesign:
     if selection.cell is not None:
         frame = frame_of_rectangle(selection.cell, group)
     elif fitted:
+        from voronoi_tiles.designs.placing import find_place  # and shapely with it
+
         place = find_place(_made(selection, "p1", _ROOM, fields.tolerance).design.noded, group)
         frame = frame_of_place(place.cell, place.translate)
     else:
