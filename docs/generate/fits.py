@@ -15,6 +15,7 @@ from pathlib import Path
 from running import ROOT, image_table
 
 import voronoi_tiles as vt
+from voronoi_tiles.pictures.contact_sheet import square_around
 
 PAGE = ROOT / "docs/fit.md"
 PICTURES = ROOT / "docs/fits"
@@ -34,13 +35,10 @@ def main() -> None:
             subprocess.run(command, check=True, cwd=folder)
             (row,) = json.loads((made / "index.json").read_text(encoding="utf-8"))
             design = vt.Design.load(made / row["design"])
-            left, bottom, right, top = design.tessellate()[0].bounds
-            half = 1.45 * max(right - left, top - bottom)
-            x, y = (left + right) / 2.0, (bottom + top) / 2.0
+            region = square_around(design.tessellate()[0].bounds, 2.9)
             design.save(made / "design.toml")
             picture = PICTURES / f"{file.stem}.png"
             overlay = ("art",) if design.art[0] is not None else ("outline",)
-            region = (x - half, y - half, x + half, y + half)
             vt.render(design, picture, size=SIZE, region=region, overlay=overlay, renderer="cpu")
         caption = f"{file.stem}: {row['group']}, overlap {row['overlap']:.3f}"
         rows.append((file.stem, f"fits/{picture.name}", caption))

@@ -6,7 +6,8 @@ import io
 import shutil
 import sys
 import tempfile
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -42,15 +43,22 @@ def shoot(window: Window, name: str, colours: int = COLOURS) -> None:
     picture.quantize(colours).save(DOCS / "pictures" / f"studio-{name}.png", optimize=True)
 
 
-def shoot_drawing(chromium: Any, folder: Path) -> None:
-    """Go through the panels of a design, and photograph them."""
-    shutil.copy(DESIGN, folder)
+@contextmanager
+def shown(chromium: Any, folder: Path, design: Path) -> Iterator[Window]:
+    """The studio's window with a copy of a design, proved."""
+    shutil.copy(design, folder)
     with (
-        running(folder, DESIGN.name) as studio,
+        running(folder, design.name) as studio,
         opened(chromium, studio, viewport=SIZE, color_scheme="light") as window,
     ):
-        page = window.page
         window.wait()
+        yield window
+
+
+def shoot_drawing(chromium: Any, folder: Path) -> None:
+    """Go through the panels of a design, and photograph them."""
+    with shown(chromium, folder, DESIGN) as window:
+        page = window.page
         page.locator(".stroke").first.click()
         shoot(window, "drawing")
         page.get_by_role("tab", name="Symmetry").click()
@@ -68,9 +76,7 @@ def shoot_drawing(chromium: Any, folder: Path) -> None:
 
 def shoot_solid(chromium: Any, folder: Path) -> None:
     """Photograph the solid of a design that stands."""
-    shutil.copy(SOLID, folder)
-    with running(folder, SOLID.name) as studio, opened(chromium, studio, viewport=SIZE, color_scheme="light") as window:
-        window.wait()
+    with shown(chromium, folder, SOLID) as window:
         window.page.get_by_role("tab", name="Solid").click()
         window.page.locator(".proof[data-state=proved]").wait_for()
         shoot(window, "solid", colours=SHADES)
@@ -78,13 +84,8 @@ def shoot_solid(chromium: Any, folder: Path) -> None:
 
 def shoot_fits(chromium: Any, folder: Path) -> None:
     """Photograph the designs that are found for an outline."""
-    shutil.copy(DESIGN, folder)
-    with (
-        running(folder, DESIGN.name) as studio,
-        opened(chromium, studio, viewport=SIZE, color_scheme="light") as window,
-    ):
+    with shown(chromium, folder, DESIGN) as window:
         page = window.page
-        window.wait()
         page.locator("[data-command=fit-outline]").click()
         page.get_by_label("File of the outline").set_input_files(OUTLINE)
         page.get_by_text("the nearest first").wait_for(timeout=300_000)

@@ -29,6 +29,11 @@ def plane(points: Complexes) -> Floats:
     return np.stack((points.real, points.imag), axis=-1)
 
 
+def from_plane(points: Floats) -> Complexes:
+    """Rows of x and y, (..., 2), as points: the inverse of `plane`."""
+    return np.asarray(points[..., 0] + 1j * points[..., 1])
+
+
 def ranges(first: Ints, counts: Ints) -> Ints:
     """The numbers first[0], first[0] + 1, ... (counts[0] of them), then those from first[1], and so on."""
     ends = counts.cumsum()

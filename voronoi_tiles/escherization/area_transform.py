@@ -49,7 +49,6 @@ def transform(silhouette: GoalOutline, x: Floats, y: Floats) -> Complexes:
 class AreaTransform:
     """The transform of a silhouette of area 1 about its centroid, up to FREQUENCY_MAX, as a table of splines."""
 
-    reach: float
     _step: float
     _zero: int
     _real: Floats
@@ -67,7 +66,7 @@ class AreaTransform:
         x[zero, zero] = 1.0
         table = transform(unit, x, y)
         table[zero, zero] = 1.0
-        return cls(unit.reach, step, zero, ndimage.spline_filter(table.real), ndimage.spline_filter(table.imag))
+        return cls(step, zero, ndimage.spline_filter(table.real), ndimage.spline_filter(table.imag))
 
     def __call__(self, x: Floats, y: Floats) -> Complexes:
         """The transform at frequencies (x, y), not beyond FREQUENCY_MAX: complex128, shaped as x."""

@@ -7,7 +7,7 @@ from typing import Final
 
 import numpy as np
 
-from voronoi_tiles.base.arrays import Complexes, plane
+from voronoi_tiles.base.arrays import Complexes, from_plane, plane
 from voronoi_tiles.base.errors import ProofError, TouchingCopiesError
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.designs.drawn_site import Site
@@ -32,8 +32,7 @@ def closed_design(group: WallpaperGroup, cell: dict[str, float], corners: Comple
 
 def corners_of(design: Design) -> Complexes:
     """The corners of its stroke: complex128 (n,)."""
-    points = np.array(design.sites[0].strokes[0].table["polyline"], float)
-    return np.asarray(points @ np.array([1.0, 1j]))
+    return from_plane(np.array(design.sites[0].strokes[0].table["polyline"], float))
 
 
 def tiled(design: Design) -> Tiling | None:

@@ -10,9 +10,9 @@ import shapely
 from shapely.geometry import Polygon
 from shapely.geometry.base import BaseGeometry
 
-from voronoi_tiles.base.arrays import Complexes, plane
+from voronoi_tiles.base.arrays import Complexes, from_plane, plane
 from voronoi_tiles.base.maps import Isometry
-from voronoi_tiles.escherization.goal_outline import GoalOutline
+from voronoi_tiles.escherization.goal_outline import GoalOutline, ring_corners
 from voronoi_tiles.escherization.group_placement import GroupPlacement
 
 APART: Final = 5e-3
@@ -69,7 +69,7 @@ def drawn_apart(silhouette: GoalOutline, placement: GroupPlacement) -> Complexes
     if inner.area - stroke.area > _LEAST * own.area:
         stroke = _decided(stroke, _lenses(own, [(k, maps[k], copies[k]) for k in near]), left, _LEAST * own.area)
     exterior = Polygon(stroke.exterior).simplify(_CORNERS * apart).exterior
-    return np.asarray(shapely.get_coordinates(exterior)[:-1] @ np.array([1.0, 1j]))
+    return ring_corners(exterior)
 
 
 def _lenses(own: Polygon, copies: list[tuple[int, Isometry, Polygon]]) -> list[_Lens]:
@@ -78,7 +78,7 @@ def _lenses(own: Polygon, copies: list[tuple[int, Isometry, Polygon]]) -> list[_
     for number, copy, polygon in copies:
         for part in shapely.get_parts(own.intersection(polygon)):
             if part.area > _LEAST * own.area and part.geom_type == "Polygon":
-                corners = shapely.get_coordinates(part.exterior) @ np.array([1.0, 1j])
+                corners = from_plane(shapely.get_coordinates(part.exterior))
                 # The inverse of a z + b, or of a conj(z) + b.
                 moved = (corners - copy.b) / copy.a
                 back = Polygon(plane(np.conj(moved) if copy.conj else moved))

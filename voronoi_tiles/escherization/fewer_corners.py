@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Final
 
 import numpy as np
-import shapely
 from shapely.geometry import LinearRing, Polygon
 
 from voronoi_tiles.base.arrays import plane
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.escherization.closed_design import closed_design, corners_of, tiled
+from voronoi_tiles.escherization.goal_outline import ring_corners
 from voronoi_tiles.escherization.outline_distance import largest_distance, towards
 from voronoi_tiles.tiling import Tiling
 
@@ -39,7 +39,7 @@ def fewer_corners(tiling: Tiling, size: float, within: float) -> Tiling | None:
     corners = corners_of(whole)
     for tolerance in _TOLERANCES:
         simple = Polygon(plane(corners)).simplify(tolerance * size).exterior
-        fewer = shapely.get_coordinates(simple)[:-1] @ np.array([1.0, 1j])
+        fewer = ring_corners(simple)
         if not 3 <= len(fewer) < len(corners):
             continue
         led = _led(closed_design(whole.group, whole.cell, fewer, whole.name, size), wanted)

@@ -14,9 +14,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
-from shapely.geometry import LinearRing
 
-from voronoi_tiles.base.arrays import Complexes, plane
+from voronoi_tiles.base.arrays import Complexes
 from voronoi_tiles.base.files import write_whole
 from voronoi_tiles.base.folders import filling
 from voronoi_tiles.designs.art import GUIDE, Art
@@ -25,9 +24,19 @@ from voronoi_tiles.escherization.carried_art import CarriedArt, carried_art
 from voronoi_tiles.escherization.carrying import Carrying
 from voronoi_tiles.escherization.drawn_outline import DrawnOutline
 from voronoi_tiles.escherization.fits import Fit
+from voronoi_tiles.escherization.goal_outline import ring_corners
+from voronoi_tiles.escherization.outline_distance import nearest_on
 from voronoi_tiles.formats.reading import drawing_of
 from voronoi_tiles.paths.paths import Paths
-from voronoi_tiles.pictures.contact_sheet import INK, SITE_INK, TILE_FILL, ContactSheet, DrawnPaths, SheetPicture
+from voronoi_tiles.pictures.contact_sheet import (
+    INK,
+    SITE_INK,
+    TILE_FILL,
+    ContactSheet,
+    DrawnPaths,
+    SheetPicture,
+    square_around,
+)
 from voronoi_tiles.pictures.rendering import render
 
 TABLE: Final = "fits.csv"
@@ -94,7 +103,7 @@ def _write_all(
             notes += [note for note in art.carried.notes if note not in notes]
         design.save(folder / f"{stem}.toml")
         overlays = ("art",) if design.art[0] is not None else ()
-        region = _square(each, _AROUND)
+        region = square_around(each.tiling[0].bounds, _AROUND)
         render(design, folder / f"{stem}.png", size=_PICTURE, region=region, overlay=overlays, renderer="cpu")
         caption = (
             f"{each.group}: overlap {each.overlap:.3f}",
@@ -146,21 +155,13 @@ def fitted_art(fit: Fit, file: str, source: str, drawn: DrawnOutline, scale: flo
         return (fit.placement.taken_back(points, given.centroid) - given.centroid) / scale + drawn.silhouette.centroid
 
     ring = fit.tiling[0].to_shapely(accuracy=1e-3 * given.size).exterior
-    outline = corners(shapely.segmentize(fit.outline.exterior, _SAMPLES * given.size))
-    nearest = shapely.line_interpolate_point(ring, shapely.line_locate_point(ring, shapely.points(plane(outline))))
-    moved = as_drawn(shapely.get_coordinates(nearest) @ np.array([1.0, 1j])) - as_drawn(outline)
+    outline = ring_corners(shapely.segmentize(fit.outline.exterior, _SAMPLES * given.size))
+    moved = as_drawn(nearest_on(ring, outline)) - as_drawn(outline)
     reach = float(np.clip(4.0 * np.abs(moved).max(), 0.15 * size, 0.5 * size))
-    guide = Paths.polylines([as_drawn(corners(ring))], closed=True)
+    guide = Paths.polylines([as_drawn(ring_corners(ring))], closed=True)
     art = carried_art(drawn.rest, source, None, Carrying.of(as_drawn(outline), moved, reach), guide=guide)
     shift = fit.placement.centre + scale * (art.corner - drawn.silhouette.centroid) * cmath.exp(1j * fit.placement.turn)
     return FittedArt(Art(file, scale=scale, rotate=math.degrees(fit.placement.turn), translate=shift), art)
-
-
-def _square(fit: Fit, times: float) -> tuple[float, float, float, float]:
-    """A square about the tile, so many times as large as it reaches."""
-    left, bottom, right, top = fit.tiling[0].bounds
-    half, x, y = times / 2.0 * max(right - left, top - bottom), (left + right) / 2.0, (bottom + top) / 2.0
-    return x - half, y - half, x + half, y + half
 
 
 def fit_picture(fit: Fit, art: FittedArt | None, caption: tuple[str, ...] = (), link: str = "") -> SheetPicture:
@@ -171,8 +172,8 @@ def fit_picture(fit: Fit, art: FittedArt | None, caption: tuple[str, ...] = (), 
         return paths.moved(back, -centre * back)
 
     tile = fit.tiling[0]
-    copies = fit.tiling.copies(_square(fit, _AROUND))
-    given = upright(Paths.polylines([corners(fit.outline.exterior)], closed=True))
+    copies = fit.tiling.copies(square_around(tile.bounds, _AROUND))
+    given = upright(Paths.polylines([ring_corners(fit.outline.exterior)], closed=True))
     drawn = [
         DrawnPaths(upright(Paths.concatenate([copy.outline.paths for copy in copies])), "", INK, 0.5),
         DrawnPaths(upright(tile.outline.paths), TILE_FILL, INK),
@@ -183,11 +184,4 @@ def fit_picture(fit: Fit, art: FittedArt | None, caption: tuple[str, ...] = (), 
         unit, shift, _ = art.placed.placement.similarity
         drawn += [DrawnPaths(upright(shape.paths.moved(unit, shift)), "", shape.stroke or INK) for shape in shapes]
     drawn.append(DrawnPaths(given, "", _GIVEN, 1.5))
-    left, bottom, right, top = given.bounds
-    half, x, y = 0.6 * max(right - left, top - bottom), (left + right) / 2.0, (bottom + top) / 2.0
-    return SheetPicture(tuple(drawn), (x - half, y - half, x + half, y + half), caption, link)
-
-
-def corners(ring: LinearRing) -> Complexes:
-    """The corners of a ring, the first not repeated: complex128 (n,)."""
-    return np.asarray(shapely.get_coordinates(ring)[:-1] @ np.array([1.0, 1j]))
+    return SheetPicture(tuple(drawn), square_around(given.bounds, 1.2), caption, link)

@@ -9,9 +9,9 @@ from typing import Any, Final
 
 import numpy as np
 import shapely
-from shapely.geometry import Polygon
+from shapely.geometry import LinearRing, Polygon
 
-from voronoi_tiles.base.arrays import Complexes, plane
+from voronoi_tiles.base.arrays import Complexes, from_plane, plane
 from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.base.tolerance import COORDINATE_MAX
 from voronoi_tiles.base.values import shown
@@ -62,7 +62,7 @@ class GoalOutline:
         if not size > 1e-9 * float(np.ptp(coordinates, axis=0).max()):
             raise ArgumentError("`outline` encloses no area", remedy="Draw one line around the shape.")
         exterior = shapely.orient_polygons(_simplified(polygon, DETAIL * size)).exterior
-        made = cls(shapely.get_coordinates(exterior)[:-1] @ np.array([1.0, 1j]))
+        made = cls(ring_corners(exterior))
         if not made.reach <= _THIN_MAX * size:
             raise ArgumentError("`outline` is too thin: a line rather than a shape", remedy="Draw around its area.")
         return made
@@ -97,7 +97,7 @@ class GoalOutline:
     @property
     def width(self) -> float:
         """The shorter side of the smallest rectangle around it, in millimetres."""
-        corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(self.polygon)) @ np.array([1.0, 1j])
+        corners = from_plane(shapely.get_coordinates(shapely.minimum_rotated_rectangle(self.polygon)))
         return float(np.abs(np.diff(corners[:3])).min())
 
     @property
@@ -113,6 +113,11 @@ class GoalOutline:
     def unit(self) -> GoalOutline:
         """The same outline with its centroid in the origin and an area of 1."""
         return GoalOutline((self.points - self.centroid) / self.size)
+
+
+def ring_corners(ring: LinearRing) -> Complexes:
+    """The corners of a ring, the first not repeated: complex128 (n,)."""
+    return from_plane(shapely.get_coordinates(ring)[:-1])
 
 
 def _polygon(outline: Any) -> Any:

@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 from shapely.geometry import LinearRing, Polygon
 
-from voronoi_tiles.base.arrays import Complexes, Floats, plane
+from voronoi_tiles.base.arrays import Complexes, Floats, from_plane, plane
 
 
 def overlap(one: Polygon, other: Polygon) -> float:
@@ -29,8 +29,14 @@ def _furthest(one: LinearRing, other: LinearRing, step: float) -> float:
     return float(np.max(shapely.distance(points, other)))
 
 
+def nearest_on(ring: LinearRing, points: Complexes) -> Complexes:
+    """The points of an outline that are nearest to given points: complex128 (n,)."""
+    places = shapely.points(plane(points))
+    return from_plane(
+        shapely.get_coordinates(shapely.line_interpolate_point(ring, shapely.line_locate_point(ring, places)))
+    )
+
+
 def towards(points: Complexes, normals: Complexes, ring: LinearRing) -> Floats:
     """How far the nearest points of an outline are from given points, along their normals: float64 (n,)."""
-    places = shapely.points(plane(points))
-    nearest = shapely.line_interpolate_point(ring, shapely.line_locate_point(ring, places))
-    return np.asarray(((shapely.get_coordinates(nearest) @ np.array([1.0, 1j]) - points) * normals.conj()).real)
+    return np.asarray(((nearest_on(ring, points) - points) * normals.conj()).real)

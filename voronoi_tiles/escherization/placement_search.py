@@ -37,6 +37,12 @@ _ROUGH_STEPS: Final = 12
 _FINE_STEPS: Final = 16
 """How many steps of least squares are made for each, at low and at all frequencies; counts."""
 
+_DIFFERENCE: Final = 1e-5
+"""The step of differences that stand for derivatives; radians, fractions, logarithms."""
+
+_STEP_MAX: Final = 0.3
+"""The longest step of a number of a row; in the same."""
+
 _SAME: Final = 1e-3
 """Two minima whose values differ by less, relative to the larger, are one, found again; symmetric ones have the same
 value."""
@@ -211,10 +217,3 @@ class PlacementSearch:
         sums = np.zeros((len(rows), len(waves.weight)), complex)
         sums[row, wave] = copies.sum(axis=1) * fading
         return np.concatenate((sums.real, sums.imag), axis=1)
-
-
-_DIFFERENCE: Final = 1e-5
-"""The step of differences that stand for derivatives; radians, fractions, logarithms."""
-
-_STEP_MAX: Final = 0.3
-"""The longest step of a number of a row; in the same."""

@@ -91,13 +91,18 @@ class DrawnPaths:
     width: float = 1.0
 
 
+def square_around(bounds: Region, times: float) -> Region:
+    """The square about a rectangle's middle, its side so many times the rectangle's longer one."""
+    left, bottom, right, top = bounds
+    half, x, y = times / 2.0 * max(right - left, top - bottom), (left + right) / 2.0, (bottom + top) / 2.0
+    return x - half, y - half, x + half, y + half
+
+
 def square_about(outlines: Iterable[Outline]) -> Region:
     """The square about outlines that a picture of them is of, with a margin."""
     bounds = np.array([outline.bounds for outline in outlines])
-    low, high = bounds[:, :2].min(axis=0), bounds[:, 2:].max(axis=0)
-    half = float((high - low).max()) * (0.5 + 1 / 16)
-    x, y = ((low + high) / 2).tolist()
-    return x - half, y - half, x + half, y + half
+    low, high = bounds[:, :2].min(axis=0).tolist(), bounds[:, 2:].max(axis=0).tolist()
+    return square_around((low[0], low[1], high[0], high[1]), 1.125)
 
 
 @dataclass(frozen=True, eq=False)
