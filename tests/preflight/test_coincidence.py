@@ -64,8 +64,11 @@ def parabola(radius: float, begin: float, write: Writer) -> str:
 
 
 def wave(radius: float, begin: float, write: Writer) -> str:
-    """Two cubic curves that are joined smoothly at the origin, with this radius there."""
-    a, b = 1 + begin, 2 + begin / 2
+    """Two cubic curves that are joined smoothly at the origin, with this radius there.
+
+    So long that what they have in common with curves of another curvature is less than half of them, which would count.
+    """
+    a, b = 2 + begin, 3 + begin / 2
     rise = [3 / 2 * length**2 / radius * 1j for length in (a, b)]
     left = f"C{write(-2 * a + rise[0])}{write(-a + 0j)}{write(0j)}"
     right = f"C{write(b + 0j)}{write(2 * b + rise[1])}{write(4 * b + 3 * rise[1])}"

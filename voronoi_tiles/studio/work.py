@@ -37,7 +37,7 @@ _AHEAD_S: Final = 0.001
 """How much of a start an outline has before its proof is begun: where processors are few, it would wait; seconds."""
 
 _AFTER_OTHERS: Final = 5
-"""The rank of a worker that lets others have the processors first, of those from -20 to 19: a third of their share."""
+"""By how many ranks a worker stands back behind the studio, whose own may be any: a third of its share."""
 
 
 def text_of(message: Mapping[str, Any] | Sequence[Any]) -> Done:
@@ -127,8 +127,7 @@ def fits(request: Request, body: bytes) -> Iterator[Done]:
     """
     from voronoi_tiles.studio.fitting import fitted
 
-    with suppress(AttributeError, OSError):  # where there are no such ranks, processors are shared evenly
-        os.setpriority(os.PRIO_PROCESS, 0, _AFTER_OTHERS)
+    _stand_back()
     for message, art in fitted(body, request["name"], request["groups"], mirrored=request["mirrored"]):
         yield {"more": True, "message": message}, art
     yield text_of({"type": "done"})
@@ -137,6 +136,13 @@ def fits(request: Request, body: bytes) -> Iterator[Done]:
 def _file(name: str, data: bytes) -> Done:
     """An answer that is a file."""
     return {"file": name}, data
+
+
+@cache  # ranks add up
+def _stand_back() -> None:
+    """Let others have the processors first, from now on."""
+    with suppress(AttributeError):  # where there are no such ranks, processors are shared evenly
+        os.nice(_AFTER_OTHERS)
 
 
 @cache
