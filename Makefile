@@ -1,7 +1,7 @@
 # Everything sets itself up: python3, python3-venv and make are all it needs.
 #   make demo    export and draw the examples        make test    run the tests, but for the slow ones
 #   make studio  draw in the browser: the studio, on a new design, or DESIGN=examples/p4-key.toml
-#   make test-slow  run those                        make test-pythons  the tests on every other Python that is here
+#   make test-slow  run those                        make test-pythons  a part on every other Python that is here
 #   make lint    lint and format check               make types   mypy --strict, tests and scripts too
 #   make bench   speed and accuracy, beside peers    make fuzz N=10000
 #   make format  rewrite the sources' layout         make clean   remove all that was made here
@@ -81,8 +81,8 @@ test: $(INSTALLED_DEV)
 test-slow: $(INSTALLED_DEV)
 	$(VENV)/bin/python -m pytest -m slow -n auto --dist worksteal $(PYTEST)
 
-# What the page does in a browser is the same whatever Python serves it, Blender has its own; the wheel is one for all, and so are the sources;
-# and numpy and the kernels compute the same: of that each Python takes other cases. Asserts are not rewritten to say more: of a failure the test itself is run again.
+# What the page does in a browser is the same whatever Python serves it, Blender has its own; the wheel is one for all, and so are the sources.
+# Of the rest each Python takes another part. Asserts are not rewritten to say more: of a failure the test itself is run again.
 ANOTHER := $(patsubst %,--ignore-glob=*/test_%,browser* page_* accessibility* wheel* addon* layering*) --thin --assert=plain
 
 # $(call each-python,TARGET): made for every other Python that is here, in an environment of its own.

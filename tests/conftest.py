@@ -17,7 +17,7 @@ from helpers.forking import ForkServer
 from helpers.outlines import ABOVE, RIGHT, CommandLine, polygon
 from helpers.page import SOFTWARE_GL, missing
 from helpers.page_server import PageServer
-from helpers.thinning import THINNED, is_left_out
+from helpers.thinning import HALVED, THINNED, is_left_out
 from hypothesis import settings
 
 from voronoi_tiles.base import kernels
@@ -55,7 +55,7 @@ _LEFT_OUT = pytest.StashKey[Counter[str]]()
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add --thin, for another Python than that which runs all."""
-    parser.addoption("--thin", action="store_true", help=f"of numeric tests one case of {THINNED}, and at least one")
+    parser.addoption("--thin", action="store_true", help="a part of the tests, of each kind: see helpers/thinning.py")
 
 
 @pytest.hookimpl(trylast=True)
@@ -63,14 +63,16 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Leave cases out where --thin says so."""
     if not config.getoption("thin"):
         return
-    cases: dict[str, list[pytest.Item]] = {}
+    cases: dict[tuple[str, int], list[pytest.Item]] = {}
     for item in items:
-        cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
+        numeric = NUMERIC & {item.path.name, item.path.parent.name}
+        key = (item.nodeid.partition("[")[0], THINNED) if numeric else (str(item.path), HALVED)
+        cases.setdefault(key, []).append(item)
     left_out = {
         item
-        for each in cases.values()
+        for (_, parts), each in cases.items()
         for number, item in enumerate(each)
-        if NUMERIC & {item.path.name, item.path.parent.name} and is_left_out(number, len(each), sys.version_info.minor)
+        if is_left_out(number, len(each), sys.version_info.minor, parts)
     }
     config.hook.pytest_deselected(items=[*left_out])
     items[:] = [item for item in items if item not in left_out]
@@ -103,7 +105,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
         say = "slow tests were left out: `make test-slow` runs them, or pytest -m slow."
         terminalreporter.write_line(f"{counts['slow']} {say}")
     if counts["other"] and config.getoption("thin"):
-        say = "cases of numeric tests were left out, by --thin."
+        say = "tests and cases were left out, by --thin."
         terminalreporter.write_line(f"{counts['other']} {say}")
 
 

@@ -1,4 +1,4 @@
-"""Which cases of a numeric test are run with --thin, which is for another Python than that which runs all."""
+"""Which tests are run with --thin, which is for another Python than that which runs all."""
 
 from __future__ import annotations
 
@@ -7,11 +7,14 @@ from typing import Final
 THINNED: Final = 4
 """With --thin a numeric test has one case of so many, and at least one."""
 
+HALVED: Final = 2
+"""Of all other tests each file has one of so many."""
 
-def is_left_out(number: int, count: int, minor: int) -> bool:
-    """Whether a case of so many is left out with --thin; other minor versions of Python take other cases.
 
-    Which one is taken of THINNED cases moves on from these to the next: every version takes all values of a parameter
-    that come again and again, also where these are two or four.
+def is_left_out(number: int, count: int, minor: int, parts: int = THINNED) -> bool:
+    """Whether a case of so many is left out with --thin; other minor versions of Python take other parts.
+
+    Which one is taken moves on from each THINNED cases to the next: every version takes all values of a parameter that
+    come again and again, also where these are two or four.
     """
-    return (number - number // THINNED) % THINNED != minor % min(count, THINNED)
+    return (number - number // THINNED) % parts != minor % min(count, parts)

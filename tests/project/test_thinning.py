@@ -1,30 +1,33 @@
-"""--thin: no case is left out on every Python, and no test, nor a value of a parameter, on one of them."""
+"""--thin: no test is left out on every Python, and no value of a parameter on one of them."""
 
 from __future__ import annotations
 
 import pytest
-from helpers.thinning import THINNED, is_left_out
+from helpers.thinning import HALVED, THINNED, is_left_out
 
 MINORS = range(11, 11 + THINNED)
 
 
-def run(count: int, minor: int) -> list[int]:
+def run(count: int, minor: int, parts: int) -> list[int]:
     """The cases of so many that are run."""
-    return [number for number in range(count) if not is_left_out(number, count, minor)]
+    return [number for number in range(count) if not is_left_out(number, count, minor, parts)]
 
 
+@pytest.mark.parametrize("parts", [THINNED, HALVED])
 @pytest.mark.parametrize("count", range(1, 70))
-def test_every_case_is_run_on_some_python(count: int) -> None:
+def test_every_case_is_run_on_one_of_as_many_pythons_as_there_are_parts(count: int, parts: int) -> None:
     """And each Python runs at least one, and hardly more than its part."""
-    cases = [run(count, minor) for minor in MINORS]
-    assert set().union(*cases) == set(range(count))
-    assert all(1 <= len(some) <= -(-count // THINNED) for some in cases)
+    for first in range(12, 16):
+        cases = [run(count, minor, parts) for minor in range(first, first + parts)]
+        assert set().union(*cases) == set(range(count))
+        assert all(1 <= len(some) <= -(-count // parts) for some in cases)
 
 
+@pytest.mark.parametrize("parts", [THINNED, HALVED])
 @pytest.mark.parametrize("minor", MINORS)
 @pytest.mark.parametrize(("values", "count"), [(2, 8), (3, 24), (4, 16)])
-def test_every_python_runs_all_values_of_a_parameter(values: int, count: int, minor: int) -> None:
+def test_every_python_runs_all_values_of_a_parameter(values: int, count: int, minor: int, parts: int) -> None:
     """Of the last one, whose values come again and again, and of the first one, which has each in one stretch."""
-    cases = run(count, minor)
+    cases = run(count, minor, parts)
     assert {number % values for number in cases} == set(range(values))
     assert {number // (count // values) for number in cases} == set(range(values))
