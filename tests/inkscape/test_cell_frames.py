@@ -93,10 +93,36 @@ def test_a_fitted_cell_is_drawn_and_taken_again(group: str, page: Page, tmp_path
     """Copies keep apart in it; the next run takes it from the rectangle, makes the same tile, and no second cell."""
     body = f'<path id="p" d="M 2 3 C 8 -4 15 14 24 6" {LINE}/>'
     made = run(page.svg(body), "--id=p", f"--group={group}", folder=tmp_path)
-    again = run(made, "--id=p", f"--group={group}", "--cell=numbers", folder=tmp_path)
+    theirs = re.sub(rb' vt:fitted="[^"]*"', b"", made)
+    assert theirs != made
+    again = run(theirs, "--id=p", f"--group={group}", "--cell=numbers", folder=tmp_path)
     first, second = (page.user_mm(edges_of_path(*paths_of(one).values())) for one in (made, again))
     assert difference(first, second) < 1e-9
     assert made.count(b'inkscape:label="cell"') == again.count(b'inkscape:label="cell"') == 2  # a layer, a rectangle
+
+
+def test_numbers_go_before_a_fitted_cell_and_not_before_a_drawn_one(tmp_path: Path) -> None:
+    """The drawing is then as if it had never been fitted; what is drawn counts, which the layer's description says."""
+    numbers = ("--cell=numbers", "--side_a=90", "--side_b=70", "--origin_x=20")
+    fitted = run(MM.svg(CURVE), "--id=p", "--group=p2", folder=tmp_path)
+    fresh = run(MM.svg(CURVE), "--id=p", "--group=p2", *numbers, folder=tmp_path)
+    assert run(fitted, "--id=p", "--group=p2", *numbers, folder=tmp_path) == fresh
+    assert b"were not read" not in fresh
+    drawn = MM.svg(CURVE + rectangle('x="40" y="40" width="70" height="64"'))
+    with_numbers, without = (run(drawn, "--id=p", "--group=p2", *more, folder=tmp_path) for more in (numbers, ()))
+    first, second = (edges_of_path(*paths_of(one).values()) for one in (with_numbers, without))
+    assert difference(first, second) == 0.0
+    assert b"the numbers of the dialog were not read" in with_numbers
+    assert b"were not read" not in without
+
+
+def test_groups_whose_tile_is_a_polygon_are_said_to_be_such(tmp_path: Path) -> None:
+    """In the layer's description, where one site is selected; of two the edge between them follows the drawing."""
+    group = f"<g id='g1'><path d='M 50 50 L 60 52' {LINE}/></g><g id='g2'><path d='M 52 60 L 60 62' {LINE}/></g>"
+    words = ("--cell=numbers", "--side_a=150", "--side_b=160", "--origin_y=150")
+    for ids, name, said in ((["g1"], "pmm", True), (["g1", "g2"], "pmm", False), (["g1"], "pgg", False)):
+        made = run(MM.svg(group), *(f"--id={one}" for one in ids), f"--group={name}", *words, folder=tmp_path)
+        assert (b"polygon between the mirrors" in made) == said
 
 
 @pytest.mark.parametrize("page", [MM, PAGES[3]], ids=lambda page: page.name)

@@ -20,6 +20,7 @@ from voronoi_tiles.designs.design import Design
 from voronoi_tiles.designs.drawn_files import DrawnFiles
 from voronoi_tiles.designs.drawn_site import Site
 from voronoi_tiles.designs.drawn_strokes import path
+from voronoi_tiles.designs.enclosed import ENCLOSED, enclosed_note
 from voronoi_tiles.designs.keys import keys_of_placement
 from voronoi_tiles.designs.placing import CLEARANCE, find_place
 from voronoi_tiles.designs.site import NodedSite
@@ -33,14 +34,6 @@ _COARSE: Final = 1e5
 
 _ROOM: Final = (1e9, 1e9, 90.0)
 """A cell for drawings of any size."""
-
-_ENCLOSED: Final = ("pmm", "p4m", "p3m1", "p6m")
-"""The groups whose mirrors enclose one copy of a site in one piece."""
-
-_POLYGON: Final = (
-    "in {group} the tile of a single site is the polygon between the mirrors, whatever is drawn; "
-    "in p1, p2, p3, p4, p6, pg and pgg it follows the drawing"
-)
 
 
 def drawing_text(
@@ -94,7 +87,7 @@ def drawing_text(
     nodes = noded[0].nodes
     cell = ", ".join(f"{key} = {value:g}" for key, value in place.cell.items())
     notes = [*files.notes, f"{file} is {np.ptp(nodes.real):.4g} x {np.ptp(nodes.imag):.4g} mm, in a cell of {cell}"]
-    return text, (*notes, _POLYGON.format(group=group)) if group in _ENCLOSED else tuple(notes)
+    return text, (*notes, enclosed_note(group)) if group in ENCLOSED else tuple(notes)
 
 
 def _one_digit(value: float) -> float:

@@ -113,7 +113,7 @@ class _Run:
     def of(cls, data: bytes, ids: Sequence[str], fields: DesignFields) -> _Run:
         """Compute the tiles of what is selected."""
         root, _ = svg_tree(data, DRAWING)
-        selection = selected(root, DRAWING, ids, refits=fields.cell == "fitted")
+        selection = selected(root, DRAWING, ids)
         made = design_of(selection, fields)
         try:
             return cls(selection, made, made.design.tessellate())
@@ -124,14 +124,14 @@ class _Run:
     @property
     def notes(self) -> tuple[str, ...]:
         """What there is to say of the strokes."""
-        return (*self.selection.notes, *self.made.design.notes)
+        return (*self.selection.notes, *self.made.design.notes, *self.made.notes)
 
     def free_id(self, wanted: str) -> str:
         """An id that nothing in the drawing begins with, but what is replaced."""
         return free_id(wanted, self.selection.names)
 
     def with_cell(self, data: bytes) -> bytes:
-        """A drawing with the cell that was fitted, as it was or in the place of the one that was fitted before."""
+        """A drawing with the cell that was fitted in the place of the one before, which goes where numbers count."""
         frame, group, name = self.made.frame, self.made.design.group, self.free_id("voronoi-cell")
         layer = cell_layer(frame, group, self.selection.to_page, name, fitted=True) if self.made.fitted else b""
         return with_layers(data, "cell", layer, self.selection.fitted)

@@ -75,13 +75,13 @@ class Selection:
     fitted: frozenset[str]
 
 
-def selected(root: Node, file: str, ids: Sequence[str], *, refits: bool = False) -> Selection:
-    """What is selected of a drawing; with `refits` a cell that was fitted, and that nobody has moved, is none of it.
+def selected(root: Node, file: str, ids: Sequence[str]) -> Selection:
+    """What is selected of a drawing; a cell that was fitted, and that nobody has moved since, is none of it.
 
     Raises DesignError where nothing is selected, or what makes no strokes.
     """
     own, known = known_elements(root)
-    fitted = frozenset(name for name, node in known.items() if refits and is_as_fitted(node))
+    fitted = frozenset(name for name, node in known.items() if is_as_fitted(node))
     own |= fitted | {known[name].children[0].attributes.get("id", "") for name in fitted}
     homes, cells = _homes(root, {*ids} - own), _cells(known)
     if homes.keys() <= cells and cells.intersection(ids):

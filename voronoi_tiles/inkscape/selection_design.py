@@ -9,14 +9,17 @@ from typing import Any, Final
 
 from voronoi_tiles.base.errors import DesignError, TouchingCopiesError
 from voronoi_tiles.designs.design import Design
+from voronoi_tiles.designs.enclosed import ENCLOSED, enclosed_note
 from voronoi_tiles.formats.svg.path_text import path_data
 from voronoi_tiles.groups.wallpaper import GROUPS
 from voronoi_tiles.inkscape.cell_frame import CellFrame, frame_of_numbers, frame_of_place, frame_of_rectangle
-from voronoi_tiles.inkscape.dialog_fields import DesignFields
+from voronoi_tiles.inkscape.dialog_fields import CELL_LABEL, DesignFields
 from voronoi_tiles.inkscape.selected_strokes import SelectedObject, Selection
 
 _ROOM: Final = CellFrame({"a": 1e9, "b": 1e9, "angle": 90.0}, 0j, 1 + 0j)
 """A cell for strokes of any size, whose own is not known yet."""
+
+_PASSED_OVER: Final = f'the cell is the rectangle "{CELL_LABEL}": the numbers of the dialog were not read'
 
 _SITE: Final = re.compile(r"site\[(\d+)\](?:\.strokes\[(\d+)\])?")
 
@@ -25,13 +28,15 @@ _SITE: Final = re.compile(r"site\[(\d+)\](?:\.strokes\[(\d+)\])?")
 class SelectionDesign:
     """A design of what is selected, in millimetres, and its frame on the page.
 
-    `sources` name the objects of each site's strokes. `fitted` says that the cell was found for the strokes.
+    `sources` name the objects of each site's strokes. `fitted` says that the cell was found for the strokes; `notes`
+    are sentences on where it comes from, and on what the tile cannot be.
     """
 
     design: Design
     frame: CellFrame
     sources: tuple[tuple[str, ...], ...]
     fitted: bool
+    notes: tuple[str, ...] = ()
 
 
 def design_of(selection: Selection, fields: DesignFields) -> SelectionDesign:
@@ -51,7 +56,12 @@ def design_of(selection: Selection, fields: DesignFields) -> SelectionDesign:
     else:
         frame = frame_of_numbers(fields)
     made = _made(selection, group.name, frame, fields.tolerance)
-    return SelectionDesign(made.design, frame, made.sources, fitted)
+    notes = []
+    if selection.cell is not None and fields.cell == "numbers":
+        notes.append(_PASSED_OVER)
+    if group.name in ENCLOSED and len(selection.sites) == 1:
+        notes.append(enclosed_note(group.name))
+    return SelectionDesign(made.design, frame, made.sources, fitted, tuple(notes))
 
 
 def _made(selection: Selection, group: str, frame: CellFrame, tolerance: float) -> SelectionDesign:
