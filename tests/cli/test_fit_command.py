@@ -106,6 +106,7 @@ def test_nothing_is_left_of_what_fails(tmp_path: Path, monkeypatch: pytest.Monke
     [
         (("--groups", "p9"), "p9"),
         (("--groups", "pg", "--mirrored", "no"), "--groups"),
+        (("--symmetric",), "leave out --symmetric"),
         (("--within", "-1mm"), "--within"),
         (("--keep", "0"), "--keep"),
         (("--workers", "0"), "--workers"),

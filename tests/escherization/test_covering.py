@@ -11,7 +11,7 @@ from helpers.silhouettes import random_polygon, random_tiling
 
 import voronoi_tiles as vt
 from voronoi_tiles.base.arrays import plane
-from voronoi_tiles.escherization.covering import gap, laid_out, overlap_bound
+from voronoi_tiles.escherization.covering import covered_area, laid_out, overlap_bound
 from voronoi_tiles.escherization.drawn_apart import APART, drawn_apart
 from voronoi_tiles.escherization.goal_outline import GoalOutline
 from voronoi_tiles.escherization.group_placement import GroupPlacement
@@ -44,11 +44,17 @@ def counted(silhouette: GoalOutline, placement: GroupPlacement, count: int) -> f
     return float(1.0 - covered.mean())
 
 
+def gap(silhouette: GoalOutline, placement: GroupPlacement) -> float:
+    """The share of the plane that nothing covers."""
+    return 1.0 - covered_area(silhouette, placement) * placement.group.order / placement.lattice.det
+
+
+@pytest.mark.parametrize("size", [0.9, 1.0, 1.1])
 @pytest.mark.parametrize("group", list(vt.GROUPS))
-def test_the_gap_is_the_share_of_points_that_nothing_covers(group: str) -> None:
-    """Counted over a grid, for a random outline in each group, of whichever depth its overlaps are."""
+def test_the_gap_is_the_share_of_points_that_nothing_covers(group: str, size: float) -> None:
+    """Counted over a grid, for a random outline in each group, of whichever depth its overlaps are, in any cell."""
     silhouette = GoalOutline.of(random_polygon(list(vt.GROUPS).index(group)))
-    placement = placed(silhouette, group, 1)
+    placement = placed(silhouette, group, 1).scaled(size)
     assert gap(silhouette, placement) == pytest.approx(counted(silhouette, placement, 90), abs=0.02)
 
 
@@ -60,6 +66,8 @@ def test_what_tiles_leaves_nothing() -> None:
         assert gap(square, GroupPlacement(group, vt.Lattice(a, b), 0.0, 5 + 2j)) == pytest.approx(0.0, abs=1e-12)
     wide = GroupPlacement(group, vt.Lattice(0.5 + 0j, 2j), 0.0, 0j)
     assert gap(square, wide) == pytest.approx(0.5)
+    assert overlap_bound(square, wide) == pytest.approx(1 / 3)
+    assert overlap_bound(square, wide.scaled(2.0)) == pytest.approx(1 / 4)  # of a tile that is four times as large
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -68,16 +76,16 @@ def test_no_tile_has_more_in_common_with_an_outline_than_the_bound(seed: int) ->
     tiling = random_tiling(seed, list(vt.GROUPS)[seed % 17])
     tile = tiling[0].to_shapely(accuracy=1e-3)
     silhouette = GoalOutline.of(random_polygon(seed))
-    silhouette = silhouette.scaled(math.sqrt(tile.area / silhouette.area))
     dice = np.random.default_rng(seed)
+    silhouette = silhouette.scaled(math.sqrt(tile.area / silhouette.area) * dice.uniform(0.8, 1.2))
     centre = complex(tile.centroid.x, tile.centroid.y) + silhouette.size * 0.1 * complex(*dice.normal(size=2))
     placement = GroupPlacement(tiling.design.group, tiling.design.lattice, dice.uniform(0, 6.28), centre)
     own, _ = laid_out(silhouette, placement)
-    bound = overlap_bound(gap(silhouette, placement))
+    bound = overlap_bound(silhouette, placement)
     assert overlap(own, tile) <= bound + 1e-5
     itself = GoalOutline.of(tile)
     place = GroupPlacement(placement.group, placement.lattice, 0.0, itself.centroid)
-    assert overlap_bound(gap(itself, place)) > 0.997
+    assert overlap_bound(itself, place) > 0.997
 
 
 @pytest.mark.parametrize("group", ["p1", "p2", "p3", "p4", "p6", "pg", "pgg", "cm", "pmg"])

@@ -10,10 +10,11 @@ from helpers.silhouettes import random_polygon
 
 import voronoi_tiles as vt
 from voronoi_tiles.escherization.area_transform import AreaTransform, transform
-from voronoi_tiles.escherization.covering import gap
+from voronoi_tiles.escherization.covering import overlap_bound
 from voronoi_tiles.escherization.goal_outline import GoalOutline
-from voronoi_tiles.escherization.placement_search import PlacementSearch, placement_of
-from voronoi_tiles.escherization.polishing import Found, found_placements, polished
+from voronoi_tiles.escherization.placement_rows import PlacementRows
+from voronoi_tiles.escherization.placement_search import PlacementSearch
+from voronoi_tiles.escherization.polishing import found_placements, polished
 
 HIGHEST = 2.3
 
@@ -21,17 +22,17 @@ HIGHEST = 2.3
 def search_of(group: str, seed: int) -> tuple[GoalOutline, PlacementSearch, np.ndarray]:
     """The search of a random outline in a group, and some rows within its bounds."""
     unit = GoalOutline.of(random_polygon(seed)).unit
-    search = PlacementSearch(vt.GROUPS[group], AreaTransform.of(unit), unit.width)
-    low, high = search._bounds.T
+    search = PlacementSearch(PlacementRows.everywhere(vt.GROUPS[group], unit.width), AreaTransform.of(unit))
+    low, high = search.among.low, search.among.high
     return unit, search, low + (high - low) * np.random.default_rng(seed).random((6, len(low)))
 
 
-def summed(unit: GoalOutline, group: str, row: np.ndarray) -> float:
+def summed(unit: GoalOutline, among: PlacementRows, row: np.ndarray) -> float:
     """The sum of squares over all reciprocal vectors below HIGHEST but 0, from each copy's own polygon, in full.
 
     It fades out as the search says: by a quarter of a cosine.
     """
-    placement = placement_of(vt.GROUPS[group], row)
+    placement = among.placement(row)
     lattice, own = placement.lattice, placement.laid(unit.points, unit.centroid)
     reach = 2 * math.ceil(HIGHEST * max(abs(lattice.a), abs(lattice.b)))
     i, j = (grid.ravel() for grid in np.meshgrid(*[np.arange(-reach, reach + 1)] * 2))
@@ -51,7 +52,7 @@ def test_one_wave_of_each_orbit_stands_for_all(group: str) -> None:
     """In every group, centred and hexagonal ones too: no wave is missing, doubled, or of a wrong phase."""
     unit, search, rows = search_of(group, list(vt.GROUPS).index(group))
     values = (search._residuals(rows, search._waves(HIGHEST), HIGHEST) ** 2).sum(axis=1)
-    expected = [summed(unit, group, row) for row in rows]
+    expected = [summed(unit, search.among, row) for row in rows]
     assert values == pytest.approx(expected, abs=2e-4, rel=2e-4)
     elsewhere = rows.copy()
     elsewhere[:, 0] += 0.3
@@ -66,20 +67,18 @@ def test_minima_are_lower_than_all_that_is_near(group: str) -> None:
     best = search.found()[0]
     waves = search._waves(4.0)
     steps = np.vstack([np.zeros(len(best)), 0.02 * np.eye(len(best)), -0.02 * np.eye(len(best))])
-    low, high = search._bounds.T
-    rows = best + steps
-    rows[:, search._periodic :] = np.clip(rows, low, high)[:, search._periodic :]
-    values = (search._residuals(rows, waves, 4.0) ** 2).sum(axis=1)
+    values = (search._residuals(search.among.clipped(best + steps), waves, 4.0) ** 2).sum(axis=1)
     assert values[0] <= values[1:].min() + 1e-6
 
 
 @pytest.mark.parametrize("group", ["p2", "pg", "p6m"])
-def test_led_on_placements_leave_no_more_uncovered(group: str) -> None:
-    """Good ones leave less; poor ones, whose tiles nobody wants, stay where they are, as looks at them take long."""
+def test_led_on_placements_have_tiles_that_overlap_no_less(group: str) -> None:
+    """Good ones more; poor ones, whose tiles nobody wants, stay where they are, as looks at them take long."""
     unit = GoalOutline.of(random_polygon(5)).unit
-    for found in found_placements(unit, 0, group)[:3]:
-        led = polished(unit, found)
-        assert led.uncovered == pytest.approx(gap(unit, led.placement), abs=1e-9)
-        assert led.uncovered <= found.uncovered
-        poor = Found(group, found.row + np.array([0.4, *[0.0] * (len(found.row) - 1)]), 0.3)
-        assert polished(unit, poor).placement.turn == poor.row[0]
+    among = PlacementRows.everywhere(vt.GROUPS[group], unit.width)
+    for found in found_placements(unit, among, AreaTransform.of(unit), 0)[:3]:
+        placement, bound = polished(unit, found)
+        assert bound == pytest.approx(overlap_bound(unit, placement), abs=1e-9)
+        assert bound >= found.bound
+        poor = found._replace(free=found.free + np.array([0.4, *[0.0] * (len(found.free) - 1)]), bound=0.5)
+        assert polished(unit, poor)[0].turn == poor.free[0]

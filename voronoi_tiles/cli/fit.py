@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     "--mirrored", type=click.Choice(("yes", "no")), default="yes",
     help="no: only groups whose copies are never mirror images, for material with a good side.",
 )  # fmt: skip
+@click.option("--symmetric", is_flag=True, help="Only tiles that are their own mirror images, as the outline is.")
 @click.option(
     "--strokes", type=click.Choice(("few", "outline")), default="few", show_default=True,
     help="Few corners, easy to change; or the whole outline, drawn a little smaller.",
@@ -53,6 +54,7 @@ def fit(
     groups: str | None,
     keep: int,
     mirrored: Literal["yes", "no"],
+    symmetric: bool,
     strokes: Strokes,
     within: float | None,
     size: float | None,
@@ -89,6 +91,7 @@ def fit(
                 groups="all" if names == ["all"] else names,
                 keep=keep,
                 mirrored=mirrored == "yes",
+                symmetric=symmetric,
                 strokes=strokes,
                 within=within,
                 name=drawn.name,
@@ -114,5 +117,5 @@ def _line(number: int, fit: Fit) -> str:
     """What there is to say of a fit."""
     return (
         f"{number:3}. {fit.group:5} overlap {fit.overlap:.4f}, within {fit.distance:.3g} mm, {fit.corners} corners, "
-        f"{fit.neighbours} neighbours"
+        f"{fit.neighbours} neighbours{', symmetric' if fit.symmetric else ''}"
     )

@@ -1,4 +1,4 @@
-"""How far from a tiling the copies of a silhouette are: what they leave uncovered."""
+"""How much of the plane the copies of a silhouette cover, and what tiles can have in common with it at most."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ def laid_out(silhouette: GoalOutline, placement: GroupPlacement, further: float 
     return own, copies
 
 
-def gap(silhouette: GoalOutline, placement: GroupPlacement) -> float:
-    """The share of the plane that no copy of the silhouette covers, exact; from 0, where it tiles, to below 1.
+def covered_area(silhouette: GoalOutline, placement: GroupPlacement) -> float:
+    """The area that copies of the silhouette cover, for each of them, exact; in square millimetres.
 
-    Copies have the area of the cell together, so that the share is what they cover more than once, counted as often as
-    that is too much: the area of a copy less that of its points, each divided by the number of copies that cover it.
+    It is that of a copy less what copies cover more than once, counted as often as that is too much: the area of a
+    copy's points, each divided by the number of copies that cover it.
     """
     own, copies = laid_out(silhouette, placement)
     shapely.prepare(own)
@@ -41,14 +41,17 @@ def gap(silhouette: GoalOutline, placement: GroupPlacement) -> float:
             covered.append(common)
     # A point that n others cover has lost 1 - 1 / (n + 1), the sum of 1 / k - 1 / (k + 1) over k from 1 to n.
     lost = sum(part.area / (k * (k + 1)) for k, part in enumerate(covered, 1))
-    return float(lost / own.area)
+    return float(own.area - lost)
 
 
-def overlap_bound(uncovered: float) -> float:
-    """The most that a tile of a placement can have in common with the silhouette, by the share left uncovered.
+def overlap_bound(silhouette: GoalOutline, placement: GroupPlacement) -> float:
+    """The most that a tile of a placement can have in common with the silhouette: intersection over union, to 1.
 
-    It is the area of the intersection over that of the union. A point that copies cover can go to one of them alone,
-    and one that none covers to one that does not: a tile has at most the covered share in common with its silhouette,
-    which has its area. Voronoi tiles of silhouettes that are drawn apart come near to that.
+    A point that copies cover can go to one of them alone: the intersection has at most the area c that is covered, for
+    each copy; and the union is what outline and tile have together, less that. Where both have the same area and a
+    share g of the plane is not covered, that is (1 - g) / (1 + g). Voronoi tiles of silhouettes that are drawn apart
+    come near to it.
     """
-    return (1.0 - uncovered) / (1.0 + uncovered)
+    tile = placement.lattice.det / placement.group.order
+    covered = min(covered_area(silhouette, placement), tile)
+    return covered / (tile + silhouette.area - covered)

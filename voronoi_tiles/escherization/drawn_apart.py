@@ -14,6 +14,7 @@ from voronoi_tiles.base.arrays import Complexes, from_plane, plane
 from voronoi_tiles.base.maps import Isometry
 from voronoi_tiles.escherization.goal_outline import GoalOutline, ring_corners
 from voronoi_tiles.escherization.group_placement import GroupPlacement
+from voronoi_tiles.escherization.mirror_axis import MirrorAxis
 
 APART: Final = 5e-3
 """How far the stroke keeps from the outline, and from copies; relative to the size. Less makes tiles of more and
@@ -41,13 +42,14 @@ class _Lens(NamedTuple):
     back: Polygon
 
 
-def drawn_apart(silhouette: GoalOutline, placement: GroupPlacement) -> Complexes:
+def drawn_apart(silhouette: GoalOutline, placement: GroupPlacement, axis: MirrorAxis | None = None) -> Complexes:
     """The corners of a closed stroke inside the placed outline, whose copies keep apart: complex128 (n,).
 
     What the outline has in common with copies is taken from both, so that the edge between their tiles is the middle
     line of it, as it is that of what lies between them: all share alike. Where that would cut off a leg or a head, the
     outline has all of it, and loses all of what the copy has the same way, if more hangs together so. Of several parts
-    the largest is the stroke; there is none where nothing is left.
+    the largest is the stroke; there is none where nothing is left. Where outline and copies are their own mirror images
+    about an axis, in its place in the cell, so is the stroke: see MirrorAxis.completed.
     """
     apart = APART * silhouette.size
     points = placement.laid(silhouette.points, silhouette.centroid)
@@ -68,8 +70,10 @@ def drawn_apart(silhouette: GoalOutline, placement: GroupPlacement) -> Complexes
     stroke = left(())
     if inner.area - stroke.area > _LEAST * own.area:
         stroke = _decided(stroke, _lenses(own, [(k, maps[k], copies[k]) for k in near]), left, _LEAST * own.area)
-    exterior = Polygon(stroke.exterior).simplify(_CORNERS * apart).exterior
-    return ring_corners(exterior)
+    if axis is None:
+        return ring_corners(Polygon(stroke.exterior).simplify(_CORNERS * apart).exterior)
+    half = axis.left_half(stroke)
+    return np.zeros(0, complex) if half is None else axis.completed(half, _CORNERS * apart)
 
 
 def _lenses(own: Polygon, copies: list[tuple[int, Isometry, Polygon]]) -> list[_Lens]:

@@ -7,10 +7,11 @@ from typing import Final
 import numpy as np
 from shapely.geometry import LinearRing, Polygon
 
-from voronoi_tiles.base.arrays import plane
+from voronoi_tiles.base.arrays import Complexes, Floats, plane
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.escherization.closed_design import closed_design, corners_of, tiled
 from voronoi_tiles.escherization.goal_outline import ring_corners
+from voronoi_tiles.escherization.mirror_axis import MirrorAxis
 from voronoi_tiles.escherization.outline_distance import largest_distance, towards
 from voronoi_tiles.tiling import Tiling
 
@@ -27,22 +28,22 @@ DISTANCE_STEP: Final = 4e-3
 """The step at which distances of outlines are sampled; relative to the size."""
 
 
-def fewer_corners(tiling: Tiling, size: float, within: float) -> Tiling | None:
+def fewer_corners(tiling: Tiling, size: float, within: float, axis: MirrorAxis | None = None) -> Tiling | None:
     """The tiling of a stroke of fewer corners, its tile nowhere further than `within` from that of the whole one.
 
     The corners that are left are moved so that the tile comes as near as least squares of its distances along the
-    normals lead, by the tile's gradient; the cell stays. None where no stroke of fewer corners is near enough.
+    normals lead, by the tile's gradient; the cell stays. Where the whole one is its own mirror image about an axis, as
+    it has made it, this one is. None where no stroke of fewer corners is near enough.
     """
     accuracy = min(1e-4 * size, 0.1 * within)
     wanted: LinearRing = tiling[0].to_shapely(accuracy=accuracy).exterior
     whole = tiling.design
     corners = corners_of(whole)
     for tolerance in _TOLERANCES:
-        simple = Polygon(plane(corners)).simplify(tolerance * size).exterior
-        fewer = ring_corners(simple)
+        fewer = _simplified(corners, tolerance * size, axis)
         if not 3 <= len(fewer) < len(corners):
             continue
-        led = _led(closed_design(whole.group, whole.cell, fewer, whole.name, size), wanted)
+        led = _led(closed_design(whole.group, whole.cell, fewer, whole.name, size), wanted, axis)
         found = (
             None if led is None else tiled(closed_design(whole.group, whole.cell, corners_of(led), whole.name, size))
         )
@@ -54,7 +55,14 @@ def fewer_corners(tiling: Tiling, size: float, within: float) -> Tiling | None:
     return None
 
 
-def _led(design: Design, wanted: LinearRing) -> Design | None:
+def _simplified(corners: Complexes, tolerance: float, axis: MirrorAxis | None) -> Complexes:
+    """A closed line without the corners that are so near to it without them, both halves alike where it has an axis."""
+    if axis is None:
+        return ring_corners(Polygon(plane(corners)).simplify(tolerance).exterior)
+    return axis.completed(axis.seen(corners[: len(corners) // 2 + 1]), tolerance)
+
+
+def _led(design: Design, wanted: LinearRing, axis: MirrorAxis | None) -> Design | None:
     """A design led towards an outline by its stroke's corners (Levenberg, Marquardt); None without a tile."""
     tiling = tiled(design)
     if tiling is None:
@@ -62,12 +70,13 @@ def _led(design: Design, wanted: LinearRing) -> Design | None:
     gradient = tiling.shape_gradient("site")
     points = gradient[0].along(_SAMPLES)
     away = towards(points.place, points.normal, wanted)
+    count = len(gradient.parameters)
+    together = np.eye(count) if axis is None else _moved_together(count // 2, axis)
     damping = 1e-2
     for _ in range(_STEPS):
-        scale = float(np.sqrt((points.velocity**2).sum(axis=0).mean()))
-        count = len(gradient.parameters)
-        matrix = np.vstack((points.velocity, np.sqrt(damping) * scale * np.eye(count)))
-        step, *_ = np.linalg.lstsq(matrix, np.concatenate((away, np.zeros(count))), rcond=None)
+        velocity = points.velocity @ together
+        squares = velocity.T @ velocity
+        step = np.linalg.solve(squares + damping * np.trace(squares) / count * np.eye(count), velocity.T @ away)
         stepped = tiled(gradient.stepped(step))
         damping *= 10.0
         if stepped is None:
@@ -79,3 +88,16 @@ def _led(design: Design, wanted: LinearRing) -> Design | None:
             tiling, gradient, points, away = stepped, new_gradient, new_points, new_away
             damping *= 0.03
     return tiling.design
+
+
+def _moved_together(count: int, axis: MirrorAxis) -> Floats:
+    """The projection of steps of corners' x and y to those that leave a line its own mirror image: (2 n, 2 n).
+
+    The corners are n, those of MirrorAxis.completed. Least squares of projected numbers have no part beside them.
+    """
+    unit = axis.direction**2
+    mirror = np.array([[unit.real, unit.imag], [unit.imag, -unit.real]])
+    image = np.zeros((count, 2, count, 2))
+    for k in range(count):
+        image[k, :, -k % count, :] = mirror
+    return np.asarray((np.eye(2 * count) + image.reshape(2 * count, 2 * count)) / 2.0)

@@ -106,7 +106,7 @@ def _write_all(
         region = square_around(each.tiling[0].bounds, _AROUND)
         render(design, folder / f"{stem}.png", size=_PICTURE, region=region, overlay=overlays, renderer="cpu")
         caption = (
-            f"{each.group}: overlap {each.overlap:.3f}",
+            f"{each.group}: overlap {each.overlap:.3f}{', symmetric' if each.symmetric else ''}",
             f"within {each.distance:.2g} mm, {each.corners} corners",
         )
         pictures.append(fit_picture(each, art, caption, f"{stem}.toml"))
@@ -137,6 +137,7 @@ def _row(fit: Fit, file: str) -> dict[str, str | float]:
         "strokes": len(fit.design.sites[0].strokes),
         "corners": fit.corners,
         "neighbours": fit.neighbours,
+        "symmetric": "yes" if fit.symmetric else "no",
         "width_mm": round(right - left, 3),
         "height_mm": round(top - bottom, 3),
     }

@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -20,7 +19,7 @@ from scipy.stats import qmc
 
 from voronoi_tiles.base.arrays import Complexes, Floats, Ints
 from voronoi_tiles.escherization.area_transform import FREQUENCY_MAX, AreaTransform
-from voronoi_tiles.escherization.group_placement import GroupPlacement
+from voronoi_tiles.escherization.placement_rows import PlacementRows, sides
 from voronoi_tiles.groups.wallpaper import WallpaperGroup
 
 _FIRST_FREQUENCY: Final = 1.8
@@ -29,6 +28,10 @@ valleys of their own, some hundred of them for each good one."""
 
 _LOOKS: Final = 4096
 """How many placements are looked at; a count."""
+
+_LOOKS_EACH: Final = 32
+_STARTS_EACH: Final = 4
+"""By how many times fewer these are for each number less that is free; counts."""
 
 _STARTS: Final = 128
 """How many of them, the best, are led into their valleys, and half of these to the bottom; a count."""
@@ -50,9 +53,6 @@ value."""
 _NEARLY: Final = 1e-2
 """The same after the steps at low frequencies, which do not reach the bottom."""
 
-_LONGEST: Final = 5.0
-"""How many times as long as wide reduced cells may be at least; wide outlines need longer ones."""
-
 
 class _Waves(NamedTuple):
     """Reciprocal vectors of a group, one of each orbit, n of them, and their images under its k operations.
@@ -66,30 +66,6 @@ class _Waves(NamedTuple):
     weight: Floats
 
 
-def sides(group: WallpaperGroup, rows: Floats) -> tuple[Complexes, Complexes]:
-    """The sides of the cells of rows of numbers, for silhouettes of area 1: complex128 (m,) twice."""
-    one = np.ones(len(rows))
-    match group.system:
-        case "oblique":
-            ratio: Complexes = rows[:, -2] + np.exp(rows[:, -1]) * 1j
-        case "rectangular":
-            ratio = np.asarray(1j * np.exp(rows[:, -1]), complex)
-        case "square":
-            ratio = np.asarray(1j * one, complex)
-        case "hexagonal":
-            ratio = np.asarray(one * complex(-0.5, math.sqrt(0.75)), complex)
-    a = np.sqrt(group.order / ratio.imag) + 0j
-    return a, ratio * a
-
-
-def placement_of(group: WallpaperGroup, row: Floats) -> GroupPlacement:
-    """The placement of a silhouette of area 1 by a row of numbers: see PlacementSearch."""
-    a, b = (complex(side[0]) for side in sides(group, row[None]))
-    lattice = group.lattice(a.real, abs(b), math.degrees(np.angle(b)))
-    centre = 0j if group.name == "p1" else lattice.cartesian(row[1], row[2])
-    return GroupPlacement(group, lattice, float(row[0]), centre)
-
-
 def _different(values: Floats, share: float) -> list[int]:
     """The numbers of values that differ by more than a share of them, the least first."""
     kept: list[int] = []
@@ -101,60 +77,40 @@ def _different(values: Floats, share: float) -> list[int]:
 
 @dataclass(frozen=True, eq=False)
 class PlacementSearch:
-    """Placements of a silhouette, of area 1, in a group, as rows of numbers.
+    """Placements of a silhouette, of area 1, among some of a group."""
 
-    A row is the turn in radians, where the centroid lies in fractions of the cell, and the shape of the cell: none of a
-    square or hexagonal one, the logarithm of b / a of a rectangular one, and of an oblique one the point b / a of the
-    upper half plane as its real part and the logarithm of its imaginary part. Where the group is p1 all places are one.
-    `width` is the least width of the silhouette.
-    """
-
-    group: WallpaperGroup
+    among: PlacementRows
     transform: AreaTransform
-    width: float
-
-    @cached_property
-    def _bounds(self) -> Floats:
-        """The least and the greatest of each number of a row: float64 (d, 2)."""
-        longest = math.log(max(_LONGEST, self.group.order / self.width**2))
-        place = [] if self.group.name == "p1" else [(0.0, 1.0)] * 2
-        cell = {
-            "oblique": [(-0.5, 0.5), (math.log(0.86), longest)],
-            "rectangular": [(-longest, longest)],
-        }.get(self.group.system, [])
-        return np.array([(0.0, 2.0 * math.pi), *place, *cell])
 
     @property
-    def _periodic(self) -> int:
-        """How many numbers of a row, the first ones, repeat."""
-        return 1 if self.group.name == "p1" else 3
+    def _group(self) -> WallpaperGroup:
+        """The group."""
+        return self.among.group
 
     def found(self, seed: int = 0) -> list[Floats]:
-        """The rows of minima, each once, the best first; the same for the same seed, from 0."""
-        low, high = self._bounds.T
-        sampled = qmc.Sobol(len(low), seed=seed).random(_LOOKS)
-        rows = low + (high - low) * sampled
+        """The free numbers of minima, each once, the best first; the same for the same seed, from 0."""
+        low, high = self.among.low, self.among.high
+        count = min(_LOOKS, _LOOKS_EACH ** len(low))
+        free = low + (high - low) * qmc.Sobol(len(low), seed=seed).random(count)
         waves = self._waves(_FIRST_FREQUENCY)
-        values = (self._residuals(rows, waves, _FIRST_FREQUENCY) ** 2).sum(axis=1)
-        rows = rows[np.argsort(values, kind="stable")[:_STARTS]]
-        rows, values = self._led_down(rows, waves, _FIRST_FREQUENCY, _ROUGH_STEPS)
-        rows = rows[_different(values, _NEARLY)[: _STARTS // 2]]
-        rows, values = self._led_down(rows, self._waves(FREQUENCY_MAX), FREQUENCY_MAX, _FINE_STEPS)
-        return list(rows[_different(values, _SAME)])
+        values = (self._residuals(free, waves, _FIRST_FREQUENCY) ** 2).sum(axis=1)
+        starts = min(_STARTS, 2 * _STARTS_EACH ** len(low))
+        free = free[np.argsort(values, kind="stable")[:starts]]
+        free, values = self._led_down(free, waves, _FIRST_FREQUENCY, _ROUGH_STEPS)
+        free = free[_different(values, _NEARLY)[: starts // 2]]
+        free, values = self._led_down(free, self._waves(FREQUENCY_MAX), FREQUENCY_MAX, _FINE_STEPS)
+        return list(free[_different(values, _SAME)])
 
-    def _led_down(self, rows: Floats, waves: _Waves, highest: float, steps: int) -> tuple[Floats, Floats]:
-        """Rows led towards minima by Levenberg's and Marquardt's method, all at a time, and their values."""
-        low, high = self._bounds.T
-        repeats = np.arange(len(low)) < self._periodic
-        low, high = np.where(repeats, -np.inf, low), np.where(repeats, np.inf, high)
-        count = rows.shape[1]
-        damping = np.full(len(rows), 1e-2)
-        residuals = self._residuals(rows, waves, highest)
+    def _led_down(self, free: Floats, waves: _Waves, highest: float, steps: int) -> tuple[Floats, Floats]:
+        """Free numbers led towards minima by Levenberg's and Marquardt's method, all at a time, and their values."""
+        count = free.shape[1]
+        damping = np.full(len(free), 1e-2)
+        residuals = self._residuals(free, waves, highest)
         values = (residuals**2).sum(axis=1)
         for _ in range(steps):
             slopes = np.empty((*residuals.shape, count))
             for k in range(count):
-                moved = rows.copy()
+                moved = free.copy()
                 moved[:, k] += _DIFFERENCE
                 slopes[:, :, k] = (self._residuals(moved, waves, highest) - residuals) / _DIFFERENCE
             matrix = np.einsum("nij,nik->njk", slopes, slopes)
@@ -162,24 +118,25 @@ class PlacementSearch:
             damped = matrix + np.eye(count) * (damping[:, None] * (diagonal + 1e-9))[:, None, :]
             right = np.einsum("nij,ni->nj", slopes, residuals)
             step = np.clip(-np.linalg.solve(damped, right[..., None])[..., 0], -_STEP_MAX, _STEP_MAX)
-            tried = np.clip(rows + step, low, high)
+            tried = self.among.clipped(free + step)
             new = self._residuals(tried, waves, highest)
             new_values = (new**2).sum(axis=1)
             better = new_values < values
-            rows = np.where(better[:, None], tried, rows)
+            free = np.where(better[:, None], tried, free)
             residuals = np.where(better[:, None], new, residuals)
             values = np.where(better, new_values, values)
             damping = np.clip(np.where(better, damping * 0.3, damping * 5.0), 1e-7, 1e4)
-        return rows, values
+        return free, values
 
     def _waves(self, highest: float) -> _Waves:
         """The reciprocal vectors that may be as low as a frequency, for some cell within the bounds."""
         # A vector's integers are its products with the cell's sides, which are longest at the bounds.
-        a, b = (math.floor(highest * float(np.abs(side).max())) for side in sides(self.group, self._bounds.T))
+        bounds = self.among.rows(np.stack((self.among.low, self.among.high)))
+        a, b = (math.floor(highest * float(np.abs(side).max())) for side in sides(self._group, bounds))
         i, j = np.arange(-a, a + 1), np.arange(-b, b + 1)
         vectors = np.stack(np.meshgrid(i, j, indexing="ij"), axis=-1).reshape(-1, 2)
         # Of operations that differ by a centring one is enough: the others say which vectors there are.
-        operations = {operation.linear: operation for operation in reversed(self.group.operations)}
+        operations = {operation.linear: operation for operation in reversed(self._group.operations)}
         linear = np.array([*operations]).reshape(-1, 2, 2)
         shifts = np.array([[float(t) for t in operation.translation] for operation in operations.values()])
         # Vectors are mapped by transposes; the orbit's representative is its greatest, as conjugates are one as well.
@@ -188,18 +145,19 @@ class PlacementSearch:
         order = both[..., 0] * (4 * len(j)) + both[..., 1]
         own = vectors[:, 0] * (4 * len(j)) + vectors[:, 1]
         first = (own == order.max(axis=1)) & (own > 0)
-        if len(operations) < self.group.order:  # centred by x + 1/2, y + 1/2
+        if len(operations) < self._group.order:  # centred by x + 1/2, y + 1/2
             first &= vectors.sum(axis=1) % 2 == 0
         sizes = np.array([len(np.unique(row)) for row in order[first]])
         phase = np.exp(-2j * np.pi * (vectors[first] @ shifts.T))
         return _Waves(images[first], phase, np.sqrt(sizes))
 
-    def _residuals(self, rows: Floats, waves: _Waves, highest: float) -> Floats:
+    def _residuals(self, free: Floats, waves: _Waves, highest: float) -> Floats:
         """The Fourier coefficients of the sum of all copies, real and imaginary parts: float64 (m, 2 n).
 
         They fade out towards the highest frequency: none comes in with a step as the cell changes.
         """
-        a, b = sides(self.group, rows)
+        rows = self.among.rows(free)
+        a, b = sides(self._group, rows)
         along, across = waves.images[..., 0], waves.images[..., 1]
         # The reciprocal vectors of a, along +x, and b.
         a_x, a_y, b_y = 1.0 / a.real, -b.real / (a.real * b.imag), 1.0 / b.imag
@@ -211,7 +169,7 @@ class PlacementSearch:
         x, y = h * a_x[row, None], h * a_y[row, None] + k * b_y[row, None]
         cos, sin = np.cos(rows[row, :1]), np.sin(rows[row, :1])
         copies = self.transform(cos * x + sin * y, cos * y - sin * x) * waves.phase[wave]
-        if self.group.name != "p1":
+        if self._group.name != "p1":
             copies *= np.exp(-2j * np.pi * (h * rows[row, 1:2] + k * rows[row, 2:3]))
         fading = np.cos(0.5 * np.pi * length[row, wave] / highest) * waves.weight[wave] / h.shape[1]
         sums = np.zeros((len(rows), len(waves.weight)), complex)

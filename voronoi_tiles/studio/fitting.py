@@ -63,6 +63,7 @@ def _message(found: Fit, drawn: DrawnOutline, name: str) -> tuple[dict[str, Any]
         "overlap": round(found.overlap, 5),
         "distance": round(found.distance, 4),
         "corners": found.corners,
+        "symmetric": found.symmetric,
         "design": found.design.to_dict(),
         "picture": fit_picture(found, art).svg,
         "art": None if art is None else art.placed.table,

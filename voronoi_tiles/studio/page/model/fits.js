@@ -8,6 +8,7 @@
  * @property {number} overlap of tile and outline: the area they have in common over that of both together
  * @property {number} distance how far they are apart at most; millimetres
  * @property {number} corners of its stroke
+ * @property {boolean} symmetric whether the tile is its own mirror image
  * @property {any} design
  * @property {string} picture SVG
  * @property {any} art the table of its art, null where nothing else is drawn

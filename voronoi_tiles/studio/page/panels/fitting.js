@@ -142,7 +142,8 @@ export function fitting({ store, begin, say }) {
     const itemOf = (fit) => {
         const picture = make("img", { src: `data:image/svg+xml,${encodeURIComponent(fit.picture)}`, alt: "" });
         const nearness = `overlap ${fit.overlap.toFixed(3)}, within ${Number(fit.distance.toPrecision(2))} mm`;
-        const name = make("span", {}, make("strong", {}, fit.group), `: ${nearness}, ${fit.corners} corners`);
+        const figures = `: ${nearness}, ${fit.corners} corners${fit.symmetric ? ", symmetric" : ""}`;
+        const name = make("span", {}, make("strong", {}, fit.group), figures);
         return make("li", {}, make("button", { onclick: () => void take(fit) }, picture, name));
     };
 

@@ -1,0 +1,139 @@
+"""Outlines that are their own mirror images: their axes, the placements that keep them, and tiles that are as well."""
+
+from __future__ import annotations
+
+import cmath
+import math
+
+import numpy as np
+import pytest
+import shapely
+from helpers.silhouettes import random_polygon
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import voronoi_tiles as vt
+from voronoi_tiles.base.arrays import Complexes, plane
+from voronoi_tiles.escherization.goal_outline import GoalOutline
+from voronoi_tiles.escherization.group_placement import GroupPlacement
+from voronoi_tiles.escherization.mirror_axis import MirrorAxis, likeness, mirrored_outlines
+from voronoi_tiles.escherization.mirror_placements import mirror_lines, mirror_rows
+
+FREE = ("p1", "p2", "p3", "p4", "p6", "pg", "pgg")
+HALF = np.array([0j, 3 + 6j, 12 + 14j, 22 + 10j, 30 + 18j, 44 + 15j, 40 + 6j, 52 + 4j, 55 + 0j])
+
+
+def beetle(turn: float = 0.0, place: complex = 0j, noise: float = 0.0) -> Complexes:
+    """An outline that is its own mirror image about a line at an angle, but for noise of its corners."""
+    corners = np.concatenate((HALF, HALF[-2:0:-1].conj()))
+    shaken = np.random.default_rng(3).normal(size=(len(corners), 2)) @ np.array([1, 1j]) * noise
+    return np.asarray((corners + shaken) * cmath.exp(1j * turn) + place)
+
+
+def polygon(points: Complexes) -> shapely.Polygon:
+    """The polygon of these corners."""
+    return shapely.Polygon(plane(points))
+
+
+def apart(one: shapely.Polygon, axis: MirrorAxis) -> float:
+    """How far an outline is from its mirror image about an axis, reflected by shapely's own affine map."""
+    c, s, (x, y) = math.cos(2 * axis.angle), math.sin(2 * axis.angle), (axis.through.real, axis.through.imag)
+    moved = [c, s, s, -c, x - c * x - s * y, y - s * x + c * y]
+    return float(shapely.hausdorff_distance(one, shapely.affinity.affine_transform(one, moved)))
+
+
+@settings(max_examples=20)
+@given(st.integers(0, 63), st.integers(-100, 100))
+def test_the_axis_is_found(tenths: int, along: int) -> None:
+    """Wherever it lies, in whichever direction; the outline is mirrored exactly, and where it was."""
+    turn, place = tenths / 10, along * (0.7 + 0.3j)
+    (found,) = mirrored_outlines(GoalOutline.of(beetle(turn, place)))
+    assert abs(math.sin(found.axis.angle - turn)) < 1e-4
+    assert abs(found.axis.seen(np.array([place]))[0].imag) < 1e-3
+    assert apart(found.silhouette.polygon, found.axis) < 1e-9
+    assert shapely.hausdorff_distance(found.silhouette.polygon, polygon(beetle(turn, place))) < 0.05
+
+
+def test_what_is_drawn_by_hand_is_made_symmetric() -> None:
+    """Corners that are off by less than a hundredth of the size; what is off by a tenth is refused, and why is said."""
+    by_hand = GoalOutline.of(beetle(0.4, noise=0.25))
+    (found,) = mirrored_outlines(by_hand)
+    assert apart(by_hand.polygon, found.axis) > 0.3
+    assert apart(found.silhouette.polygon, found.axis) < 1e-9
+    wrong = GoalOutline.of(beetle(0.4, noise=2.0))
+    assert mirrored_outlines(wrong) == []
+    assert likeness(wrong) < 0.95
+    with pytest.raises(vt.ArgumentError, match=r"not its own mirror image.*0\.[89]"):
+        vt.fit(beetle(0.4, noise=2.0), symmetric=True)
+
+
+@pytest.mark.parametrize(("rays", "kinds"), [(2, 2), (3, 1), (4, 2), (5, 1), (6, 2)])
+def test_of_several_axes_each_kind_is_taken_once(rays: int, kinds: int) -> None:
+    """Stars: those of an odd number of rays have axes of one kind alone, of which two do no harm."""
+    angles = np.arange(2 * rays) * math.pi / rays + 0.3
+    star = np.where(np.arange(2 * rays) % 2, 12.0, 30.0) * np.exp(1j * angles)
+    found = mirrored_outlines(GoalOutline.of(star))
+    between = {round((each.axis.angle - 0.3) / (math.pi / rays)) % 2 for each in found}
+    assert len(found) >= kinds
+    assert rays % 2 or len(between) == 2
+    for each in found:
+        assert apart(each.silhouette.polygon, each.axis) < 1e-9
+
+
+def all_copies(placement: GroupPlacement, points: Complexes, reach: float) -> Complexes:
+    """The points of all copies in a placement, near to the first one."""
+    own = placement.laid(points, 0j)
+    copies = np.concatenate([own, *[copy(own) for copy in placement.copies(4.0 * reach)]])
+    return copies[np.abs(copies - placement.centre) < reach]
+
+
+@pytest.mark.parametrize("name", FREE)
+def test_mirrored_placements_have_copies_that_are_mirror_images_together(name: str) -> None:
+    """Of points on both sides of an axis: the image of each about the placed axis is one of a copy; else not."""
+    points = np.array([1.0, 0.3 + 0.4j, 0.3 - 0.4j, -0.5 + 0.7j, -0.5 - 0.7j]) * cmath.exp(0.8j)
+    dice = np.random.default_rng(1)
+    rows = mirror_rows(vt.GROUPS[name], 0.8, 1.0)
+    assert len(rows) == 2 * len(mirror_lines(vt.GROUPS[name]))
+    for among in rows:
+        free = among.low + (among.high - among.low) * dice.random(len(among.low))
+        placement = among.placement(free)
+        axis = MirrorAxis(0j, cmath.exp(0.8j)).placed(placement)
+        far = all_copies(placement, points, 4.0)
+        near = far[np.abs(far - placement.centre) < 3.5]
+        assert np.abs(axis.mirrored(near)[:, None] - far).min(axis=1).max() < 1e-9
+        beside = MirrorAxis(placement.centre + 0.05j * axis.direction, axis.direction)
+        assert np.abs(beside.mirrored(near)[:, None] - far).min(axis=1).max() > 0.01
+
+
+def test_groups_with_mirrors_are_left_to_those_without() -> None:
+    """As the tiles that mirrors leave free are those of groups without them."""
+    for name in set(vt.GROUPS) - set(FREE):
+        assert mirror_lines(vt.GROUPS[name]) == ()
+    assert all(mirror_lines(vt.GROUPS[name]) for name in FREE)
+    with pytest.raises(vt.ArgumentError, match="`groups` has none whose tile"):
+        vt.fit(beetle(), groups="cm", symmetric=True)
+
+
+@pytest.mark.parametrize("strokes", ["few", "outline"])
+def test_symmetric_tiles_are_their_own_mirror_images(strokes: str) -> None:
+    """Up to the digits that corners are written with, of 44 mm to 1 um; and reach what is said of them."""
+    outline = polygon(beetle(0.7, 20j))
+    found = vt.fit(outline, symmetric=True, keep=5, strokes=strokes)  # type: ignore[arg-type]
+    assert len(found) == 5
+    for each in found:
+        assert each.symmetric
+        assert each._axis is not None
+        tile = each.tiling[0].to_shapely(accuracy=1e-4)
+        assert apart(tile, each._axis) < 2e-3
+        assert each.overlap == pytest.approx(
+            tile.intersection(each.outline).area / tile.union(each.outline).area, abs=1e-3
+        )
+        assert apart(shapely.affinity.translate(tile, 0.05, 0.02), each._axis) > 0.02
+
+
+def test_one_tile_at_least_is_symmetric_where_the_outline_is() -> None:
+    """Among all; of outlines that are not none is."""
+    found = vt.fit(beetle(1.0), keep=3, groups=["p1", "p4", "pgg"], strokes="outline")
+    assert any(each.symmetric for each in found)
+    assert [each.overlap for each in found] == sorted((each.overlap for each in found), reverse=True)
+    assert not any(each.symmetric for each in vt.fit(random_polygon(2), keep=3, groups=["p1", "p2"], strokes="outline"))

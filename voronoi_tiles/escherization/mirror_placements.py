@@ -1,0 +1,152 @@
+"""Placements of an outline that is its own mirror image, among copies that are so all together, about the same line.
+
+A reflection that takes every operation of a group to another one of it takes copies of such an outline on its line to
+copies. The group with the reflection has the outline in a special position, and a tile that is its own mirror image. It
+is looked for in the group without it, where it lies in general position: its stroke can be changed at will later.
+"""
+
+from __future__ import annotations
+
+import cmath
+import math
+from fractions import Fraction
+from functools import cache
+from itertools import product
+from typing import Final, NamedTuple
+
+import numpy as np
+
+from voronoi_tiles.base.operations import Operation
+from voronoi_tiles.escherization.placement_rows import PlacementRows, longest_cell, sides
+from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
+
+_STEPS: Final = 24
+"""In how many places of a cell lines are looked for; a count. Symmetry elements lie at eighths and sixths of it."""
+
+_RIGHT: Final = ((1, 0), (0, 1))
+_DIRECTIONS: Final = {
+    ("oblique", 0.0): _RIGHT,
+    ("oblique", 0.5): ((1, 0), (1, -2)),
+    ("rectangular", 0.0): _RIGHT,
+    ("square", 0.0): (*_RIGHT, (1, 1), (1, -1)),
+    ("hexagonal", 0.0): (*_RIGHT, (1, 1), (1, -1), (1, 2), (2, 1)),
+}
+"""In which directions lattices have mirrors, in the cell's sides, by the system and the real part of b / a."""
+
+
+class MirrorLine(NamedTuple):
+    """A line about which the operations of a group are mirror images of each other.
+
+    It goes through a point in a direction, in fractions of the cell; `skew` is the real part of b / a of an oblique
+    cell: 0 where it is a rectangle, 1/2 where its lattice is a rhombic one.
+    """
+
+    point: tuple[Fraction, Fraction]
+    direction: tuple[int, int]
+    skew: float
+
+
+def mirror_rows(group: WallpaperGroup, axis: float, width: float) -> list[PlacementRows]:
+    """The placements of an outline with an axis at an angle, through its centroid, that keep mirror images.
+
+    The angle is in radians; `width` is the least width of the outline. None of groups that have mirrors themselves:
+    those beside these make tiles that are polygons, or the ones of a group without them.
+    """
+    longest = longest_cell(group, width)
+    found: list[PlacementRows] = []
+    for line in mirror_lines(group):
+        (x, y), (p, q) = line.point, line.direction
+        # The free numbers: how far along the line, and how long the cell is.
+        columns: list[tuple[list[float], float, float, bool]] = []
+        origin = [0.0] if group.name == "p1" else [0.0, float(x), float(y)]
+        if group.name != "p1":
+            columns.append(([0.0, float(p), float(q)], 0.0, 1.0, True))
+        if group.system == "oblique":
+            origin += [line.skew, 0.0]
+            # Both directions are looked at, so that no other lattice is shorter along b.
+            columns.append(([0.0] * (len(origin) - 1) + [1.0], math.log(1.0 - line.skew), longest, False))
+        elif group.system == "rectangular":
+            origin += [0.0]
+            columns.append(([0.0] * (len(origin) - 1) + [1.0], -longest, longest, False))
+        for turn in (0.0, math.pi):
+            origin[0] = _angle(group, line) - axis + turn
+            basis = [column + [0.0] * (len(origin) - len(column)) for column, *_ in columns]
+            low, high, periodic = zip(*(column[1:] for column in columns), strict=True) if columns else ((), (), ())
+            found.append(
+                PlacementRows(
+                    group,
+                    np.array(origin),
+                    np.array(basis).reshape(len(basis), len(origin)),
+                    np.array(low, float),
+                    np.array(high, float),
+                    np.array(periodic, np.bool_),
+                )
+            )
+    return found
+
+
+@cache
+def mirror_lines(group: WallpaperGroup) -> tuple[MirrorLine, ...]:
+    """The lines about which a group without mirrors is its own mirror image; one of those that it takes to each other.
+
+    Translations that keep the group take lines to others as well.
+    """
+    if any(_is_mirror(operation) for operation in group.operations):
+        return ()
+    own = {operation.reduced() for operation in group.operations}
+    linear = {operation.linear for operation in own}
+    grid = [Fraction(k, _STEPS) for k in range(_STEPS)]
+    shifts = [(x, y) for x, y in product(grid, repeat=2) if _keeps(Operation((1, 0, 0, 1), (x, y)), own)]
+    found: list[MirrorLine] = []
+    for skew in (0.0, 0.5) if group.system == "oblique" else (0.0,):
+        lattice = _lattice(group, skew)
+        seen: set[tuple[int, int]] = set()
+        for p, q in _DIRECTIONS[group.system, skew]:
+            if (p, q) in seen:
+                continue
+            seen |= {(s * (a * p + b * q), s * (c * p + d * q)) for a, b, c, d in linear for s in (1, -1)}
+            moves = {(q * x - p * y) % 1 for x, y in shifts}
+            offsets: set[Fraction] = set()
+            for offset in grid:
+                point = (offset / q, Fraction(0)) if q else (Fraction(0), -offset / p)
+                mirror = _reflection(lattice, point, (p, q))
+                if offset not in offsets and _keeps(mirror, own):
+                    found.append(MirrorLine(point, (p, q), skew))
+                    offsets |= {(offset + move) % 1 for move in moves}
+    return tuple(found)
+
+
+def _is_mirror(operation: Operation) -> bool:
+    """Whether an operation, or one that differs by a translation of the lattice, is a reflection."""
+    if operation.determinant == 1:
+        return False
+    return any(
+        (moved @ moved).is_identity for moved in (operation.translated(i, j) for i, j in product((-1, 0, 1), repeat=2))
+    )
+
+
+def _keeps(operation: Operation, group: set[Operation]) -> bool:
+    """Whether an operation takes those of a group to others of it, up to translations of the lattice."""
+    inverse = operation.inverse()
+    return all((operation @ each @ inverse).reduced() in group for each in group)
+
+
+def _lattice(group: WallpaperGroup, skew: float) -> Lattice:
+    """Some lattice of a group, with this real part of b / a where it is an oblique one."""
+    cell = [skew, 0.1] if group.system == "oblique" else [0.1]
+    a, b = (complex(side[0]) for side in sides(group, np.array([cell])))
+    return Lattice(a, b)
+
+
+def _reflection(lattice: Lattice, point: tuple[Fraction, Fraction], direction: tuple[int, int]) -> Operation:
+    """The reflection about a line of a lattice, by a point and a direction in fractions of the cell."""
+    along = lattice.cartesian(*direction)
+    unit = along / along.conjugate()
+    (a, c), (b, d) = (tuple(map(round, lattice.fractional(unit * side.conjugate()))) for side in (lattice.a, lattice.b))
+    x, y = point
+    return Operation((a, b, c, d), (x - a * x - b * y, y - c * x - d * y))
+
+
+def _angle(group: WallpaperGroup, line: MirrorLine) -> float:
+    """The direction of a line, in radians."""
+    return cmath.phase(_lattice(group, line.skew).cartesian(*line.direction))
