@@ -17,7 +17,7 @@
 #   make page-format rewrite the layout of the page's modules, and of the tests' scripts
 
 .DEFAULT_GOAL := help
-.PHONY: help demo studio test test-slow test-pythons environment environments lint format types bench fuzz docs paper gallery diagrams screenshots wheels blender blender-programs blender-pictures blender-versions readers reader-programs page-tools page-format clean
+.PHONY: help demo studio test test-slow test-pythons environment lint format types bench fuzz docs paper gallery diagrams screenshots wheels blender blender-programs blender-pictures blender-versions readers reader-programs page-tools page-format clean
 .DELETE_ON_ERROR:
 
 PYTHON ?= python3
@@ -85,21 +85,14 @@ test-slow: $(INSTALLED_DEV)
 # Of the rest each Python takes another part. Asserts are not rewritten to say more: of a failure the test itself is run again.
 ANOTHER := $(patsubst %,--ignore-glob=*/test_%,browser* page_* accessibility* wheel* addon* layering*) --thin --assert=plain
 
-# $(call each-python,TARGET): made for every other Python that is here, in an environment of its own.
-define each-python
-set -e; found=$$($(PYTHON) .ci/pythons.py); echo "$${found:-No other CPython from 3.11 on is here.}"; \
-echo "$$found" | while read -r version python; do \
-    test -z "$$python" || $(MAKE) $(1) VENV=$(VENV)-$$version PYTHON=$$python PYTEST="$(ANOTHER)" < /dev/null || exit 1; \
-done
-endef
-
-test-pythons:
-	+$(call each-python,test)
+# Each in an environment of its own. The kernels are those of the first one: they use nothing of Python's.
+test-pythons: $(INSTALLED_DEV)
+	+set -e; found=$$($(PYTHON) .ci/pythons.py); echo "$${found:-No other CPython from 3.11 on is here.}"; \
+	echo "$$found" | while read -r version python; do \
+	    test -z "$$python" || $(MAKE) test VENV=$(VENV)-$$version PYTHON=$$python PYTEST="$(ANOTHER)" < /dev/null || exit 1; \
+	done
 
 environment: $(INSTALLED_DEV)
-
-environments: $(INSTALLED_DEV)
-	+$(call each-python,environment)
 
 lint: $(INSTALLED_DEV)
 	$(VENV)/bin/ruff check .
