@@ -80,6 +80,25 @@ def test_of_several_axes_each_kind_is_taken_once(rays: int, kinds: int) -> None:
         assert apart(each.silhouette.polygon, each.axis) < 1e-9
 
 
+def test_what_lies_beside_an_axis_has_no_half() -> None:
+    """On either side, touching it from the right, or empty; what the axis cuts has one, from axis to axis."""
+    axis = MirrorAxis(0j, 1 + 0j)
+    for beside in (shapely.box(0, -2, 1, -1), shapely.box(0, 1, 1, 2), shapely.box(0, -1, 1, 0), shapely.Polygon()):
+        assert axis.left_half(beside) is None
+    half = axis.left_half(shapely.box(2, -1, 5, 3))
+    assert half is not None
+    assert sorted((half[0], half[-1]), key=abs) == [2, 5]
+    assert set(half) == {2, 5, 2 + 3j, 5 + 3j}
+
+
+def test_outlines_of_two_halves_that_hang_together_by_a_thread_are_placed() -> None:
+    """A pair of spectacles: as what is drawn apart from the copies is one lens of it, no stroke is its own image."""
+    lens = np.array([3 - 0.1j, 3 - 20j, 30 - 20j, 30 + 20j, 3 + 20j, 3 + 0.1j])
+    outline = np.concatenate((lens, -lens.conj()[::-1])) * cmath.exp(0.3j)
+    found = vt.fit(outline, groups=["p1", "p2"], keep=2, strokes="outline")
+    assert len(found) == 2
+
+
 def all_copies(placement: GroupPlacement, points: Complexes, reach: float) -> Complexes:
     """The points of all copies in a placement, near to the first one."""
     own = placement.laid(points, 0j)

@@ -8,11 +8,10 @@ from typing import Final, NamedTuple
 import numpy as np
 import shapely
 from shapely.geometry import Polygon
-from shapely.geometry.base import BaseGeometry
 
 from voronoi_tiles.base.arrays import Complexes, from_plane, plane
 from voronoi_tiles.base.maps import Isometry
-from voronoi_tiles.escherization.goal_outline import GoalOutline, ring_corners
+from voronoi_tiles.escherization.goal_outline import GoalOutline, largest_part, ring_corners
 from voronoi_tiles.escherization.group_placement import GroupPlacement
 from voronoi_tiles.escherization.mirror_axis import MirrorAxis
 
@@ -65,7 +64,7 @@ def drawn_apart(silhouette: GoalOutline, placement: GroupPlacement, axis: Mirror
         taken = dict(around)
         for lens in kept:
             taken[lens.copy] = taken[lens.copy].difference(lens.area.buffer(apart))
-        return _largest(inner.difference(shapely.union_all([*taken.values()])))
+        return largest_part(inner.difference(shapely.union_all([*taken.values()])))
 
     stroke = left(())
     if inner.area - stroke.area > _LEAST * own.area:
@@ -103,9 +102,3 @@ def _decided(stroke: Polygon, lenses: list[_Lens], left: Callable[[Iterable[_Len
         if larger.area > stroke.area + lens.area.area + least:
             kept, stroke = [*kept, lens], larger
     return stroke
-
-
-def _largest(geometry: BaseGeometry) -> Polygon:
-    """The largest of the parts of a geometry; an empty polygon where there is none."""
-    parts = [part for part in shapely.get_parts(geometry) if part.geom_type == "Polygon"]
-    return max(parts, key=lambda part: part.area, default=Polygon())

@@ -10,6 +10,7 @@ from typing import Any, Final
 import numpy as np
 import shapely
 from shapely.geometry import LinearRing, Polygon
+from shapely.geometry.base import BaseGeometry
 
 from voronoi_tiles.base.arrays import Complexes, from_plane, plane
 from voronoi_tiles.base.errors import ArgumentError
@@ -118,6 +119,12 @@ class GoalOutline:
 def ring_corners(ring: LinearRing) -> Complexes:
     """The corners of a ring, the first not repeated: complex128 (n,)."""
     return from_plane(shapely.get_coordinates(ring)[:-1])
+
+
+def largest_part(geometry: BaseGeometry) -> Polygon:
+    """The largest of the polygons of a geometry; an empty one where there is none."""
+    parts = [part for part in shapely.get_parts(geometry) if part.geom_type == "Polygon"]
+    return max(parts, key=lambda part: part.area, default=Polygon())
 
 
 def _polygon(outline: Any) -> Any:

@@ -13,7 +13,7 @@ from scipy import optimize
 from shapely.geometry import LineString, Polygon, box
 
 from voronoi_tiles.base.arrays import Complexes, from_plane, plane
-from voronoi_tiles.escherization.goal_outline import GoalOutline, ring_corners
+from voronoi_tiles.escherization.goal_outline import GoalOutline, largest_part, ring_corners
 from voronoi_tiles.escherization.group_placement import GroupPlacement
 from voronoi_tiles.escherization.outline_distance import overlap
 
@@ -31,10 +31,7 @@ _ROUGH_LOSS: Final = 0.1
 """How much less like its image an outline may be of fewer corners, about the nearest of these axes; an overlap."""
 
 _ON_AXIS: Final = 1e-9
-"""Corners so near to the axis are on it; relative to the size."""
-
-_FAR: Final = 1e3
-"""Beyond all that is drawn; relative to the size."""
+"""Corners so near to the axis are on it; relative to how far corners lie from its point."""
 
 
 @dataclass(frozen=True)
@@ -64,22 +61,17 @@ class MirrorAxis:
     def left_half(self, outline: Polygon) -> Complexes | None:
         """The corners that an outline has left of the axis, as seen from it, the first and the last on the axis.
 
-        A closed line that is its own mirror image crosses the axis twice. None where it does not.
+        A closed line that is its own mirror image crosses the axis twice. None of what lies on one side, or is empty.
         """
-        seen = Polygon(plane(self.seen(ring_corners(outline.exterior))))
-        size = math.sqrt(seen.area)
-        half = seen.intersection(box(-_FAR * size, 0.0, _FAR * size, _FAR * size))
-        parts = [part for part in getattr(half, "geoms", [half]) if part.geom_type == "Polygon"]
-        if not parts:
-            return None
-        ring = ring_corners(max(parts, key=lambda part: part.area).exterior)
-        on = np.abs(ring.imag) <= _ON_AXIS * size
+        seen = self.seen(ring_corners(outline.exterior))
+        far = 2.0 * float(np.abs(seen).max(initial=0.0))
+        ring = ring_corners(largest_part(Polygon(plane(seen)).intersection(box(-far, 0.0, far, far))).exterior)
+        on = np.abs(ring.imag) <= _ON_AXIS * far
         # The longest side on the axis is the cut.
         cut = np.where(on & np.roll(on, -1), np.abs(np.roll(ring, -1) - ring), 0.0)
-        first = int(np.argmax(cut)) + 1
-        if not cut.max() > 0.0:
+        if not cut.any():
             return None
-        chain = np.roll(ring, -first)
+        chain = np.roll(ring, -1 - int(np.argmax(cut)))
         chain[[0, -1]] = chain[[0, -1]].real
         return chain
 
