@@ -18,6 +18,7 @@ import numpy as np
 
 from voronoi_tiles.base.operations import Operation
 from voronoi_tiles.escherization.placement_rows import PlacementRows, longest_cell, sides
+from voronoi_tiles.groups.symmetry_elements import symmetry_elements
 from voronoi_tiles.groups.wallpaper import Lattice, WallpaperGroup
 
 _STEPS: Final = 24
@@ -55,33 +56,23 @@ def mirror_rows(group: WallpaperGroup, axis: float, width: float) -> list[Placem
     longest = longest_cell(group, width)
     found: list[PlacementRows] = []
     for line in mirror_lines(group):
-        (x, y), (p, q) = line.point, line.direction
-        # The free numbers: how far along the line, and how long the cell is.
-        columns: list[tuple[list[float], float, float, bool]] = []
-        origin = [0.0] if group.name == "p1" else [0.0, float(x), float(y)]
-        if group.name != "p1":
-            columns.append(([0.0, float(p), float(q)], 0.0, 1.0, True))
-        if group.system == "oblique":
-            origin += [line.skew, 0.0]
-            # Both directions are looked at, so that no other lattice is shorter along b.
-            columns.append(([0.0] * (len(origin) - 1) + [1.0], math.log(1.0 - line.skew), longest, False))
-        elif group.system == "rectangular":
-            origin += [0.0]
-            columns.append(([0.0] * (len(origin) - 1) + [1.0], -longest, longest, False))
+        place: tuple[float, ...] = () if group.name == "p1" else (float(line.point[0]), float(line.point[1]))
+        shape = {"oblique": (line.skew, 0.0), "rectangular": (0.0,)}.get(group.system, ())
+        # The free numbers: how far along the line, and how long the cell is. Of oblique cells both directions are
+        # looked at, so that no other lattice is shorter along b.
+        basis: list[tuple[float, ...]] = []
+        bounds: list[tuple[float, float]] = []
+        if place:
+            basis.append((0.0, *line.direction, *(0.0 for _ in shape)))
+            bounds.append((0.0, 1.0))
+        if shape:
+            basis.append((*(0.0 for _ in (*place, *shape)), 1.0))
+            bounds.append((math.log(1.0 - line.skew) if group.system == "oblique" else -longest, longest))
+        low, high = np.array(bounds).T
+        periodic = np.arange(len(basis)) < (1 if place else 0)
         for turn in (0.0, math.pi):
-            origin[0] = _angle(group, line) - axis + turn
-            basis = [column + [0.0] * (len(origin) - len(column)) for column, *_ in columns]
-            low, high, periodic = zip(*(column[1:] for column in columns), strict=True) if columns else ((), (), ())
-            found.append(
-                PlacementRows(
-                    group,
-                    np.array(origin),
-                    np.array(basis).reshape(len(basis), len(origin)),
-                    np.array(low, float),
-                    np.array(high, float),
-                    np.array(periodic, np.bool_),
-                )
-            )
+            origin = np.array([_angle(group, line) - axis + turn, *place, *shape])
+            found.append(PlacementRows(group, origin, np.array(basis), low, high, periodic))
     return found
 
 
@@ -91,7 +82,7 @@ def mirror_lines(group: WallpaperGroup) -> tuple[MirrorLine, ...]:
 
     Translations that keep the group take lines to others as well.
     """
-    if any(_is_mirror(operation) for operation in group.operations):
+    if symmetry_elements(group).mirrors:
         return ()
     own = {operation.reduced() for operation in group.operations}
     linear = {operation.linear for operation in own}
@@ -114,15 +105,6 @@ def mirror_lines(group: WallpaperGroup) -> tuple[MirrorLine, ...]:
                     found.append(MirrorLine(point, (p, q), skew))
                     offsets |= {(offset + move) % 1 for move in moves}
     return tuple(found)
-
-
-def _is_mirror(operation: Operation) -> bool:
-    """Whether an operation, or one that differs by a translation of the lattice, is a reflection."""
-    if operation.determinant == 1:
-        return False
-    return any(
-        (moved @ moved).is_identity for moved in (operation.translated(i, j) for i, j in product((-1, 0, 1), repeat=2))
-    )
 
 
 def _keeps(operation: Operation, group: set[Operation]) -> bool:
