@@ -149,7 +149,7 @@ def fit(
     """
     silhouette = GoalOutline.of(outline)
     names = _groups(groups, mirrored=mirrored)
-    goals = [_Goal(each.silhouette, each.axis) for each in mirrored_outlines(silhouette)]
+    goals = [_Goal(*each) for each in mirrored_outlines(silhouette)]
     if symmetric:
         _check_symmetric(silhouette, goals, names)
     else:
@@ -215,9 +215,9 @@ def _best(
         limit = found[min(wide, len(found)) - 1].found.bound - _GAIN
         tried = [each for each in found if each.found.bound >= limit][: 2 * wide]
         found = found[len(tried) :]
-        if not made:
-            tried += [each for each in symmetric if not any(each is other for other in tried)]
-            found = [each for each in found if not any(each is other for other in symmetric)]
+        tried += [each for each in symmetric if not any(each is other for other in tried)]
+        found = [each for each in found if not any(each is other for other in symmetric)]
+        symmetric = []
         made += [each for each in phases.run(making, tried, 0.75) if each is not None]
         best = _different(made, most)[:count]
     return _with_symmetric(best, made)

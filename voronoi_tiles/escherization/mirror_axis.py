@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import cmath
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Final
+from itertools import islice
+from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
@@ -84,8 +86,7 @@ class MirrorAxis:
         return np.asarray(np.concatenate((half, half[-2:0:-1].conj())) * self.direction + self.through)
 
 
-@dataclass(frozen=True)
-class MirroredOutline:
+class MirroredOutline(NamedTuple):
     """An outline that is its own mirror image about an axis, and nearly a given one."""
 
     silhouette: GoalOutline
@@ -116,8 +117,8 @@ def mirrored_outlines(given: GoalOutline) -> list[MirroredOutline]:
 
     Of several axes every second one is of the same kind, as those of a star: there are two at most.
     """
-    axes = [axis for axis, like in _axes(given) if like >= MIRRORED]
-    return [outline for axis in axes[:2] if (outline := MirroredOutline.of(given, axis)) is not None]
+    axes = islice((axis for axis, like in _axes(given) if like >= MIRRORED), 2)
+    return [outline for axis in axes if (outline := MirroredOutline.of(given, axis)) is not None]
 
 
 def likeness(given: GoalOutline) -> float:
@@ -125,7 +126,7 @@ def likeness(given: GoalOutline) -> float:
     return max(like for _, like in _axes(given))
 
 
-def _axes(given: GoalOutline) -> list[tuple[MirrorAxis, float]]:
+def _axes(given: GoalOutline) -> Iterator[tuple[MirrorAxis, float]]:
     """The axes about which an outline is more like its mirror image than about those beside, and how much."""
     rough = GoalOutline(ring_corners(given.polygon.simplify(_ROUGH * given.size).exterior))
     angles = np.arange(_DIRECTIONS) * math.pi / _DIRECTIONS
@@ -133,7 +134,7 @@ def _axes(given: GoalOutline) -> list[tuple[MirrorAxis, float]]:
     peaks = np.flatnonzero((seen >= np.roll(seen, 1)) & (seen > np.roll(seen, -1)))
     # One alone is led on where none is worth it.
     worth = [k for k in peaks.tolist() if seen[k] >= MIRRORED - _ROUGH_LOSS] or [int(np.argmax(seen))]
-    return [_led_axis(given, float(angles[k])) for k in worth]
+    return (_led_axis(given, float(angles[k])) for k in worth)
 
 
 def _axis(outline: GoalOutline, angle: float, offset: float) -> MirrorAxis:
