@@ -23,10 +23,10 @@ FREE = ("p1", "p2", "p3", "p4", "p6", "pg", "pgg")
 HALF = np.array([0j, 3 + 6j, 12 + 14j, 22 + 10j, 30 + 18j, 44 + 15j, 40 + 6j, 52 + 4j, 55 + 0j])
 
 
-def beetle(turn: float = 0.0, place: complex = 0j, noise: float = 0.0) -> Complexes:
+def beetle(turn: float = 0.0, place: complex = 0j, noise: float = 0.0, seed: int = 3) -> Complexes:
     """An outline that is its own mirror image about a line at an angle, but for noise of its corners."""
     corners = np.concatenate((HALF, HALF[-2:0:-1].conj()))
-    shaken = np.random.default_rng(3).normal(size=(len(corners), 2)) @ np.array([1, 1j]) * noise
+    shaken = np.random.default_rng(seed).normal(size=(len(corners), 2)) @ np.array([1, 1j]) * noise
     return np.asarray((corners + shaken) * cmath.exp(1j * turn) + place)
 
 
@@ -148,6 +148,13 @@ def test_symmetric_tiles_are_their_own_mirror_images(strokes: str) -> None:
             tile.intersection(each.outline).area / tile.union(each.outline).area, abs=1e-3
         )
         assert apart(shapely.affinity.translate(tile, 0.05, 0.02), each._axis) > 0.02
+
+
+def test_no_symmetric_tile_overlaps_more_than_the_bound() -> None:
+    """Which is that of the outline as it is given, not of the one that is its own mirror image."""
+    found = vt.fit(beetle(0.4, noise=0.25, seed=4), symmetric=True, keep=3, groups=["p1", "p3"], strokes="outline")
+    assert len(found) == 3
+    assert all(each.bound - 2e-3 < each.overlap <= each.bound + 1e-5 for each in found)
 
 
 def test_one_tile_at_least_is_symmetric_where_the_outline_is() -> None:

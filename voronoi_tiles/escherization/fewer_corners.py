@@ -24,6 +24,10 @@ _STEPS: Final = 6
 _SAMPLES: Final = 400
 """At how many points of the tile its outline is compared; a count."""
 
+_STILL: Final = 1e-9
+"""Added to the mean square of the tile's velocities: where mirrors enclose it, so that it follows no corner, these are
+noise, and so would the steps be."""
+
 DISTANCE_STEP: Final = 4e-3
 """The step at which distances of outlines are sampled; relative to the size."""
 
@@ -76,7 +80,8 @@ def _led(design: Design, wanted: LinearRing, axis: MirrorAxis | None) -> Design 
     for _ in range(_STEPS):
         velocity = points.velocity @ together
         squares = velocity.T @ velocity
-        step = np.linalg.solve(squares + damping * np.trace(squares) / count * np.eye(count), velocity.T @ away)
+        ridge = damping * (np.trace(squares) / count + _STILL)
+        step = np.linalg.solve(squares + ridge * np.eye(count), velocity.T @ away)
         stepped = tiled(gradient.stepped(step))
         damping *= 10.0
         if stepped is None:

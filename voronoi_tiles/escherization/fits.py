@@ -19,6 +19,7 @@ from voronoi_tiles.designs.design import Design
 from voronoi_tiles.designs.enclosed import ENCLOSED
 from voronoi_tiles.escherization.area_transform import AreaTransform
 from voronoi_tiles.escherization.closed_design import closed_design, tiled
+from voronoi_tiles.escherization.covering import overlap_bound
 from voronoi_tiles.escherization.drawn_apart import drawn_apart
 from voronoi_tiles.escherization.fewer_corners import DISTANCE_STEP, fewer_corners
 from voronoi_tiles.escherization.goal_outline import GoalOutline
@@ -163,6 +164,8 @@ def fit(
     seen = phases.run(partial(_looked, seed), [(goal, group) for goal in goals for group in names], 0.5)
     ordered = sorted((each for row in seen for each in row), key=lambda each: -each.found.bound)
     best = _best(phases, partial(_made, silhouette, name), ordered, count, len(names))
+    # So far it was that of what was placed, which the given outline may nearly be.
+    best = [replace(each, bound=overlap_bound(silhouette, each.placement)) if each.symmetric else each for each in best]
     if strokes == "few":
         best = phases.run(partial(_with_fewer_corners, near), best, 1.0, found)
     elif found is not None:
@@ -331,7 +334,7 @@ def _made(given: GoalOutline, name: str, found: _Found) -> Fit | None:
     tiling = tiled(closed_design(placement.group, placement.cell, corners, name, silhouette.size))
     if tiling is None:
         return None
-    # Outlines of which one is nearly the other have nearly the same centroid.
+    # The given outline lies over the one that was placed, whose centroid is nearly the same.
     moved = (given.centroid - silhouette.centroid) * cmath.exp(1j * placement.turn)
     return _measured(tiling, given, replace(placement, centre=placement.centre + moved), bound, axis)
 
