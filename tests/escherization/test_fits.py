@@ -93,6 +93,16 @@ def test_what_a_fit_says_is_so(seed: int) -> None:
     assert apart <= 0.01 * size + 0.003 * size
 
 
+@pytest.mark.parametrize("group", ["pmm", "p6m"])
+def test_corners_that_the_tile_does_not_follow_stay_where_they_are(group: str) -> None:
+    """Where mirrors enclose it; what is left out is all that changes."""
+    (whole,) = vt.fit(random_polygon(3), groups=group, keep=1, strokes="outline")
+    few = whole.with_fewer_corners(0.01 * math.sqrt(random_polygon(3).area))
+    assert few.corners < whole.corners
+    ends = [np.concatenate(each.tiling[0].site.ends) for each in (whole, few)]
+    assert set(ends[1].tolist()) < set(ends[0].tolist())
+
+
 def test_the_search_is_the_same_again_and_on_other_processors() -> None:
     """The same seed, the same designs, digit for digit, by two processes as by one; the size does not matter."""
     outline = random_polygon(9)
