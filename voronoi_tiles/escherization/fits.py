@@ -40,7 +40,7 @@ _EACH: Final = 2
 """How many designs of one group there are at most, where more groups are looked in than designs are kept; a count."""
 
 _WIDE: Final = 6
-"""Twice as many placements are led on at least, however few designs are kept; a count."""
+"""So many placements are led on at least, and up to twice as many at a time, however few designs are kept; a count."""
 
 _SAME: Final = 2e-4
 """Placements of a group whose bounds differ by less are one, or images of each other; a share."""
@@ -64,8 +64,9 @@ class Fit:
     """A design whose tile comes near to an outline.
 
     `overlap` is the area that tile and outline have in common over that of their union, and `bound` the most that any
-    tile of the group has in its place; `distance` is how far they are from each other at most, in millimetres.
-    `outline` is the given one where the design has it, and `placement` how it came there.
+    tile of the group has in this cell and place; `distance` is how far they are from each other at most, in
+    millimetres. `silhouette` is the given outline without corners that make no difference, `outline` the same where the
+    design has it, and `placement` how it came there.
     """
 
     tiling: Tiling
@@ -139,7 +140,8 @@ def fit(
     `outline` is a shapely polygon, anything with its interface, such as a Tile, or the corners of a closed line.
     `groups` are those to look in; without them all whose tiles are not the same polygon whatever is drawn. With
     `mirrored` False only those are, whose copies are never mirror images. Where the outline is its own mirror image, or
-    nearly, one of several tiles is one at least; with `symmetric` all are, and other outlines are refused.
+    nearly, at least one of several tiles is so exactly, if there is one in the groups; with `symmetric` all are, and
+    other outlines are refused.
 
     `strokes` are an "outline" drawn a little smaller, or "few": a closed stroke of fewer corners, whose tile is within
     `within` millimetres of that one's (without it, a two-hundredth of the side of a square of the outline's area). The
@@ -236,9 +238,10 @@ def _different(fits: list[Fit], most: int) -> list[Fit]:
 
 
 def _stands_for(one: Fit, other: Fit) -> bool:
-    """Whether a fit is the same as another one, or as good, of its group, and its own mirror image.
+    """Whether another fit need not be kept beside one: it is the same, or hardly better, but not symmetric as that is.
 
-    Of what is its own mirror image translations, glides and rotations make the same tiling, each in its group.
+    Two that are symmetric may be the same in different groups: a glide makes the same copy of what is its own mirror
+    image as a translation or a rotation.
     """
     if one.group != other.group and not (one.symmetric and other.symmetric):
         return False
@@ -312,7 +315,8 @@ def _check_symmetric(silhouette: GoalOutline, goals: list[_Goal], groups: list[s
     """Raise ArgumentError where an outline is not its own mirror image, or groups have no tiles that are."""
     if not goals:
         raise ArgumentError(
-            f"the outline is not its own mirror image: their overlap is {likeness(silhouette):.2f}, not {MIRRORED}",
+            f"the outline is not its own mirror image: their overlap is {likeness(silhouette):.3f}, less than "
+            f"{MIRRORED}",
             remedy="Draw it symmetrically, or leave out `symmetric`.",
         )
     if not any(mirror_lines(GROUPS[name]) for name in groups):

@@ -20,11 +20,11 @@ from voronoi_tiles.escherization.group_placement import GroupPlacement
 from voronoi_tiles.escherization.outline_distance import overlap
 
 MIRRORED: Final = 0.96
-"""From which overlap with its mirror image on an outline is taken for that. Corners that are off by a hundredth of the
-size leave so much."""
+"""The least overlap of an outline with its mirror image at which it is taken for its own: an area over an area.
+Corners that are off by a hundredth of the size leave about so much."""
 
 _DIRECTIONS: Final = 90
-"""How many axes through the centroid are looked at first; a count."""
+"""How many axes through the centroid are looked at first, every 2 degrees; a count."""
 
 _ROUGH: Final = 0.02
 """How far corners that are left out lie from the outline there; relative to its size."""
@@ -122,7 +122,7 @@ def mirrored_outlines(given: GoalOutline) -> list[MirroredOutline]:
 
 
 def likeness(given: GoalOutline) -> float:
-    """The largest overlap of an outline with its mirror images about axes, to 1."""
+    """The largest overlap of an outline with one of its mirror images; at most 1."""
     return max(like for _, like in _axes(given))
 
 

@@ -51,7 +51,7 @@ def mirror_rows(group: WallpaperGroup, axis: float, width: float) -> list[Placem
     """The placements of an outline with an axis at an angle, through its centroid, that keep mirror images.
 
     The angle is in radians; `width` is the least width of the outline. None of groups that have mirrors themselves:
-    those beside these make tiles that are polygons, or the ones of a group without them.
+    rotations and translations alone make the same copies of what is its own mirror image, in a group that has none.
     """
     longest = longest_cell(group, width)
     found: list[PlacementRows] = []

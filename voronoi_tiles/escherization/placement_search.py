@@ -27,14 +27,15 @@ _FIRST_FREQUENCY: Final = 1.8
 valleys of their own, some hundred of them for each good one."""
 
 _LOOKS: Final = 4096
-"""How many placements are looked at; a count."""
+"""How many placements are looked at, at most; a count."""
+
+_STARTS: Final = 128
+"""How many of them at most, the best, are led into their valleys, and half of these to the bottom; a count."""
 
 _LOOKS_EACH: Final = 32
 _STARTS_EACH: Final = 4
-"""By how many times fewer these are for each number less that is free; counts."""
-
-_STARTS: Final = 128
-"""How many of them, the best, are led into their valleys, and half of these to the bottom; a count."""
+"""Where one or two numbers are free fewer placements fill the space: so many to the power of how many are free, and
+twice as many starts; counts."""
 
 _ROUGH_STEPS: Final = 12
 _FINE_STEPS: Final = 16
