@@ -225,7 +225,7 @@ def _best(
         symmetric = []
         made += [each for each in phases.run(making, tried, 0.75) if each is not None]
         best = _different(made, most)[:count]
-    return _with_symmetric(best, made)
+    return _with_symmetric(best, made, count)
 
 
 def _different(fits: list[Fit], most: int) -> list[Fit]:
@@ -248,12 +248,12 @@ def _stands_for(one: Fit, other: Fit) -> bool:
     return abs(one.bound - other.bound) <= (_AS_GOOD if one.symmetric and not other.symmetric else _SAME)
 
 
-def _with_symmetric(best: list[Fit], made: list[Fit]) -> list[Fit]:
-    """The best fits, the last of which is its own mirror image where one is and no other of them."""
+def _with_symmetric(best: list[Fit], made: list[Fit], count: int) -> list[Fit]:
+    """The best fits, so many at most, the last of which is symmetric where one is and no other of them."""
     symmetric = [each for each in made if each.symmetric]
-    if len(best) < 2 or not symmetric or any(each.symmetric for each in best):
+    if count < 2 or not symmetric or any(each.symmetric for each in best):
         return best
-    return [*best[:-1], max(symmetric, key=lambda each: each.overlap)]
+    return [*best[: count - 1], max(symmetric, key=lambda each: each.overlap)]
 
 
 @dataclass
