@@ -11,8 +11,8 @@ HALVED: Final = 2
 """Of all other tests each file has one of so many."""
 
 
-def is_left_out(number: int, count: int, minor: int, parts: int = THINNED) -> bool:
-    """Whether a case of so many is left out with --thin; other minor versions of Python take other parts.
+def is_left_out(number: int, count: int, minor: int, parts: int) -> bool:
+    """Whether a case of so many is left out with --thin; the next minor versions of Python take the other parts.
 
     Which one is taken moves on from each THINNED cases to the next: every version takes all values of a parameter that
     come again and again, also where these are two or four.

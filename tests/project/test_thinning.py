@@ -1,4 +1,4 @@
-"""--thin: no test is left out on every Python, and no value of a parameter on one of them."""
+"""--thin: no test is left out on every Python, and no value of a parameter that comes often enough on one of them."""
 
 from __future__ import annotations
 
