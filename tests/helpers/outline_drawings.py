@@ -17,6 +17,9 @@ FISH = f"""{_HEAD}
 """
 """A fish of nine corners with an eye."""
 
+KITE = f'{_HEAD}<path d="M 30 6 L 48 22 L 38 26 L 30 44 L 22 26 L 12 22 Z"/></svg>'
+"""An outline that is its own mirror image."""
+
 OPEN = f'{_HEAD}<path d="{_FISH.removesuffix(" Z")}" fill="none" stroke="black"/></svg>'
 CROSSING = f'{_HEAD}<path d="M 10 10 L 40 40 L 40 10 L 10 40 Z" stroke="black"/></svg>'
 TWO = f'{_HEAD}<circle cx="15" cy="25" r="10"/><circle cx="45" cy="25" r="9"/></svg>'

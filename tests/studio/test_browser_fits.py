@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from helpers.outline_drawings import CROSSING, FISH, OPEN, PIXELS, SEARCH_MS, TWO
+from helpers.outline_drawings import CROSSING, FISH, KITE, OPEN, PIXELS, SEARCH_MS, TWO
 from helpers.studio import Studio, Window, opened, running
 
 import voronoi_tiles as vt
@@ -95,6 +95,22 @@ def test_an_outline_is_dropped_and_a_design_taken(window: Window, studio: Studio
     assert window.design["group"] == name
     window.wait()  # the server has it, too, and offers no other to the next page
     assert page.locator("#saved").inner_text() == "saved"
+
+
+def test_symmetric_tiles_alone_are_looked_for(window: Window) -> None:
+    """Of a kite; and what is not its own mirror image is refused, with how much it is like it."""
+    page = window.page
+    page.get_by_role("button", name="Fit", exact=True).click()
+    dialog = page.get_by_role("dialog", name="Tiles near to an outline")
+    dialog.get_by_text("Where to look").click()
+    dialog.get_by_label("Groups", exact=True).fill("p1")
+    dialog.get_by_label("Symmetric tiles alone").check()
+    drag(window, "kite.svg", KITE.encode())
+    dialog.get_by_text(re.compile(r"\d designs?, the nearest first")).wait_for(timeout=SEARCH_MS)
+    assert all(text.endswith("symmetric") for text in dialog.locator(".fits button").all_inner_texts())
+    drag(window, "fish.svg", FISH.encode())
+    dialog.get_by_text("not its own mirror image").wait_for()
+    assert dialog.locator(".fits button").count() == 0
 
 
 def test_a_search_is_stopped_and_replaced(window: Window) -> None:

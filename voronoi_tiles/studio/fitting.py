@@ -25,7 +25,9 @@ _ART: Final = "art.svg"
 Said = TypeVar("Said")
 
 
-def fitted(data: bytes, name: str, groups: str, *, mirrored: bool) -> Iterator[tuple[dict[str, Any], bytes]]:
+def fitted(
+    data: bytes, name: str, groups: str, *, mirrored: bool, symmetric: bool = False
+) -> Iterator[tuple[dict[str, Any], bytes]]:
     """Designs whose tiles come near to the outline of an SVG or DXF file: messages, each with the bytes of its art.
 
     The first is "outline", with "notes" on what was taken for what; then there are "progress", the share that is
@@ -45,6 +47,7 @@ def fitted(data: bytes, name: str, groups: str, *, mirrored: bool) -> Iterator[t
             drawn.silhouette.polygon,
             groups=names,
             mirrored=mirrored,
+            symmetric=symmetric,
             name=drawn.name,
             workers=min(processors(), PROCESSES_MAX),
             progress=lambda done, _: say(({"type": "progress", "done": done}, b"")),

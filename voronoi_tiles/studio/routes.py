@@ -173,11 +173,14 @@ class _Routes:
     async def fits(self, request: Request) -> Response:
         """Designs whose tiles come near to an outline that was dropped onto the page: a line of JSON each."""
         asked = {name: request.query_params.get(name, "") for name in ("name", "groups")}
-        mirrored = request.query_params.get("mirrored", "yes") == "yes"
+        ticked = {
+            "mirrored": request.query_params.get("mirrored", "yes") == "yes",
+            "symmetric": request.query_params.get("symmetric", "no") == "yes",
+        }
         data = await _body_of(request, DROP_MAX)
         if data is None:
             return _failed(_TOO_LARGE, 413)
-        messages = self._desk.fits.messages({**asked, "mirrored": mirrored}, data)
+        messages = self._desk.fits.messages({**asked, **ticked}, data)
 
         async def begun() -> Response:
             first = await anext(messages)

@@ -128,7 +128,8 @@ def fits(request: Request, body: bytes) -> Iterator[Done]:
     from voronoi_tiles.studio.fitting import fitted
 
     _stand_back()
-    for message, art in fitted(body, request["name"], request["groups"], mirrored=request["mirrored"]):
+    asked = (request["name"], request["groups"])
+    for message, art in fitted(body, *asked, mirrored=request["mirrored"], symmetric=request["symmetric"]):
         yield {"more": True, "message": message}, art
     yield text_of({"type": "done"})
 

@@ -62,7 +62,7 @@ export function fitting({ store, begin, say }) {
     let show = () => {};
     /** @type {Fit | null} what is being taken */
     let taken = null;
-    const options = { groups: "", mirrored: true };
+    const options = { groups: "", mirrored: true, symmetric: false };
 
     const isOpen = () => Boolean(box?.open && box.isConnected);
 
@@ -79,7 +79,12 @@ export function fitting({ store, begin, say }) {
             if (file.size > drop) {
                 throw new Error(`${file.name} is larger than ${drop >> 20} MiB. Take the outline alone.`);
             }
-            const asked = { name: file.name, groups: options.groups, mirrored: options.mirrored ? "yes" : "no" };
+            const asked = {
+                name: file.name,
+                groups: options.groups,
+                mirrored: options.mirrored ? "yes" : "no",
+                symmetric: options.symmetric ? "yes" : "no",
+            };
             const more = { type: "application/octet-stream", signal: stop.signal };
             const answer = await post(`fits?${new URLSearchParams(asked)}`, file, more);
             await follow(/** @type {ReadableStream<Uint8Array>} */ (answer.body), mine);
@@ -173,20 +178,27 @@ export function fitting({ store, begin, say }) {
                     again();
                 },
             });
-            const mirrored = make("input", {
-                type: "checkbox",
-                ".checked": options.mirrored,
-                onchange() {
-                    options.mirrored = mirrored.checked;
-                    again();
-                },
-            });
+            /** A box to tick for an option. @param {"mirrored" | "symmetric"} name */
+            const tick = (name) => {
+                const ticked = make("input", {
+                    type: "checkbox",
+                    ".checked": options[name],
+                    onchange() {
+                        options[name] = ticked.checked;
+                        again();
+                    },
+                });
+                return ticked;
+            };
             const where = make(
                 "details",
-                { open: Boolean(options.groups) || !options.mirrored },
+                { open: Boolean(options.groups) || !options.mirrored || options.symmetric },
                 make("summary", {}, "Where to look"),
                 field("Groups", groups, { help: "As p2, pgg; empty: all but those whose tile no stroke changes" }),
-                field("Mirrored copies", mirrored, { help: "Without them for material with a good side" }),
+                field("Mirrored copies", tick("mirrored"), { help: "Without them for material with a good side" }),
+                field("Symmetric tiles alone", tick("symmetric"), {
+                    help: "Tiles that are their own mirror images, as the outline must be",
+                }),
             );
             const progress = make("progress", { max: 1, "aria-label": "The search" });
             const state = make("p", { role: "status" });
