@@ -18,6 +18,7 @@ from voronoi_tiles.base.values import is_number
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.formats.svg.path_text import path_data
 from voronoi_tiles.groups.wallpaper import WallpaperGroup
+from voronoi_tiles.studio.page_art import art_document
 from voronoi_tiles.studio.page_colouring import Colourist
 from voronoi_tiles.studio.refusals import error_document
 from voronoi_tiles.vector.outline import Outline
@@ -50,7 +51,7 @@ class Outliner:
     colourist: Colourist = field(default_factory=Colourist)
 
     def outlines(self, rev: int, design: Mapping[str, Any], *, rest: bool, tolerance: float | None) -> Iterator[Said]:
-        """What is said of a design: at rest its message "outline", proved and coloured.
+        """What is said of a design: at rest its message "outline", proved and coloured, with its art.
 
         While the pointer moves the outline comes before its proof, which is the message "proof", where that is quick
         enough; of an outline that failed, one that passed takes the place. Strokes are flattened within `tolerance`
@@ -67,6 +68,7 @@ class Outliner:
             message = _message(rev, read, tiles, unfit, proved=True)
             operations = [document["operations"] for document in message["tiles"]]
             message["colouring"] = self.colourist.colour(tiles[0].tessellation, operations)
+            message["art"] = art_document(read)
             yield Said(_timed(message, begun))
             return
         read, tiles = _tiles(design, tolerance)

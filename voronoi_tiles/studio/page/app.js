@@ -51,7 +51,6 @@ const store = new Store({
     apart: 0.2,
     turnsSolids: true,
     unit: "mm",
-    shown: { elements: true, cell: true, grid: false, copies: true, region: false, colours: true, edges: true },
     theme: "",
     trace: NO_TRACE,
     connected: true,
@@ -59,7 +58,16 @@ const store = new Store({
     dragging: false,
     pointer: null,
     trouble: null,
-    ...habits(),
+    ...habits({
+        elements: true,
+        cell: true,
+        grid: false,
+        copies: true,
+        region: false,
+        colours: true,
+        edges: true,
+        art: true,
+    }),
 });
 
 const stage = new Stage(

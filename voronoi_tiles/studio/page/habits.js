@@ -17,12 +17,15 @@ export function kept(name) {
     }
 }
 
-/** How the page looked last time, as far as that makes sense. */
-export function habits() {
+/**
+ * How the page looked last time, as far as that makes sense. What it did not have then is as it is without habits.
+ * @param {import("./store.js").State["shown"]} shown
+ */
+export function habits(shown) {
     const own = Object.fromEntries(
         Object.entries(kept(NAME) ?? {}).filter(([key]) => /** @type {string[]} */ (HABITS).includes(key)),
     );
-    return { ...own, letters: lettersOf(own.letters) };
+    return { ...own, shown: { ...shown, ...own.shown }, letters: lettersOf(own.letters) };
 }
 
 /** Keep how the page looks. @param {import("./store.js").Store} store */

@@ -24,6 +24,8 @@ import { unpacked } from "./model/solids.js";
  * @property {Tile[]} tiles
  * @property {Record<string, string>} [resolved] path data of strokes that are files, by "site.stroke"
  * @property {any} [colouring]
+ * @property {{paths: Record<string, string>, trouble: import("./store.js").Trouble | null} | null} art path data by
+ *     sites, and why there are none of one; of the design as it was at rest last
  * @property {number} ms
  * @property {Design} design that it is of
  * @property {number | undefined} after the revision of the one before
@@ -280,7 +282,7 @@ export class Link {
                 if (!exact || message.rev >= exact.rev) {
                     const design = this.#designs.get(message.rev) ?? this.#store.state.design;
                     this.#store.set({
-                        exact: { ...message, design, after: exact?.rev },
+                        exact: { ...message, design, after: exact?.rev, art: message.art ?? exact?.art ?? null },
                         refusal: refusal && refusal.rev > message.rev ? refusal : null,
                         ...(message.proved ? { proved: message.rev } : {}),
                     });

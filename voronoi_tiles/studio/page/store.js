@@ -35,7 +35,7 @@ import { UNLAID } from "./model/tracing.js";
  * @property {number} apart by which share of their distance neighbours of the solid are pulled away
  * @property {boolean} turnsSolids whether they can be turned here: whether there is WebGL
  * @property {"mm" | "cm" | "in"} unit in which lengths are shown
- * @property {{elements: boolean, cell: boolean, grid: boolean, copies: boolean, region: boolean, colours: boolean, edges: boolean}} shown
+ * @property {{elements: boolean, cell: boolean, grid: boolean, copies: boolean, region: boolean, colours: boolean, edges: boolean, art: boolean}} shown
  * @property {"" | "light" | "dark"} theme empty: as the system is
  * @property {import("./tools/letters.js").Letters} letters of tools, where the user has given them others
  * @property {Trace} trace a picture that is traced

@@ -22,7 +22,10 @@ function proofOf({ exact, proved, refusal, revision, connected, behind, dragging
     if (proved !== exact.rev && !(dragging && proved === exact.after)) {
         return ["proving", "exact, proof follows"];
     }
-    return exact.unfit ? ["refused", "proved, but it cannot stand"] : ["proved", "proved"];
+    if (exact.unfit) {
+        return ["refused", "proved, but it cannot stand"];
+    }
+    return ["proved", exact.art?.trouble ? "proved, but without its art" : "proved"];
 }
 
 const LOST = {
@@ -37,7 +40,7 @@ const LOST = {
 function whyNoTile({ design, refusal, exact }) {
     const bare = design.site.findIndex((site) => !site.strokes.length);
     if (!refusal || bare < 0) {
-        return refusal?.error ?? exact?.unfit ?? null;
+        return refusal?.error ?? exact?.unfit ?? exact?.art?.trouble ?? null;
     }
     const what = design.site.length > 1 ? `${siteNames(design)[bare]} has no stroke yet` : "Nothing is drawn yet";
     return { message: what, remedy: "Take the pen or another tool and draw.", quiet: true };

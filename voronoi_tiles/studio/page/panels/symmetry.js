@@ -16,6 +16,7 @@ import { tracePart } from "./trace.js";
 const SHOWN = [
     ["colours", "Coloured tiles"],
     ["edges", "Exact edges"],
+    ["art", "Art"],
     ["copies", "Copies of the strokes (K)"],
     ["elements", "Mirrors, glides, centres (E)"],
     ["cell", "Cell"],

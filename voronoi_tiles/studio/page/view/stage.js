@@ -44,6 +44,9 @@ export class Stage {
     /** @type {State["exact"]} the outlines that were drawn last */
     shownExact = null;
     #paths = new Outlines();
+    #artPaths = new Outlines();
+    /** @type {Kept<{path: string, operations: readonly number[]}[]>} */
+    #artTiles = new Kept();
     /** @type {any} what the preview has drawn last */
     #previewed = null;
     /** @type {any} the sites that the preview could not draw */
@@ -235,8 +238,10 @@ export class Stage {
     #drawOutlines(state, filled) {
         const { camera } = this;
         const outlines = this.#outlines(state, filled);
-        const looks = outlines ? Object.values(outlines.style).flat() : [];
-        const causes = [outlines?.copies, ...looks, state.trace, camera.scale, ...camera.centre, ...this.#pixels];
+        const art = this.#art(state);
+        const looks = [outlines, art].flatMap((drawn) => (drawn ? Object.values(drawn.style).flat() : []));
+        const shown = [outlines?.copies, art?.copies, ...looks];
+        const causes = [...shown, state.trace, camera.scale, ...camera.centre, ...this.#pixels];
         this.#drawn.get(causes, () => {
             const { outlines: lines, tiles } = this.#contexts;
             tiles.canvas.hidden = !outlines?.style.fill;
@@ -248,6 +253,9 @@ export class Stage {
             drawTrace(context, camera, state.trace);
             if (outlines?.style.line) {
                 strokeCopies(context, camera, outlines.copies, outlines.style);
+            }
+            if (art) {
+                strokeCopies(context, camera, art.copies, art.style);
             }
         });
     }
@@ -309,6 +317,28 @@ export class Stage {
             fill: filled ? (this.#colouring ?? true) : null,
         };
         const copies = this.#paths.copies(this.camera, lattice, motions, exact.tiles, style);
+        return copies && { copies, style };
+    }
+
+    /** The art on all copies of the tiles; null where there is none. @param {State} state */
+    #art({ exact, shown }) {
+        const paths = Object.entries(exact?.art?.paths ?? {});
+        if (!exact || !shown.art || !paths.length) {
+            return null;
+        }
+        const found = paths.flatMap(([site, path]) => {
+            const operations = exact.tiles[Number(site)]?.operations;
+            return operations ? [{ path, operations }] : [];
+        });
+        // Outlines come with every step of the pointer; what is drawn in them stays.
+        const tiles = this.#artTiles.get(
+            [exact.art, JSON.stringify(found.map((tile) => tile.operations))],
+            () => found,
+        );
+        const { lattice, motions } = this.symmetry(exact.design);
+        const colour = getComputedStyle(document.documentElement).getPropertyValue("--text").trim();
+        const style = { scale: exact.scale, line: 0.8, colour, dark: this.dark };
+        const copies = this.#artPaths.copies(this.camera, lattice, motions, tiles, style);
         return copies && { copies, style };
     }
 
