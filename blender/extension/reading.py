@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from voronoi_tiles.blender.drawn_splines import DrawnSpline, nurbs_knots
+from voronoi_tiles.blender.drawn_splines import DrawnSpline, nurbs
 from voronoi_tiles.blender.drawn_tiling import DrawnTiling, decimal
 
 from .settings import DRAWN
@@ -118,8 +118,8 @@ def _spline(spline: Any, to_plane: Any) -> DrawnSpline:
     if spline.type == "POLY":
         return DrawnSpline("poly", points, closed)
     order = min(spline.order_u, len(points))
-    knots = nurbs_knots(len(points), order, closed=closed, clamped=spline.use_endpoint_u, bezier=spline.use_bezier_u)
-    return DrawnSpline("nurbs", points, closed, order=order, weights=weights, knots=knots)
+    modes = {"closed": closed, "clamped": bool(spline.use_endpoint_u), "bezier": bool(spline.use_bezier_u)}
+    return nurbs(points, weights, order, **modes)
 
 
 def _read(points: Any, name: str, size: int) -> Any:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -12,12 +15,12 @@ from hypothesis import strategies as st
 from scipy.interpolate import BSpline
 
 from voronoi_tiles.base.arrays import Complexes, plane
-from voronoi_tiles.blender.drawn_splines import DrawnSpline, nurbs_knots, strokes_of
+from voronoi_tiles.blender.drawn_splines import DrawnSpline, nurbs, strokes_of
 
 CURVE = np.array([1 + 1j, 4 + 2j, 6 + 7j])
 LEFT, RIGHT = CURVE - (1 - 0.5j), CURVE + (1 - 0.5j)
 
-ROWS = st.lists(st.complex_numbers(max_magnitude=50.0, allow_nan=False), min_size=1, max_size=60)
+ROWS = st.lists(st.complex_numbers(max_magnitude=50.0, allow_nan=False, allow_subnormal=False), min_size=1, max_size=60)
 
 
 def table(spline: DrawnSpline, smoothing: float = 0.1) -> dict[str, Any]:
@@ -87,31 +90,82 @@ def test_smoothing_leaves_out_what_it_may() -> None:
     assert len(points_of(table(DrawnSpline("freehand", row), 0.004)["catmull_rom"])) > 20
 
 
-def along(spline: DrawnSpline, count: int) -> Complexes:
-    """Points along a NURBS by scipy: the quotient of two splines."""
+def along(spline: DrawnSpline) -> Complexes:
+    """Points along a NURBS by scipy, as many from each knot to the next: the quotient of two splines."""
     degree = spline.order - 1
     points, weights = spline.points, spline.weights
     if spline.closed:
         points, weights = np.append(points, points[:degree]), np.append(weights, weights[:degree])
-    t = np.linspace(spline.knots[degree], spline.knots[len(points)], count)
+    breaks = sorted({*spline.knots[degree : len(points) + 1]})
+    steps = math.ceil(16 * len(spline.points) / (len(breaks) - 1))
+    t = np.unique([low + (high - low) * k / steps for low, high in pairwise(breaks) for k in range(steps + 1)])
+    t[-1] = np.nextafter(t[-1], 0.0)  # where more knots are the same than the degree, scipy is beyond them
     top = [BSpline(spline.knots, part * weights, degree)(t) for part in (points.real, points.imag)]
     return np.asarray((top[0] + 1j * top[1]) / BSpline(spline.knots, weights, degree)(t))
 
 
-@pytest.mark.parametrize("order", [2, 3, 4, 5])
-@pytest.mark.parametrize(("closed", "clamped"), [(False, False), (False, True), (True, False)])
+def random_nurbs(order: int, closed: bool, clamped: bool, bezier: bool = False) -> DrawnSpline:
+    """A NURBS curve of random points and weights, with Blender's knots."""
+    rng = np.random.default_rng(order)
+    points = rng.normal(size=12) + 1j * rng.normal(size=12)
+    return nurbs(points, rng.uniform(0.5, 2, 12), order, closed=closed, clamped=clamped, bezier=bezier)
+
+
+KINDS = [(False, False), (False, True), (True, False)]
+"""Of NURBS: closed, and clamped."""
+
+
+@pytest.mark.parametrize("order", [3, 4, 5])
+@pytest.mark.parametrize(("closed", "clamped"), KINDS)
 def test_nurbs_are_followed(order: int, closed: bool, clamped: bool) -> None:
     """What is drawn goes through points of the curve, weights minded, and is never farther from it than it may be."""
-    rng = np.random.default_rng(order)
-    points = rng.normal(size=8) + 1j * rng.normal(size=8)
-    knots = nurbs_knots(8, order, closed=closed, clamped=clamped, bezier=False)
-    spline = DrawnSpline("nurbs", points, closed, order=order, weights=rng.uniform(0.5, 2, 8), knots=knots)
+    spline = random_nurbs(order, closed, clamped)
     found = table(spline, 1e-9)
-    kept = np.array(points_of(found["catmull_rom"]))
-    exact = along(spline, 16 * 8 + 1)
+    kept, exact = np.array(points_of(found["catmull_rom"])), along(spline)
     assert np.abs(kept[:, None] - exact).min(axis=1).max() < 1e-12
-    assert np.abs(exact[:, None] - kept).min(axis=1).max() < (1e-12 if order > 2 else np.inf)
+    assert np.abs(exact[:, None] - kept).min(axis=1).max() < 1e-12
     assert found.get("closed", False) is closed
     if not closed and clamped:
-        assert abs(kept[0] - points[0]) < 1e-12
-        assert abs(kept[-1] - points[-1]) < 1e-12
+        assert abs(kept[0] - spline.points[0]) < 1e-12
+        assert abs(kept[-1] - spline.points[-1]) < 1e-12
+
+
+@pytest.mark.parametrize(("closed", "clamped"), KINDS)
+def test_nurbs_of_order_2_are_polylines(closed: bool, clamped: bool) -> None:
+    """With all of their corners, whatever the weights; Blender before 5.0 draws them without."""
+    spline = random_nurbs(2, closed, clamped)
+    found = table(spline, 0.5)
+    assert points_of(found["polyline"]) == spline.points.tolist()
+    assert found.get("closed", False) is closed
+
+
+@pytest.mark.parametrize("order", [3, 4])
+@pytest.mark.parametrize(("closed", "clamped"), KINDS)
+def test_nurbs_keep_their_corners(order: int, closed: bool, clamped: bool) -> None:
+    """Those of Bezier knots: pieces end there, one where the next begins, each as smooth as it is drawn."""
+    spline = random_nurbs(order, closed, clamped, bezier=True)
+    pieces = [np.array(points_of(next(iter(one.table.values())))) for one in strokes_of([spline], 1e-9)]
+    exact, drawn = along(spline), np.concatenate(pieces)
+    assert len(pieces) > 1
+    assert all(abs(one[-1] - other[0]) < 1e-12 for one, other in pairwise(pieces))
+    assert not closed or abs(pieces[-1][-1] - pieces[0][0]) < 1e-12
+    assert np.abs(drawn[:, None] - exact).min(axis=1).max() < 1e-12
+    assert np.abs(exact[:, None] - drawn).min(axis=1).max() < 1e-12
+
+    end = len(spline.points) + (order - 1) * closed
+    (first, *inner, last), count = sorted({*spline.knots[order - 1 : end + 1]}), Counter(spline.knots)
+    corners = [exact[round((t - first) / (last - first) * (len(exact) - 1))] for t in inner if count[t] >= order - 1]
+    ends = np.array([piece[-1] for piece in pieces])
+    assert len(corners) > 1
+    assert all(np.abs(ends - corner).min() < 1e-12 for corner in corners)
+
+
+@pytest.mark.parametrize(
+    ("count", "order", "closed", "clamped"), [(7, 3, True, False), (8, 4, True, True), (5, 5, False, False)]
+)
+def test_what_blender_cannot_draw_is_the_row_of_its_points(count: int, order: int, closed: bool, clamped: bool) -> None:
+    """Closed Bezier curves whose points are no multiple of the degree, and those of less than one piece."""
+    points = np.exp(1j * np.arange(count)) * np.arange(1, count + 1)
+    found = table(nurbs(points, np.ones(count), order, closed=closed, clamped=clamped, bezier=True))
+    assert points_of(found["polyline"]) == points.tolist()
+    assert found.get("closed", False) is closed

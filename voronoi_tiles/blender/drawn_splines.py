@@ -37,8 +37,8 @@ class DrawnSpline(NamedTuple):
 def strokes_of(splines: Iterable[DrawnSpline], smoothing: float) -> list[Stroke]:
     """The strokes that splines are: Bezier splines exactly, polylines without repeated points.
 
-    What is drawn by hand, and NURBS, are Catmull-Rom curves through some of their points: the others are within
-    `smoothing` (in units) of the chords between these.
+    What is drawn by hand, and NURBS from corner to corner, are Catmull-Rom curves through some of their points: the
+    others are within `smoothing` (in units) of the chords between these. NURBS of order 2 are polylines.
     """
     return [stroke for spline in splines for stroke in _stroke(spline, smoothing)]
 
@@ -48,15 +48,22 @@ def _stroke(spline: DrawnSpline, smoothing: float) -> list[Stroke]:
     points, closed = spline.points, spline.closed
     if spline.kind == "bezier":
         return _bezier(spline)
-    if spline.kind == "nurbs":
-        if len(points) < spline.order:  # Blender draws nothing of it
-            return []
-        points, closed = _along_nurbs(spline), spline.closed
+    if spline.kind == "nurbs" and len(points) < spline.order:  # Blender draws nothing of it
+        return []
+    if spline.kind == "nurbs" and spline.order > 2:
+        pieces = _along_nurbs(spline)
+        return [stroke for piece in pieces for stroke in _smooth(piece, closed and len(pieces) == 1, smoothing)]
+    if spline.kind == "freehand":
+        return _smooth(points, closed, smoothing)
+    points, closed = _without_repeats(points, closed)
+    return [polyline(points, closed=closed)] if len(points) > 1 else [point(complex(place)) for place in points]
+
+
+def _smooth(points: Complexes, closed: bool, smoothing: float) -> list[Stroke]:
+    """A smooth curve through some of many points."""
     points, closed = _without_repeats(points, closed)
     if len(points) < 2:
         return [point(complex(place)) for place in points]
-    if spline.kind == "poly":
-        return [polyline(points, closed=closed)]
     kept = points[_simplified(points, closed, smoothing)]
     return [catmull_rom(kept, closed=closed)] if len(kept) > 2 else [polyline(kept)]
 
@@ -96,7 +103,8 @@ def _simplified(points: Complexes, closed: bool, tolerance: float) -> Bools:
             continue
         chord = points[last] - points[first]
         inner = points[first + 1 : last] - points[first]
-        t = (inner * chord.conjugate()).real / abs(chord) ** 2 if chord else np.zeros(len(inner))
+        square = abs(chord) ** 2
+        t = (inner * chord.conjugate()).real / square if square > 0.0 else np.zeros(len(inner))
         away = np.abs(inner - np.clip(t, 0.0, 1.0) * chord)
         k = int(away.argmax())
         if away[k] > tolerance:
@@ -105,15 +113,23 @@ def _simplified(points: Complexes, closed: bool, tolerance: float) -> Bools:
     return kept
 
 
-def _along_nurbs(spline: DrawnSpline) -> Complexes:
-    """Points along a NURBS curve, by the recursion of Cox and de Boor for rational splines."""
+def _along_nurbs(spline: DrawnSpline) -> list[Complexes]:
+    """Points along a NURBS curve, by the recursion of Cox and de Boor for rational splines.
+
+    There is one at each knot: a row of points from one to the next of those at which the curve may have a corner. Of a
+    closed curve that has none, it is one row without its end, which is where it begins.
+    """
     degree = spline.order - 1
     points, weights = spline.points, spline.weights
     if spline.closed:
         points, weights = np.append(points, points[:degree]), np.append(weights, weights[:degree])
     knots, count = spline.knots, len(points)
-    t = np.linspace(knots[degree], knots[count], NURBS_STEPS * len(spline.points) + 1)
-    span = np.clip(np.searchsorted(knots, t, side="right") - 1, degree, count - 1)
+    breaks, repeats = np.unique(knots[degree : count + 1], return_counts=True)
+    steps = -(-NURBS_STEPS * len(spline.points) // (len(breaks) - 1))
+    t = np.append(np.linspace(breaks[:-1], breaks[1:], steps, endpoint=False, axis=1), breaks[-1])
+    # The end is that of the last span that is longer than nothing.
+    last = int(np.searchsorted(knots, breaks[-1])) - 1
+    span = np.clip(np.searchsorted(knots, t, side="right") - 1, degree, last)
     index = span[:, None] + np.arange(-degree, 1)
     homogeneous = np.stack((points * weights, weights.astype(np.complex128)), axis=-1)[index]
     for level in range(1, degree + 1):
@@ -122,7 +138,27 @@ def _along_nurbs(spline: DrawnSpline) -> Complexes:
             part = (t - low) / np.where(high > low, high - low, 1.0)
             homogeneous[:, j] = (1 - part)[:, None] * homogeneous[:, j - 1] + part[:, None] * homogeneous[:, j]
     along = homogeneous[:, degree, 0] / homogeneous[:, degree, 1]
-    return np.asarray(along[:-1] if spline.closed else along)
+    corners = (np.flatnonzero(repeats[1:-1] >= degree) + 1) * steps
+    pieces = [along[first : last + 1] for first, last in pairwise([0, *corners.tolist(), len(along) - 1])]
+    if not spline.closed:
+        return pieces
+    if len(pieces) == 1:
+        return [along[:-1]]
+    if np.count_nonzero(knots == knots[degree]) < degree:  # it begins within a piece
+        return [*pieces[1:-1], np.concatenate((pieces[-1], pieces[0][1:]))]
+    return pieces
+
+
+def nurbs(points: Complexes, weights: Floats, order: int, *, closed: bool, clamped: bool, bezier: bool) -> DrawnSpline:
+    """A NURBS spline as Blender draws it.
+
+    It is the row of its control points where these do not make whole pieces of a closed Bezier curve, or none at all.
+    """
+    knots = nurbs_knots(len(points), order, closed=closed, clamped=clamped, bezier=bezier)
+    whole = not (closed and bezier and len(points) % (order - 1))
+    if not whole or knots[order - 1] == knots[len(points)]:
+        return DrawnSpline("poly", points, closed)
+    return DrawnSpline("nurbs", points, closed, order=order, weights=weights, knots=knots)
 
 
 def nurbs_knots(count: int, order: int, *, closed: bool, clamped: bool, bezier: bool) -> Floats:

@@ -8,19 +8,25 @@ reading = module("reading")
 from voronoi_tiles.blender.drawn_splines import _along_nurbs
 
 off = {}
-for order, flags in [
-    (3, {}),
-    (4, {}),
-    (5, {"use_endpoint_u": True}),
-    (4, {"use_cyclic_u": True}),
-    (2, {}),
-    (4, {"use_endpoint_u": True}),
-    (4, {"use_bezier_u": True, "use_endpoint_u": True}),
+for order, flags, count in [
+    (3, {}, 7),
+    (4, {}, 7),
+    (5, {"use_endpoint_u": True}, 7),
+    (4, {"use_cyclic_u": True}, 7),
+    (4, {"use_endpoint_u": True}, 7),
+    (4, {"use_bezier_u": True, "use_endpoint_u": True}, 7),
+    (3, {"use_bezier_u": True}, 7),
+    # Bezier curves that are closed by as many points as they need, and that are not.
+    (3, {"use_bezier_u": True, "use_cyclic_u": True}, 8),
+    (3, {"use_bezier_u": True, "use_cyclic_u": True}, 7),
+    (4, {"use_bezier_u": True, "use_cyclic_u": True, "use_endpoint_u": True}, 9),
+    (4, {"use_bezier_u": True, "use_cyclic_u": True}, 8),
+    (5, {"use_bezier_u": True}, 5),
 ]:
     curve = bpy.data.curves.new("nurbs", "CURVE")
     curve.dimensions = "3D"
     spline = curve.splines.new("NURBS")
-    spline.points.add(6)
+    spline.points.add(count - 1)
     for k, point in enumerate(spline.points):
         point.co = (k + 0.3 * (k % 3), (k * k) % 5, 0, 1 + k % 2)
     spline.order_u = order
@@ -33,14 +39,14 @@ for order, flags in [
     mesh = item.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
     drawn = np.array([complex(v.co.x, v.co.y) for v in mesh.vertices])
     (read,) = reading.splines(item, np.eye(4))
-    ours = _along_nurbs(read)
+    ours = read.points if read.kind == "poly" else np.concatenate(_along_nurbs(read))
     # The chords of Blender's own are short: each of our points is on one, and its ends are ours.
     chords = np.column_stack((drawn, np.roll(drawn, -1)))[: None if flags.get("use_cyclic_u") else -1]
     t = ((ours[:, None] - chords[:, 0]) * (chords[:, 1] - chords[:, 0]).conj()).real
     t = np.clip(t / np.maximum(np.abs(chords[:, 1] - chords[:, 0]) ** 2, 1e-30), 0, 1)
     away = np.abs(ours[:, None] - chords[:, 0] - t * (chords[:, 1] - chords[:, 0])).min(axis=1).max()
     ends = 0.0 if flags.get("use_cyclic_u") else max(abs(ours[0] - drawn[0]), abs(ours[-1] - drawn[-1]))
-    off[f"{order} {' '.join(flags)}"] = [float(away), float(ends)]
+    off[f"{order} {' '.join(flags)} {count}"] = [float(away), float(ends)]
     bpy.data.objects.remove(item)
 
 # Grease pencil, in whichever way this Blender has it.
