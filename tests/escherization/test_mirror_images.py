@@ -67,6 +67,16 @@ def test_what_is_drawn_by_hand_is_made_symmetric() -> None:
         vt.fit(beetle(0.4, noise=2.0), symmetric=True)
 
 
+@pytest.mark.parametrize("right", [[25 - 30j, 1e-3 + 0j, 25 + 30j], [25 - 30j, 25 + 30j, 15 + 30j, 15 - 18j]])
+def test_thin_outlines_are_fitted_where_a_stroke_is_left(right: list[complex]) -> None:
+    """An hourglass and a horseshoe: drawn apart, copies of some placements leave nothing on the axis."""
+    corners = np.array(right)
+    outline = np.concatenate((corners, -corners[::-1].conj()))
+    found = vt.fit(outline, symmetric=True, groups=["p1", "p2"], keep=4, strokes="outline")
+    assert found
+    assert all(each.symmetric for each in found)
+
+
 @pytest.mark.parametrize(("rays", "kinds"), [(2, 2), (3, 1), (4, 2), (5, 1), (6, 2)])
 def test_of_several_axes_each_kind_is_taken_once(rays: int, kinds: int) -> None:
     """Stars: those of an odd number of rays have axes of one kind alone, of which two do no harm."""
