@@ -23,6 +23,76 @@ FREE = ("p1", "p2", "p3", "p4", "p6", "pg", "pgg")
 HALF = np.array([0j, 3 + 6j, 12 + 14j, 22 + 10j, 30 + 18j, 44 + 15j, 40 + 6j, 52 + 4j, 55 + 0j])
 
 
+LATTICES = [
+    *((name, sides) for name in ("p1", "p2") for sides in (1.37j, 0.5 + 0.83j, 0.5 + 1.9j)),
+    *((name, sides) for name in ("pg", "pgg") for sides in (1.37j, 1j)),
+    *(("p4", 1j), ("p3", -0.5 + math.sqrt(0.75) * 1j), ("p6", -0.5 + math.sqrt(0.75) * 1j)),
+]
+"""Groups and b, where a is 1: all that have mirrors, as kinds."""
+
+
+def moved(z: complex, unit: complex, shift: complex, conjugated: bool, *, apart: bool = False) -> complex:
+    """A point, or a direction, moved by unit z + shift, or unit conj(z) + shift."""
+    return unit * (z.conjugate() if conjugated else z) + (0.0 if apart else shift)
+
+
+def taken(
+    unit: complex, shift: complex, by: complex, along: complex, conjugated: bool, *, conj: bool = True
+) -> tuple[complex, complex]:
+    """What a motion makes of another one, unit conj(z) + shift, or unit z + shift: m o it o m^-1."""
+
+    def image(z: complex) -> complex:
+        back = (z - along) / by
+        back = back.conjugate() if conjugated else back
+        return moved(moved(back, unit, shift, conj), by, along, conjugated)
+
+    return image(1 + 0j) - image(0j), image(0j)
+
+
+class FloatGroup:
+    """A group by its table's general positions and the lattice 1, b, in floating point."""
+
+    def __init__(self, name: str, b: complex) -> None:
+        self.b = b
+        self.members: list[tuple[complex, complex, bool]] = []
+        for operation in vt.GROUPS[name].operations:
+            p, q, r, s = operation.linear
+            shift = float(operation.translation[0]) + float(operation.translation[1]) * b
+            unit, conj = p + r * b, p * s - q * r < 0
+            assert abs(moved(b, unit, 0j, conj) - (q + s * b)) < 1e-9
+            self.members.append((unit, shift, conj))
+
+    def on_lattice(self, z: complex) -> bool:
+        """Whether a vector is one of the lattice's."""
+        j = z.imag / self.b.imag
+        i = (z - j * self.b).real
+        return abs(i - round(i)) + abs(j - round(j)) < 1e-6
+
+    def same(self, unit: complex, shift: complex, other: complex, further: complex) -> bool:
+        """Whether two reflections are one but for where in the lattice their line is."""
+        if abs(unit - other) > 1e-6:
+            return False
+        steps = [i + j * self.b for i in range(-3, 4) for j in range(-3, 4)]
+        return any(abs(shift + step - unit * step.conjugate() - further) < 1e-6 for step in steps)
+
+    def keeps(self, unit: complex, shift: complex, *, conjugated: bool) -> bool:
+        """Whether a motion takes the group to itself."""
+        if not all(self.on_lattice(moved(side, unit, 0j, conjugated)) for side in (1 + 0j, self.b)):
+            return False
+        for own, along, conj in self.members:
+            image, by = taken(own, along, unit, shift, conjugated, conj=conj)
+            if not any(conj == c and abs(image - u) < 1e-6 and self.on_lattice(by - v) for u, v, c in self.members):
+                return False
+        return True
+
+    def motions(self, grid: int, *, conjugated: bool) -> list[tuple[complex, complex]]:
+        """All motions that take the group to itself, by shifts on a grid of the cell."""
+        near = [i + j * self.b for i in range(-3, 4) for j in range(-3, 4)]
+        units = [z for z in near if abs(abs(z) - 1.0) < 1e-9]  # where a may go to
+        shifts = [(i + j * self.b) / grid for i in range(grid) for j in range(grid)]
+        return [(u, s) for u in units for s in shifts if self.keeps(u, s, conjugated=conjugated)]
+
+
 def beetle(turn: float = 0.0, place: complex = 0j, noise: float = 0.0, seed: int = 3) -> Complexes:
     """An outline that is its own mirror image about a line at an angle, but for noise of its corners."""
     corners = np.concatenate((HALF, HALF[-2:0:-1].conj()))
@@ -122,7 +192,7 @@ def test_mirrored_placements_have_copies_that_are_mirror_images_together(name: s
     points = np.array([1.0, 0.3 + 0.4j, 0.3 - 0.4j, -0.5 + 0.7j, -0.5 - 0.7j]) * cmath.exp(0.8j)
     dice = np.random.default_rng(1)
     rows = mirror_rows(vt.GROUPS[name], 0.8, 1.0)
-    assert len(rows) == 2 * len(mirror_lines(vt.GROUPS[name]))
+    assert len(rows) == len(mirror_lines(vt.GROUPS[name]))
     for among in rows:
         free = among.low + (among.high - among.low) * dice.random(len(among.low))
         placement = among.placement(free)
@@ -132,6 +202,34 @@ def test_mirrored_placements_have_copies_that_are_mirror_images_together(name: s
         assert np.abs(axis.mirrored(near)[:, None] - far).min(axis=1).max() < 1e-9
         beside = MirrorAxis(placement.centre + 0.05j * axis.direction, axis.direction)
         assert np.abs(beside.mirrored(near)[:, None] - far).min(axis=1).max() > 0.01
+
+
+def test_every_line_about_which_a_group_is_its_own_mirror_image_is_looked_at() -> None:
+    """All reflections on a fine grid of a cell that take a group to itself, found in floating point from the tables.
+
+    A motion that keeps the group takes each to one that is looked at, and one turns that end for end.
+    """
+    for name, sides in LATTICES:
+        group = FloatGroup(name, sides)
+        # A mirror moves by twice as much as its line: half of the grid. No glides.
+        mirrors = [each for each in group.motions(6, conjugated=True) if abs(moved(each[1], *each, True)) < 1e-9]
+        moves = [(*move, conj) for conj in (False, True) for move in group.motions(12, conjugated=conj)]
+        looked_at = []
+        for line in mirror_lines(vt.GROUPS[name]):
+            skewed = vt.GROUPS[name].system != "oblique" or line.skew == sides.real
+            if skewed and (sides == 1j or vt.GROUPS[name].system != "rectangular" or not line.diagonal):
+                x, y = map(float, line.point)
+                along = complex(line.direction[0] + line.direction[1] * sides)
+                unit = along / along.conjugate()
+                looked_at.append((unit, x + y * sides - unit * (x + y * sides).conjugate(), along))
+        assert len(mirrors) >= len(looked_at) > 0
+        for unit, shift, along in looked_at:
+            assert group.keeps(unit, shift, conjugated=True)
+            back = [move for move in moves if abs(moved(along, *move, apart=True) + along) < 1e-9]
+            assert any(group.same(*taken(unit, shift, *move), unit, shift) for move in back)
+        for unit, shift in mirrors:
+            images = [taken(unit, shift, *move) for move in moves]
+            assert any(group.same(*image, *each[:2]) for image in images for each in looked_at), (name, sides, unit)
 
 
 def test_groups_with_mirrors_are_left_to_those_without() -> None:

@@ -28,11 +28,12 @@ _RIGHT: Final = ((1, 0), (0, 1))
 _DIRECTIONS: Final = {
     ("oblique", 0.0): _RIGHT,
     ("oblique", 0.5): ((1, 0), (1, -2)),
-    ("rectangular", 0.0): _RIGHT,
+    ("rectangular", 0.0): (*_RIGHT, (1, 1), (1, -1)),
     ("square", 0.0): (*_RIGHT, (1, 1), (1, -1)),
     ("hexagonal", 0.0): (*_RIGHT, (1, 1), (1, -1), (1, 2), (2, 1)),
 }
-"""In which directions lattices have mirrors, in the cell's sides, by the system and the real part of b / a."""
+"""In which directions lattices have mirrors, in the cell's sides, by the system and the real part of b / a. Diagonals of
+a rectangle are some where it is a square."""
 
 
 class MirrorLine(NamedTuple):
@@ -46,12 +47,28 @@ class MirrorLine(NamedTuple):
     direction: tuple[int, int]
     skew: float
 
+    def lattice(self, group: WallpaperGroup) -> Lattice:
+        """Some lattice of a group that has the line as a mirror."""
+        shape = {"oblique": [self.skew, 0.1], "rectangular": [0.0 if self.diagonal else 0.1]}.get(group.system, [])
+        a, b = (complex(side[0]) for side in sides(group, np.array([shape])))
+        return Lattice(a, b)
+
+    def angle(self, group: WallpaperGroup) -> float:
+        """Its direction in radians."""
+        return cmath.phase(self.lattice(group).cartesian(*self.direction))
+
+    @property
+    def diagonal(self) -> bool:
+        """Whether it runs along neither side of the cell."""
+        return 0 not in self.direction
+
 
 def mirror_rows(group: WallpaperGroup, axis: float, width: float) -> list[PlacementRows]:
     """The placements of an outline with an axis at an angle, through its centroid, that keep mirror images.
 
     The angle is in radians; `width` is the least width of the outline. None of groups that have mirrors themselves:
     rotations and translations alone make the same copies of what is its own mirror image, in a group that has none.
+    Turned by half a turn about a point of the line, a placement is another one of these.
     """
     longest = longest_cell(group, width)
     found: list[PlacementRows] = []
@@ -65,14 +82,13 @@ def mirror_rows(group: WallpaperGroup, axis: float, width: float) -> list[Placem
         if place:
             basis.append((0.0, *line.direction, *(0.0 for _ in shape)))
             bounds.append((0.0, 1.0))
-        if shape:
+        if shape and not (group.system == "rectangular" and line.diagonal):
             basis.append((*(0.0 for _ in (*place, *shape)), 1.0))
             bounds.append((math.log(1.0 - line.skew) if group.system == "oblique" else -longest, longest))
         low, high = np.array(bounds).T
         periodic = np.arange(len(basis)) < (1 if place else 0)
-        for turn in (0.0, math.pi):
-            origin = np.array([_angle(group, line) - axis + turn, *place, *shape])
-            found.append(PlacementRows(group, origin, np.array(basis), low, high, periodic))
+        origin = np.array([line.angle(group) - axis, *place, *shape])
+        found.append(PlacementRows(group, origin, np.array(basis), low, high, periodic))
     return found
 
 
@@ -90,7 +106,6 @@ def mirror_lines(group: WallpaperGroup) -> tuple[MirrorLine, ...]:
     shifts = [(x, y) for x, y in product(grid, repeat=2) if _keeps(Operation((1, 0, 0, 1), (x, y)), own)]
     found: list[MirrorLine] = []
     for skew in (0.0, 0.5) if group.system == "oblique" else (0.0,):
-        lattice = _lattice(group, skew)
         seen: set[tuple[int, int]] = set()
         for p, q in _DIRECTIONS[group.system, skew]:
             if (p, q) in seen:
@@ -98,6 +113,7 @@ def mirror_lines(group: WallpaperGroup) -> tuple[MirrorLine, ...]:
             seen |= {(s * (a * p + b * q), s * (c * p + d * q)) for a, b, c, d in linear for s in (1, -1)}
             moves = {(q * x - p * y) % 1 for x, y in shifts}
             offsets: set[Fraction] = set()
+            lattice = MirrorLine((Fraction(0), Fraction(0)), (p, q), skew).lattice(group)
             for offset in grid:
                 point = (offset / q, Fraction(0)) if q else (Fraction(0), -offset / p)
                 mirror = _reflection(lattice, point, (p, q))
@@ -113,13 +129,6 @@ def _keeps(operation: Operation, group: set[Operation]) -> bool:
     return all((operation @ each @ inverse).reduced() in group for each in group)
 
 
-def _lattice(group: WallpaperGroup, skew: float) -> Lattice:
-    """Some lattice of a group, with this real part of b / a where it is an oblique one."""
-    cell = [skew, 0.1] if group.system == "oblique" else [0.1]
-    a, b = (complex(side[0]) for side in sides(group, np.array([cell])))
-    return Lattice(a, b)
-
-
 def _reflection(lattice: Lattice, point: tuple[Fraction, Fraction], direction: tuple[int, int]) -> Operation:
     """The reflection about a line of a lattice, by a point and a direction in fractions of the cell."""
     along = lattice.cartesian(*direction)
@@ -127,8 +136,3 @@ def _reflection(lattice: Lattice, point: tuple[Fraction, Fraction], direction: t
     (a, c), (b, d) = (tuple(map(round, lattice.fractional(unit * side.conjugate()))) for side in (lattice.a, lattice.b))
     x, y = point
     return Operation((a, b, c, d), (x - a * x - b * y, y - c * x - d * y))
-
-
-def _angle(group: WallpaperGroup, line: MirrorLine) -> float:
-    """The direction of a line, in radians."""
-    return cmath.phase(_lattice(group, line.skew).cartesian(*line.direction))
