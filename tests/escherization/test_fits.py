@@ -146,6 +146,8 @@ def test_without_mirror_images_there_are_none() -> None:
         ({"strokes": "many"}, "`strokes`"),
         ({"seed": -1}, "`seed`"),
         ({"workers": 0}, "`workers`"),
+        ({"symmetric": "yes"}, "`symmetric` 'yes' cannot be"),
+        ({"mirrored": "no"}, "`mirrored` 'no' cannot be"),
     ],
 )
 def test_what_cannot_be_asked_for(arguments: dict[str, Any], said: str) -> None:

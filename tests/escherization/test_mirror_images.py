@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 import voronoi_tiles as vt
 from voronoi_tiles.base.arrays import Complexes, plane
+from voronoi_tiles.escherization.covering import overlap_bound
 from voronoi_tiles.escherization.goal_outline import GoalOutline
 from voronoi_tiles.escherization.group_placement import GroupPlacement
 from voronoi_tiles.escherization.mirror_axis import MirrorAxis, likeness, mirrored_outlines
@@ -232,6 +233,14 @@ def test_every_line_about_which_a_group_is_its_own_mirror_image_is_looked_at() -
             assert any(group.same(*image, *each[:2]) for image in images for each in looked_at), (name, sides, unit)
 
 
+def test_what_is_short_of_symmetric_is_not_said_to_be_as_much() -> None:
+    """An overlap of 0.9597 is not 0.96."""
+    likely = (GoalOutline.of(beetle(noise=float(noise))) for noise in np.arange(0.2, 0.4, 0.002))
+    outline = next(each for each in likely if 0.955 < likeness(each) < 0.96)
+    with pytest.raises(vt.ArgumentError, match=r"their overlap is 0\.95, less than 0\.96"):
+        vt.fit(outline.polygon, symmetric=True)
+
+
 def test_groups_with_mirrors_are_left_to_those_without() -> None:
     """As the tiles that mirrors leave free are those of groups without them."""
     for name in set(vt.GROUPS) - set(FREE):
@@ -271,3 +280,46 @@ def test_one_tile_at_least_is_symmetric_where_the_outline_is() -> None:
     assert any(each.symmetric for each in found)
     assert [each.overlap for each in found] == sorted((each.overlap for each in found), reverse=True)
     assert not any(each.symmetric for each in vt.fit(random_polygon(2), keep=3, groups=["p1", "p2"], strokes="outline"))
+
+
+def test_tiles_are_different_for_the_eye() -> None:
+    """Of what is nearly its own mirror image: no two lie over each other by 0.98, as drawn or mirrored.
+
+    But for one that is a mirror image, beside one that is not.
+    """
+    outline = beetle(0.4, noise=0.15)
+    (near,) = mirrored_outlines(GoalOutline.of(outline))
+    found = vt.fit(outline, keep=6, groups=["p1", "p2", "pgg"], strokes="outline")
+    assert len(found) == 6
+    tiles = [each.tile_as_drawn for each in found]
+    for tile, each in zip(tiles, found, strict=True):
+        assert tile.intersection(polygon(outline)).area / tile.union(polygon(outline)).area == pytest.approx(
+            each.overlap, abs=2e-3
+        )
+    for k, tile in enumerate(tiles):
+        for j in range(k):
+            if found[k].symmetric == found[j].symmetric:
+                corners = shapely.get_coordinates(tiles[j].exterior) @ np.array([1, 1j])
+                for image in (corners, near.axis.mirrored(corners)):
+                    common = tile.intersection(polygon(image)).area
+                    assert common / tile.union(polygon(image)).area < 0.98, (found[k], found[j])
+
+
+def test_the_bound_is_that_of_the_given_outline() -> None:
+    """Not of the one that is its own mirror image, where both differ."""
+    outline = GoalOutline.of(beetle(0.4, noise=0.25))
+    (found,) = vt.fit(outline.polygon, keep=1, groups="p2", symmetric=True)
+    assert found.bound == pytest.approx(overlap_bound(outline, found.placement), abs=1e-9)
+    assert found.overlap <= found.bound + 1e-3
+
+
+def test_what_copies_contest_is_decided_alike_on_both_sides() -> None:
+    """The arms of a T, which lie on copies in p3, are both kept: else the best tile has 0.58 in common."""
+    right = np.array([5 - 30j, 5 + 15j, 25 + 15j, 25 + 25j])
+    found = vt.fit(np.concatenate((right, -right[::-1].conj())), groups=["p3", "p6"], symmetric=True, strokes="outline")
+    assert found[0].group == "p3"
+    assert found[0].overlap > 0.63
+    for each in found:
+        assert each._axis is not None
+        # Some have corners that move 200 times as far as those of the stroke.
+        assert apart(each.tiling[0].to_shapely(accuracy=1e-5), each._axis) < 1e-3

@@ -43,6 +43,13 @@ def number(name: str, value: Any, remedy: str, *, least: float = -COORDINATE_MAX
     return float(value)
 
 
+def flag(name: str, value: Any) -> bool:
+    """The value of an argument that has to be True or False. Raises ArgumentError."""
+    if not isinstance(value, bool):
+        raise ArgumentError(f"`{name}` {shown(value)} cannot be", remedy="Give True or False.")
+    return value
+
+
 def texts(name: str, value: Any, remedy: str) -> list[str]:
     """The value of an argument that has to be texts; a single one is a list of one. Raises ArgumentError."""
     listed = [value] if isinstance(value, str) else value

@@ -15,17 +15,20 @@ from voronoi_tiles.designs.drawn_strokes import polyline
 from voronoi_tiles.groups.wallpaper import WallpaperGroup
 from voronoi_tiles.tiling import Tiling, tessellate
 
-_DIGITS: Final = 5
-"""Coordinates are written to so many digits of the size: a tile of 60 mm to a micrometre."""
+DIGITS: Final = 5
+"""Coordinates are written to so many digits of the size, and angles of a degree: a tile of 60 mm to a micrometre."""
 
-_ANGLE_PLACES: Final = 5
-"""The cell's angle is written to so many digits of a degree, which is as fine as its sides are."""
+MIRRORED_DIGITS: Final = 7
+"""The same for strokes that are their own mirror images. Corners of tiles, where edges meet at a small angle, may move
+hundreds of times as far as the stroke's."""
 
 
-def closed_design(group: WallpaperGroup, cell: dict[str, float], corners: Complexes, name: str, size: float) -> Design:
+def closed_design(
+    group: WallpaperGroup, cell: dict[str, float], corners: Complexes, name: str, size: float, digits: int = DIGITS
+) -> Design:
     """The design of a closed stroke by its corners, its numbers rounded for people; `size` is that of the tile."""
-    places = _DIGITS - math.floor(math.log10(size)) - 1
-    numbers = {key: round(value, _ANGLE_PLACES if key == "angle" else places + 1) for key, value in cell.items()}
+    places = digits - math.floor(math.log10(size)) - 1
+    numbers = {key: round(value, digits if key == "angle" else places + 1) for key, value in cell.items()}
     rounded = np.round(plane(corners), places) + 0.0
     return Design(group, numbers, Site([polyline(rounded, closed=True)], name=name), name=name)
 

@@ -68,7 +68,7 @@ def drawn_apart(silhouette: GoalOutline, placement: GroupPlacement, axis: Mirror
 
     stroke = left(())
     if inner.area - stroke.area > _LEAST * own.area:
-        stroke = _decided(stroke, _lenses(own, [(k, maps[k], copies[k]) for k in near]), left, _LEAST * own.area)
+        stroke = _decided(stroke, _lenses(own, [(k, maps[k], copies[k]) for k in near]), left, _LEAST * own.area, axis)
     if axis is None:
         return ring_corners(Polygon(stroke.exterior).simplify(_CORNERS * apart).exterior)
     half = axis.left_half(stroke)
@@ -90,15 +90,38 @@ def _lenses(own: Polygon, copies: list[tuple[int, Isometry, Polygon]]) -> list[_
     return sorted(lenses, key=lambda lens: -lens.area.area)[:_CONTESTED_MAX]
 
 
-def _decided(stroke: Polygon, lenses: list[_Lens], left: Callable[[Iterable[_Lens]], Polygon], least: float) -> Polygon:
-    """The stroke where the outline has all of those lenses that hold on to more, decided one after the other."""
+def _decided(
+    stroke: Polygon,
+    lenses: list[_Lens],
+    left: Callable[[Iterable[_Lens]], Polygon],
+    least: float,
+    axis: MirrorAxis | None,
+) -> Polygon:
+    """The stroke where the outline has all of those lenses that hold on to more, decided one after the other.
+
+    About an axis a lens and its mirror image are decided on together.
+    """
     kept: list[_Lens] = []
     for lens in lenses:
+        both = _with_image(lens, lenses, axis)
         # Of a lens and the one that goes with it the copy can have one alone.
-        if any(lens.area.intersection(other.back).area > 0.5 * lens.area.area for other in kept):
+        if any(each in kept or _covers(other.back, each.area) for each in both for other in (*kept, *both)):
             continue
-        larger = left([*kept, lens])
-        # The lens itself is no gain: another one is lost for it. What it holds on to is.
-        if larger.area > stroke.area + lens.area.area + least:
-            kept, stroke = [*kept, lens], larger
+        larger = left([*kept, *both])
+        # The lenses themselves are no gain: others are lost for them. What they hold on to is.
+        if larger.area > stroke.area + sum(each.area.area for each in both) + least:
+            kept, stroke = [*kept, *both], larger
     return stroke
+
+
+def _with_image(lens: _Lens, lenses: list[_Lens], axis: MirrorAxis | None) -> list[_Lens]:
+    """A lens and, where there is an axis, the one that is its mirror image, unless that is the same."""
+    if axis is None:
+        return [lens]
+    image = Polygon(plane(axis.mirrored(ring_corners(lens.area.exterior))))
+    return [lens, *(other for other in lenses if other is not lens and _covers(image, other.area))]
+
+
+def _covers(one: Polygon, other: Polygon) -> bool:
+    """Whether an area has more than half of another one."""
+    return bool(one.intersection(other).area > 0.5 * other.area)

@@ -9,7 +9,7 @@ from shapely.geometry import LinearRing, Polygon
 
 from voronoi_tiles.base.arrays import Complexes, Floats, plane
 from voronoi_tiles.designs.design import Design
-from voronoi_tiles.escherization.closed_design import closed_design, corners_of, tiled
+from voronoi_tiles.escherization.closed_design import DIGITS, MIRRORED_DIGITS, closed_design, corners_of, tiled
 from voronoi_tiles.escherization.goal_outline import ring_corners
 from voronoi_tiles.escherization.mirror_axis import MirrorAxis
 from voronoi_tiles.escherization.outline_distance import largest_distance, towards
@@ -43,14 +43,17 @@ def fewer_corners(tiling: Tiling, size: float, within: float, axis: MirrorAxis |
     wanted: LinearRing = tiling[0].to_shapely(accuracy=accuracy).exterior
     whole = tiling.design
     corners = corners_of(whole)
+    digits = DIGITS if axis is None else MIRRORED_DIGITS
+
+    def written(fewer: Complexes) -> Design:
+        return closed_design(whole.group, whole.cell, fewer, whole.name, size, digits)
+
     for tolerance in _TOLERANCES:
         fewer = _simplified(corners, tolerance * size, axis)
         if not 3 <= len(fewer) < len(corners):
             continue
-        led = _led(closed_design(whole.group, whole.cell, fewer, whole.name, size), wanted, axis)
-        found = (
-            None if led is None else tiled(closed_design(whole.group, whole.cell, corners_of(led), whole.name, size))
-        )
+        led = _led(written(fewer), wanted, axis)
+        found = None if led is None else tiled(written(corners_of(led)))
         if found is None:
             continue
         ring = found[0].to_shapely(accuracy=accuracy).exterior

@@ -6,23 +6,23 @@ import cmath
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, Final, Literal, NamedTuple
 
 from shapely.geometry import Polygon
 
-from voronoi_tiles.base.arguments import number, texts
+from voronoi_tiles.base.arguments import flag, function, number, texts
 from voronoi_tiles.base.arrays import plane
 from voronoi_tiles.base.errors import ArgumentError, SchedulerError
 from voronoi_tiles.base.values import shown
 from voronoi_tiles.designs.design import Design
 from voronoi_tiles.designs.enclosed import ENCLOSED
 from voronoi_tiles.escherization.area_transform import AreaTransform
-from voronoi_tiles.escherization.closed_design import closed_design, tiled
+from voronoi_tiles.escherization.closed_design import DIGITS, MIRRORED_DIGITS, closed_design, tiled
 from voronoi_tiles.escherization.covering import overlap_bound
 from voronoi_tiles.escherization.drawn_apart import drawn_apart
 from voronoi_tiles.escherization.fewer_corners import DISTANCE_STEP, fewer_corners
-from voronoi_tiles.escherization.goal_outline import GoalOutline
+from voronoi_tiles.escherization.goal_outline import GoalOutline, ring_corners
 from voronoi_tiles.escherization.group_placement import GroupPlacement
 from voronoi_tiles.escherization.mirror_axis import MIRRORED, MirrorAxis, likeness, mirrored_outlines
 from voronoi_tiles.escherization.mirror_placements import mirror_lines, mirror_rows
@@ -48,8 +48,12 @@ _SAME: Final = 2e-4
 _GAIN: Final = 0.03
 """How much more a tile may overlap once its placement is led on by areas. In 26 of 30 animals none gained more."""
 
+_ALIKE: Final = 0.98
+"""Tiles that lie so much over each other, in the outline, are one for the eye; an overlap. Those of other placements
+seldom have more than 0.97."""
+
 _AS_GOOD: Final = 1e-3
-"""A tile that is its own mirror image stands for others of its group that can overlap by so much more."""
+"""A tile that is its own mirror image stands for others that are alike and overlap by so much more."""
 
 _MIRRORED: Final = 4
 """How many placements with such tiles are led on at least, where the outline is its own mirror image; a count."""
@@ -110,6 +114,12 @@ class Fit:
         """The given outline where it lies in the design, as a shapely polygon."""
         return _outline(self.silhouette, self.placement)
 
+    @cached_property
+    def tile_as_drawn(self) -> Polygon:
+        """The tile where it lies in the outline as that was given, as a shapely polygon."""
+        corners = ring_corners(self.tiling[0].to_shapely(accuracy=1e-3 * self.silhouette.size).exterior)
+        return Polygon(plane(self.placement.taken_back(corners, self.silhouette.centroid)))
+
     def with_fewer_corners(self, within: float) -> Fit:
         """The fit with a stroke of fewer corners, its tile nowhere further than `within` millimetres from this one's.
 
@@ -150,10 +160,12 @@ def fit(
 
     Raises ArgumentError for an outline that crosses itself, has holes or no area, and for groups that are none.
     """
+    function("progress", progress)
+    function("found", found)
     silhouette = GoalOutline.of(outline)
-    names = _groups(groups, mirrored=mirrored)
+    names = _groups(groups, mirrored=flag("mirrored", mirrored))
     goals = [_Goal(*each) for each in mirrored_outlines(silhouette)]
-    if symmetric:
+    if flag("symmetric", symmetric):
         _check_symmetric(silhouette, goals, names)
     else:
         goals = [_Goal(silhouette), *goals]
@@ -165,9 +177,8 @@ def fit(
     phases = _Phases(workers, scheduler, progress)
     seen = phases.run(partial(_looked, seed), [(goal, group) for goal in goals for group in names], 0.5)
     ordered = sorted((each for row in seen for each in row), key=lambda each: -each.found.bound)
-    best = _best(phases, partial(_made, silhouette, name), ordered, count, len(names))
-    # So far it was that of what was placed, which the given outline may nearly be.
-    best = [replace(each, bound=overlap_bound(silhouette, each.placement)) if each.symmetric else each for each in best]
+    axes = [goal.axis for goal in goals if goal.axis is not None]
+    best = _best(phases, partial(_made, silhouette, name), ordered, count, len(names), axes)
     if strokes == "few":
         best = phases.run(partial(_with_fewer_corners, near), best, 1.0, found)
     elif found is not None:
@@ -207,7 +218,12 @@ def _looked(seed: int, block: tuple[_Goal, str]) -> list[_Found]:
 
 
 def _best(
-    phases: _Phases, making: Callable[[_Found], Fit | None], found: list[_Found], count: int, groups: int
+    phases: _Phases,
+    making: Callable[[_Found], Fit | None],
+    found: list[_Found],
+    count: int,
+    groups: int,
+    axes: Sequence[MirrorAxis],
 ) -> list[Fit]:
     """So many different fits of whole outlines, those that overlap most first; `found` are in their order."""
     most = max(_EACH, math.ceil(count / groups))
@@ -224,28 +240,35 @@ def _best(
         found = [each for each in found if not any(each is other for other in symmetric)]
         symmetric = []
         made += [each for each in phases.run(making, tried, 0.75) if each is not None]
-        best = _different(made, most)[:count]
+        best = _different(made, most, axes)[:count]
     return _with_symmetric(best, made, count)
 
 
-def _different(fits: list[Fit], most: int) -> list[Fit]:
-    """Fits whose placements are not images of each other, those that overlap most first, so many of a group at most."""
+def _different(fits: list[Fit], most: int, axes: Sequence[MirrorAxis]) -> list[Fit]:
+    """Fits whose tiles are not alike, those that overlap most first, so many of a group at most."""
     kept: list[Fit] = []
     for each in sorted(fits, key=lambda each: -(each.overlap + _AS_GOOD * each.symmetric)):
-        if sum(other.group == each.group for other in kept) < most and not any(_stands_for(one, each) for one in kept):
+        if sum(other.group == each.group for other in kept) < most and not any(
+            _stands_for(one, each, axes) for one in kept
+        ):
             kept.append(each)
     return sorted(kept, key=lambda each: -each.overlap)
 
 
-def _stands_for(one: Fit, other: Fit) -> bool:
-    """Whether another fit need not be kept beside one: it is the same, or hardly better, but not symmetric as that is.
+def _stands_for(one: Fit, other: Fit, axes: Sequence[MirrorAxis]) -> bool:
+    """Whether another fit need not be kept beside one: their tiles lie over each other in the outline, or its images.
 
-    Two that are symmetric may be the same in different groups: a glide makes the same copy of what is its own mirror
-    image as a translation or a rotation.
+    Those of a group are the same, too, that differ by a rotation of the outline: they have the same bound. So may two
+    symmetric ones be in different groups: a glide makes the same copy of what is its own mirror image as a translation
+    or a rotation. For a symmetric one stands only what is that as well.
     """
-    if one.group != other.group and not (one.symmetric and other.symmetric):
+    if other.symmetric and not one.symmetric:
         return False
-    return abs(one.bound - other.bound) <= (_AS_GOOD if one.symmetric and not other.symmetric else _SAME)
+    if abs(one.bound - other.bound) <= _SAME and (one.group == other.group or other.symmetric):
+        return True
+    corners = ring_corners(other.tile_as_drawn.exterior)
+    images = [corners, *(axis.mirrored(corners) for axis in axes)]
+    return any(overlap(one.tile_as_drawn, Polygon(plane(image))) >= _ALIKE for image in images)
 
 
 def _with_symmetric(best: list[Fit], made: list[Fit], count: int) -> list[Fit]:
@@ -314,9 +337,9 @@ def _outline(silhouette: GoalOutline, placement: GroupPlacement) -> Polygon:
 def _check_symmetric(silhouette: GoalOutline, goals: list[_Goal], groups: list[str]) -> None:
     """Raise ArgumentError where an outline is not its own mirror image, or groups have no tiles that are."""
     if not goals:
+        like = math.floor(100.0 * likeness(silhouette)) / 100.0
         raise ArgumentError(
-            f"the outline is not its own mirror image: their overlap is {likeness(silhouette):.3f}, less than "
-            f"{MIRRORED}",
+            f"the outline is not its own mirror image: their overlap is {like:.2f}, less than {MIRRORED}",
             remedy="Draw it symmetrically, or leave out `symmetric`.",
         )
     if not any(mirror_lines(GROUPS[name]) for name in groups):
@@ -335,12 +358,16 @@ def _made(given: GoalOutline, name: str, found: _Found) -> Fit | None:
     corners = drawn_apart(silhouette, placement, axis)
     if len(corners) < 3:
         return None
-    tiling = tiled(closed_design(placement.group, placement.cell, corners, name, silhouette.size))
+    digits = DIGITS if axis is None else MIRRORED_DIGITS
+    tiling = tiled(closed_design(placement.group, placement.cell, corners, name, silhouette.size, digits))
     if tiling is None:
         return None
     # The given outline lies over the one that was placed, whose centroid is nearly the same.
     moved = (given.centroid - silhouette.centroid) * cmath.exp(1j * placement.turn)
-    return _measured(tiling, given, replace(placement, centre=placement.centre + moved), bound, axis)
+    placement = replace(placement, centre=placement.centre + moved)
+    if axis is not None:
+        bound = overlap_bound(given, placement)
+    return _measured(tiling, given, placement, bound, axis)
 
 
 def _with_fewer_corners(within: float, fit: Fit) -> Fit:

@@ -32,8 +32,8 @@ _DIRECTIONS: Final = {
     ("square", 0.0): (*_RIGHT, (1, 1), (1, -1)),
     ("hexagonal", 0.0): (*_RIGHT, (1, 1), (1, -1), (1, 2), (2, 1)),
 }
-"""In which directions lattices have mirrors, in the cell's sides, by the system and the real part of b / a. Diagonals of
-a rectangle are some where it is a square."""
+"""In which directions lattices have mirrors, in the cell's sides, by the system and the real part of b / a. Diagonals
+of a rectangle are some where it is a square."""
 
 
 class MirrorLine(NamedTuple):
