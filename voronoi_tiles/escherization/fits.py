@@ -337,9 +337,15 @@ def _outline(silhouette: GoalOutline, placement: GroupPlacement) -> Polygon:
 def _check_symmetric(silhouette: GoalOutline, goals: list[_Goal], groups: list[str]) -> None:
     """Raise ArgumentError where an outline is not its own mirror image, or groups have no tiles that are."""
     if not goals:
-        like = math.floor(100.0 * likeness(silhouette)) / 100.0
+        like = likeness(silhouette)
+        if like >= MIRRORED:
+            raise ArgumentError(
+                "the outline's halves hardly meet on the axis about which it is its own mirror image",
+                remedy="Draw it wider there, or leave out `symmetric`.",
+            )
         raise ArgumentError(
-            f"the outline is not its own mirror image: their overlap is {like:.2f}, less than {MIRRORED}",
+            f"the outline is not its own mirror image: their overlap is {math.floor(100.0 * like) / 100.0:.2f}, "
+            f"less than {MIRRORED}",
             remedy="Draw it symmetrically, or leave out `symmetric`.",
         )
     if not any(mirror_lines(GROUPS[name]) for name in groups):

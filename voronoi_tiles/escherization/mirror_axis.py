@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import cmath
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import islice
 from typing import Final, NamedTuple
@@ -103,7 +102,7 @@ class MirroredOutline(NamedTuple):
             half = each.left_half(given.polygon)
             if half is None:
                 continue
-            whole = GoalOutline(each.completed(half))
+            whole = GoalOutline(each.completed(half, _ON_AXIS * given.size))
             if whole.polygon.is_valid:
                 ccw = whole.polygon.exterior.is_ccw
                 found.append(whole if ccw else GoalOutline(whole.points[::-1]))
@@ -117,24 +116,26 @@ def mirrored_outlines(given: GoalOutline) -> list[MirroredOutline]:
 
     Of several axes every second one is of the same kind, as those of a star: there are two at most.
     """
-    axes = islice((axis for axis, like in _axes(given) if like >= MIRRORED), 2)
+    led = (_led_axis(given, angle) for angle, like in _rough_axes(given) if like >= MIRRORED - _ROUGH_LOSS)
+    axes = islice((axis for axis, like in led if like >= MIRRORED), 2)
     return [outline for axis in axes if (outline := MirroredOutline.of(given, axis)) is not None]
 
 
 def likeness(given: GoalOutline) -> float:
     """The largest overlap of an outline with one of its mirror images; at most 1."""
-    return max(like for _, like in _axes(given))
+    rough = _rough_axes(given)
+    least = min(MIRRORED - _ROUGH_LOSS, max(like for _, like in rough))
+    return max(_led_axis(given, angle)[1] for angle, like in rough if like >= least)
 
 
-def _axes(given: GoalOutline) -> Iterator[tuple[MirrorAxis, float]]:
-    """The axes about which an outline is more like its mirror image than about those beside, and how much."""
+def _rough_axes(given: GoalOutline) -> list[tuple[float, float]]:
+    """The angles of axes about which an outline is more like its mirror image than about those beside, and how much."""
     rough = GoalOutline(ring_corners(given.polygon.simplify(_ROUGH * given.size).exterior))
     angles = np.arange(_DIRECTIONS) * math.pi / _DIRECTIONS
     seen = np.array([_likeness(rough, _axis(rough, angle, 0.0)) for angle in angles.tolist()])
     peaks = np.flatnonzero((seen >= np.roll(seen, 1)) & (seen > np.roll(seen, -1)))
-    # One alone is led on where none is worth it.
-    worth = [k for k in peaks.tolist() if seen[k] >= MIRRORED - _ROUGH_LOSS] or [int(np.argmax(seen))]
-    return (_led_axis(given, float(angles[k])) for k in worth)
+    chosen = peaks if len(peaks) else [int(np.argmax(seen))]
+    return [(float(angles[k]), float(seen[k])) for k in chosen]
 
 
 def _axis(outline: GoalOutline, angle: float, offset: float) -> MirrorAxis:
@@ -155,6 +156,6 @@ def _led_axis(outline: GoalOutline, angle: float) -> tuple[MirrorAxis, float]:
         lambda row: -_likeness(outline, _axis(outline, row[0], row[1] * size)),
         [angle, 0.0],
         method="Nelder-Mead",
-        options={"initial_simplex": [[angle, 0.0], [angle + 0.02, 0.0], [angle, 0.01]], "xatol": 1e-9, "fatol": 1e-10},
+        options={"initial_simplex": [[angle, 0.0], [angle + 0.02, 0.0], [angle, 0.01]], "xatol": 1e-7, "fatol": 1e-7},
     )
     return _axis(outline, float(led.x[0]), float(led.x[1]) * size), -float(led.fun)
