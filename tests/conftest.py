@@ -17,7 +17,7 @@ from helpers.forking import ForkServer
 from helpers.outlines import ABOVE, RIGHT, CommandLine, polygon
 from helpers.page import SOFTWARE_GL, missing
 from helpers.page_server import PageServer
-from helpers.thinning import HALVED, THINNED, is_left_out
+from helpers.thinning import THINNED, is_left_out
 from hypothesis import settings
 
 from voronoi_tiles.base import kernels
@@ -30,32 +30,13 @@ settings.register_profile("untimed", deadline=None)
 settings.load_profile("untimed")
 
 
-NUMERIC = {
-    "blender",
-    "crosscheck",
-    "escherization",
-    "fabrication",
-    "gradients",
-    "groups",
-    "paths",
-    "pictures",
-    "preflight",
-    "raster",
-    "solid",
-    "sweeps",
-    "tiling",
-    "vector",
-} | {f"test_{name}.py" for name in ("documentation", "dxf", "gallery", "paper", "readers")}
-"""Folders and files whose tests are of what numpy, shapely and the kernels compute, the same on every Python; and of
-the documentation's pages, whose commands the tests of the command line have in short."""
-
 _LEFT_OUT = pytest.StashKey[Counter[str]]()
 """How many "slow" tests and "other" cases are not run."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Add --thin, for another Python than that which runs all."""
-    parser.addoption("--thin", action="store_true", help="a part of the tests, of each kind: see helpers/thinning.py")
+    parser.addoption("--thin", action="store_true", help=f"of each file one test of {THINNED}, and at least one")
 
 
 @pytest.hookimpl(trylast=True)
@@ -63,16 +44,14 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     """Leave cases out where --thin says so."""
     if not config.getoption("thin"):
         return
-    cases: dict[tuple[str, int], list[pytest.Item]] = {}
+    files: dict[Path, list[pytest.Item]] = {}
     for item in items:
-        numeric = NUMERIC & {item.path.name, item.path.parent.name}
-        key = (item.nodeid.partition("[")[0], THINNED) if numeric else (str(item.path), HALVED)
-        cases.setdefault(key, []).append(item)
+        files.setdefault(item.path, []).append(item)
     left_out = {
         item
-        for (_, parts), each in cases.items()
+        for each in files.values()
         for number, item in enumerate(each)
-        if is_left_out(number, len(each), sys.version_info.minor, parts)
+        if is_left_out(number, len(each), sys.version_info.minor)
     }
     config.hook.pytest_deselected(items=[*left_out])
     items[:] = [item for item in items if item not in left_out]
@@ -105,7 +84,7 @@ def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter, config: p
         say = "slow tests were left out: `make test-slow` runs them, or pytest -m slow."
         terminalreporter.write_line(f"{counts['slow']} {say}")
     if counts["other"] and config.getoption("thin"):
-        say = "tests and cases were left out, by --thin."
+        say = "tests were left out, by --thin."
         terminalreporter.write_line(f"{counts['other']} {say}")
 
 
