@@ -455,6 +455,8 @@ def test_too_few_and_too_many_points_are_refused(gradient: vt.ShapeGradient) -> 
     """None, and as many as do not fit into memory."""
     with pytest.raises(vt.ArgumentError, match="count"):
         gradient[0].along(0)
+    with pytest.raises(vt.ArgumentError, match="count"):
+        gradient[0].along(2.5)  # type: ignore[arg-type]
     with pytest.raises(vt.ArgumentError, match="are too many numbers"):
         gradient[0].along(10**8)
     assert gradient[0].velocities([], []).velocity.shape == (0, 17)

@@ -43,6 +43,14 @@ def number(name: str, value: Any, remedy: str, *, least: float = -COORDINATE_MAX
     return float(value)
 
 
+def whole_number(name: str, value: Any, remedy: str, *, least: int) -> int:
+    """The value of an argument that has to be a whole number from `least`, such as 2 or 2.0. Raises ArgumentError."""
+    found = number(name, value, remedy, least=least)
+    if found != int(found):
+        raise ArgumentError(f"`{name}` {shown(value)} cannot be", remedy=remedy)
+    return int(found)
+
+
 def flag(name: str, value: Any) -> bool:
     """The value of an argument that has to be True or False. Raises ArgumentError."""
     if not isinstance(value, bool):

@@ -11,7 +11,7 @@ from typing import Any, Final, Literal, NamedTuple
 
 from shapely.geometry import Polygon
 
-from voronoi_tiles.base.arguments import flag, function, number, texts
+from voronoi_tiles.base.arguments import flag, function, number, texts, whole_number
 from voronoi_tiles.base.arrays import plane
 from voronoi_tiles.base.errors import ArgumentError, SchedulerError
 from voronoi_tiles.base.values import shown
@@ -169,11 +169,11 @@ def fit(
         _check_symmetric(silhouette, goals, names)
     else:
         goals = [_Goal(silhouette), *goals]
-    count = int(number("keep", keep, "Give a number of designs.", least=1))
+    count = whole_number("keep", keep, "Give a number of designs.", least=1)
     if strokes not in ("few", "outline"):
         raise ArgumentError(f"`strokes` {shown(strokes)} cannot be", remedy='Give "few" or "outline".')
     near = WITHIN * silhouette.size if within is None else number("within", within, "Give millimetres.", least=1e-6)
-    seed = int(number("seed", seed, "Give a whole number from 0.", least=0))
+    seed = whole_number("seed", seed, "Give a whole number from 0.", least=0)
     phases = _Phases(workers, scheduler, progress)
     seen = phases.run(partial(_looked, seed), [(goal, group) for goal in goals for group in names], 0.5)
     ordered = sorted((each for row in seen for each in row), key=lambda each: -each.found.bound)

@@ -10,7 +10,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from scipy import sparse
 
-from voronoi_tiles.base.arguments import number
+from voronoi_tiles.base.arguments import whole_number
 from voronoi_tiles.base.arrays import Complexes, Floats, Ints, next_in_ring
 from voronoi_tiles.base.errors import ArgumentError
 from voronoi_tiles.gradients.bending import NODES, WEIGHTS, bending_weights
@@ -91,7 +91,7 @@ class TileGradient:
 
         Raises ArgumentError for a count below 1.
         """
-        wanted = int(number("count", count, "Give a number of points.", least=1))
+        wanted = whole_number("count", count, "Give a number of points.", least=1)
         self._refuse_large(wanted, "points")
         ends = np.cumsum(self.outline.lengths)
         place = (np.arange(wanted) + 0.5) / wanted * ends[-1]
