@@ -20,7 +20,12 @@ from voronoi_tiles.blender.drawn_splines import DrawnSpline, nurbs, strokes_of
 CURVE = np.array([1 + 1j, 4 + 2j, 6 + 7j])
 LEFT, RIGHT = CURVE - (1 - 0.5j), CURVE + (1 - 0.5j)
 
-ROWS = st.lists(st.complex_numbers(max_magnitude=50.0, allow_nan=False, allow_subnormal=False), min_size=1, max_size=60)
+PLACES = st.complex_numbers(max_magnitude=50.0, allow_nan=False).map(
+    lambda place: complex(round(place.real, 12), round(place.imag, 12))
+)
+"""Shapely, which judges them, warns of segments whose length has a square of 0."""
+
+ROWS = st.lists(PLACES, min_size=1, max_size=60)
 
 
 def table(spline: DrawnSpline, smoothing: float = 0.1) -> dict[str, Any]:
@@ -83,6 +88,13 @@ def test_what_is_drawn_by_hand_stays_near(points: list[complex], closed: bool, s
     assert all(any(place == one for place in places) for one in kept)
 
 
+@pytest.mark.parametrize("tiny", [5e-324, 1e-302, 1e-170])
+def test_rows_whose_ends_all_but_meet_keep_what_is_between(tiny: float) -> None:
+    """Also where the square of the distance of the ends is 0."""
+    found = table(DrawnSpline("freehand", np.array([tiny + 0j, 1j, 0j])))
+    assert points_of(found["catmull_rom"]) == [tiny, 1j, 0j]
+
+
 def test_smoothing_leaves_out_what_it_may() -> None:
     """A straight row is its two ends, and a wave of less than the smoothing is straight."""
     row = np.linspace(0, 10, 101) + 0.04j * np.sin(np.arange(101))
@@ -137,6 +149,13 @@ def test_nurbs_of_order_2_are_polylines(closed: bool, clamped: bool) -> None:
     found = table(spline, 0.5)
     assert points_of(found["polyline"]) == spline.points.tolist()
     assert found.get("closed", False) is closed
+
+
+@pytest.mark.parametrize(("closed", "clamped"), KINDS)
+def test_nurbs_of_one_point_are_that_point(closed: bool, clamped: bool) -> None:
+    """Whatever their knots; their order is as many as there are points."""
+    one = nurbs(np.array([3 + 4j]), np.ones(1), 1, closed=closed, clamped=clamped, bezier=True)
+    assert table(one)["point"] == (3.0, 4.0)
 
 
 @pytest.mark.parametrize("order", [3, 4])

@@ -48,10 +48,8 @@ def _stroke(spline: DrawnSpline, smoothing: float) -> list[Stroke]:
     points, closed = spline.points, spline.closed
     if spline.kind == "bezier":
         return _bezier(spline)
-    if spline.kind == "nurbs" and len(points) < spline.order:  # Blender draws nothing of it
-        return []
-    if spline.kind == "nurbs" and spline.order > 2:
-        pieces = _along_nurbs(spline)
+    if spline.kind == "nurbs":
+        pieces = _along_nurbs(spline) if len(points) >= spline.order else []  # Blender draws nothing of less
         return [stroke for piece in pieces for stroke in _smooth(piece, closed and len(pieces) == 1, smoothing)]
     if spline.kind == "freehand":
         return _smooth(points, closed, smoothing)
@@ -152,12 +150,15 @@ def _along_nurbs(spline: DrawnSpline) -> list[Complexes]:
 def nurbs(points: Complexes, weights: Floats, order: int, *, closed: bool, clamped: bool, bezier: bool) -> DrawnSpline:
     """A NURBS spline as Blender draws it.
 
-    It is the row of its control points where these do not make whole pieces of a closed Bezier curve, or none at all.
+    It is the row of its control points where it is of order 2 (or has one point), where these do not make whole pieces
+    of a closed Bezier curve, and where they make none at all.
     """
+    row = DrawnSpline("poly", points, closed)
+    if order < 3 or (closed and bezier and len(points) % (order - 1)):
+        return row
     knots = nurbs_knots(len(points), order, closed=closed, clamped=clamped, bezier=bezier)
-    whole = not (closed and bezier and len(points) % (order - 1))
-    if not whole or knots[order - 1] == knots[len(points)]:
-        return DrawnSpline("poly", points, closed)
+    if knots[order - 1] == knots[len(points)]:
+        return row
     return DrawnSpline("nurbs", points, closed, order=order, weights=weights, knots=knots)
 
 

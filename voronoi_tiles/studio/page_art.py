@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
@@ -36,7 +35,7 @@ def art_document(design: Design) -> dict[str, Any]:
             changed = file.stat().st_mtime_ns
         except OSError:
             changed = 0
-        found = _path_of(art, os.fspath(design.folder), site, design.unit_mm, changed)
+        found = _path_of(art, design.folder, site, design.unit_mm, changed)
         if isinstance(found, str):
             paths[str(site)] = found
         else:
